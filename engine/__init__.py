@@ -1,0 +1,1 @@
+"""The engine: documents, runs, bus, journal and store; knows no robot and no browser."""

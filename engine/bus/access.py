@@ -1,0 +1,100 @@
+"""The bus as people and other processes reach it: by name, with JSON in and out."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator
+from typing import Any, Protocol
+
+import msgspec
+
+from engine.bus.action import GoalEnd, GoalHandle
+from engine.bus.bus import BusEntry, SkillBus
+from engine.bus.lease import Holder
+from engine.errors import BusError
+from engine.skill import Action, Service
+
+VISITOR = Holder("cli")
+
+
+class BusAccess(Protocol):
+    """What `flexcell bus` needs, of a bus in this process or behind a server."""
+
+    async def listing(self) -> tuple[BusEntry, ...]:
+        """Return everything on the bus."""
+        ...
+
+    def echo(self, topic: str) -> AsyncGenerator[str, None]:
+        """Go through the messages of a topic as JSON, the latest one first; raises BusError when there is none."""
+        ...
+
+    async def call(self, address: str, request: object) -> str:
+        """Ask a service; returns its answer as JSON."""
+        ...
+
+    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+        """Send a goal and wait for its end; cancelled, the goal is cancelled and awaited first."""
+        ...
+
+
+class LocalBus:
+    """A bus in this process."""
+
+    def __init__(self, bus: SkillBus) -> None:
+        self._bus = bus
+
+    async def listing(self) -> tuple[BusEntry, ...]:
+        """Return everything on the bus."""
+        return self._bus.listing()
+
+    async def echo(self, topic: str) -> AsyncGenerator[str, None]:
+        """Go through the messages of a topic as JSON, the latest one first."""
+        found = self._bus.find_topic(topic)
+        with found.stream() as stream:
+            if found.latest is not None:
+                yield _text(found.latest)
+            while True:
+                yield _text(await stream.next())
+
+    async def call(self, address: str, request: object) -> str:
+        """Ask a service; returns its answer as JSON.
+
+        Raises:
+            BusError: nobody answers there, it is an action, the request does not fit, or it failed.
+        """
+        namespace, _, _ = address.rpartition("/")
+        typed = self._typed(address, request)
+        if not issubclass(self._bus.request_type(address), Service):
+            raise BusError("this is an action, not a service", where=address, hint="use `flexcell bus goal`")
+        return _text(await self._bus.call(typed, to=namespace))
+
+    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+        """Send a goal and wait for its end.
+
+        Raises:
+            BusError: nobody carries it out there, it is a service, the goal does not fit, or a run holds the resource.
+        """
+        namespace, _, _ = address.rpartition("/")
+        typed = self._typed(address, goal)
+        if not issubclass(self._bus.request_type(address), Action):
+            raise BusError("this is a service, not an action", where=address, hint="use `flexcell bus call`")
+        handle: GoalHandle[Any, Any] = self._bus.send_goal(typed, to=namespace, holder=VISITOR)
+        try:
+            return await handle.result()
+        except asyncio.CancelledError:
+            handle.cancel()
+            await handle.result()
+            raise
+        finally:
+            self._bus.leases.release_run(VISITOR.run)
+
+    def _typed(self, address: str, request: object) -> Any:
+        skill = self._bus.request_type(address)
+        try:
+            return msgspec.convert(request, skill)
+        except msgspec.ValidationError as error:
+            raise BusError(f"this is not a {skill.__name__}: {error}", where=address) from error
+
+
+def _text(message: Any) -> str:
+    return msgspec.json.encode(message).decode()

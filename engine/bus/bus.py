@@ -1,0 +1,252 @@
+"""The skill bus: topics, services, actions, parameters and leases of one cell, in one process.
+
+It belongs to the event loop it was made on. Other threads enter through `post` only.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Self, TypeVar, cast
+
+from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, carry_out
+from engine.bus.handler import verify_handler
+from engine.bus.lease import Holder, LeaseTable
+from engine.bus.parameter import ParameterServer
+from engine.bus.topic import Topic
+from engine.clock import Clock
+from engine.errors import BusError, FlexcellError, GoalRejected, NoSuchSkill, SkillFailed
+from engine.nearness import near_names
+from engine.skill import Action, Service, Skill
+
+R = TypeVar("R")
+F = TypeVar("F")
+M = TypeVar("M")
+A = TypeVar("A", bound=Action[Any, Any])
+Q = TypeVar("Q", bound=Service[Any])
+
+NOBODY = Holder("nobody")
+
+
+@dataclass(frozen=True)
+class _ActionServer:
+    skill: type[Action[Any, Any]]
+    handler: Callable[[Any, ActiveGoal[Any]], Awaitable[Any]]
+    exclusive: str
+
+
+@dataclass(frozen=True)
+class _ServiceServer:
+    skill: type[Service[Any]]
+    handler: Callable[[Any], Any]
+
+
+@dataclass(frozen=True)
+class BusEntry:
+    """One line of the bus listing."""
+
+    kind: str
+    name: str
+    type: str
+    detail: str
+
+
+class SkillBus:
+    """Where states and robots meet by name."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.leases = LeaseTable()
+        self.parameters = ParameterServer()
+        self._loop = asyncio.get_running_loop()
+        self._topics: dict[str, Topic[Any]] = {}
+        self._services: dict[str, _ServiceServer] = {}
+        self._actions: dict[str, _ActionServer] = {}
+        self._running: dict[str, ActiveGoal[Any]] = {}
+        self._goals: dict[GoalHandle[Any, Any], asyncio.Task[GoalEnd[Any]]] = {}
+        self._goal_count = 0
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Cancel what still runs and wait until every handler has confirmed."""
+        await self.cancel_goals()
+
+    async def cancel_goals(self, run: str | None = None) -> None:
+        """Cancel the goals of one run (of everybody when None) and wait for their ends."""
+        chosen = [(h, t) for h, t in self._goals.items() if run is None or h.holder_run == run]
+        for handle, _ in chosen:
+            handle.cancel()
+        if chosen:
+            await asyncio.wait([task for _, task in chosen])
+
+    def goals(self, run: str | None = None) -> tuple[GoalHandle[Any, Any], ...]:
+        """Return the goals under way, of one run or of everybody."""
+        return tuple(h for h in self._goals if run is None or h.holder_run == run)
+
+    def post(self, callback: Callable[[], None]) -> None:
+        """Run `callback` on the loop thread; the only entry from other threads."""
+        self._loop.call_soon_threadsafe(callback)
+
+    def topic(self, name: str, kind: type[M]) -> Topic[M]:
+        """Return the topic `name`, made at first use.
+
+        Raises:
+            BusError: it exists with another message type.
+        """
+        known = self._topics.get(name)
+        if known is None:
+            known = self._topics[name] = Topic(name, kind, self.clock)
+        if known.kind is not kind:
+            raise BusError(f"this topic carries {known.kind.__name__}, not {kind.__name__}", where=name)
+        return known
+
+    def find_topic(self, name: str) -> Topic[Any]:
+        """Return an existing topic of whatever type."""
+        if name not in self._topics:
+            raise BusError("no such topic", where=name, hint=near_names(name, self._topics))
+        return self._topics[name]
+
+    def advertise_service(self, skill: type[Q], handler: Callable[[Q], Any], *, namespace: str) -> None:
+        """Answer `skill` at `<namespace>/<skill_name>`; the handler may be plain or async.
+
+        Raises:
+            HandlerNotTyped: the handler lacks the skill's annotations.
+            BusError: somebody answers there already.
+        """
+        address = self._free_address(skill, namespace)
+        verify_handler(skill, handler, address)
+        self._services[address] = _ServiceServer(skill, handler)
+
+    def advertise_action(
+        self,
+        skill: type[A],
+        handler: Callable[[A, ActiveGoal[Any]], Awaitable[Any]],
+        *,
+        namespace: str,
+        exclusive: str = "",
+    ) -> None:
+        """Carry out goals of `skill` at `<namespace>/<skill_name>`.
+
+        Actions that share `exclusive` run one goal at a time between them; a second is rejected
+        and told which goal runs.
+        """
+        address = self._free_address(skill, namespace)
+        verify_handler(skill, handler, address)
+        self._actions[address] = _ActionServer(skill, handler, exclusive or address)
+
+    def withdraw(self, namespace: str) -> None:
+        """Forget all services and actions under a namespace, as when a device leaves."""
+        for table in (self._services, self._actions):
+            for address in [a for a in table if a == namespace or a.startswith(namespace + "/")]:
+                del table[address]
+
+    async def call(self, request: Service[R], *, to: str) -> R:
+        """Ask a service and return its answer.
+
+        Raises:
+            NoSuchSkill: nobody answers at this address.
+            SkillFailed: the handler failed; its error is the cause.
+        """
+        address = f"{to}/{request.skill_name()}"
+        server = self._services.get(address)
+        if server is None:
+            raise self._nobody(address)
+        try:
+            answer = server.handler(request)
+            return cast(R, await answer if inspect.isawaitable(answer) else answer)
+        except FlexcellError:
+            raise
+        except Exception as error:
+            # Whatever a handler raises must reach the caller as one kind of error with its cause.
+            raise SkillFailed(f"the service raised {type(error).__name__}: {error}", where=address) from error
+
+    def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder = NOBODY, goal_id: str = "") -> GoalHandle[R, F]:
+        """Start an action; returns at once, `accepted` and `result` of the handle tell the rest.
+
+        The goal leases `to` for `holder` until it ends.
+
+        Raises:
+            NoSuchSkill: nobody carries out this skill there.
+            LeaseRefused: somebody else commands the resource.
+        """
+        address = f"{to}/{goal.skill_name()}"
+        server = self._actions.get(address)
+        if server is None:
+            raise self._nobody(address)
+        self.leases.acquire((to,), holder)
+        self._goal_count += 1
+        active: ActiveGoal[Any] = ActiveGoal(goal_id or f"g{self._goal_count}", address, holder)
+        task = self._loop.create_task(self._serve(server, goal, active, to), name=f"goal {active.id} {address}")
+        handle: GoalHandle[Any, Any] = GoalHandle(active, task)
+        self._goals[handle] = task
+        task.add_done_callback(lambda _: self._goals.pop(handle, None))
+        return handle
+
+    async def _serve(
+        self, server: _ActionServer, goal: Action[Any, Any], active: ActiveGoal[Any], to: str
+    ) -> GoalEnd[Any]:
+        other = self._running.get(server.exclusive)
+        try:
+            if other is not None:
+                return await carry_out(_refuser(other), goal, active)
+            self._running[server.exclusive] = active
+            return await carry_out(server.handler, goal, active)
+        finally:
+            if self._running.get(server.exclusive) is active:
+                del self._running[server.exclusive]
+            self.leases.release((to,), active.holder)
+            if active.holder.run == NOBODY.run and len(self.goals(NOBODY.run)) <= 1:
+                self.leases.release_run(NOBODY.run)
+
+    def request_type(self, address: str) -> type[Skill[Any]]:
+        """Return the skill answered at a full bus address."""
+        server = self._services.get(address) or self._actions.get(address)
+        if server is None:
+            raise self._nobody(address)
+        return server.skill
+
+    def listing(self) -> tuple[BusEntry, ...]:
+        """Return everything on the bus: topics, services, actions, parameters, leases."""
+        rows = [
+            BusEntry("topic", t.name, t.kind.__name__, f"{t.rate_hz:.1f} Hz, {t.subscriber_count} subscribers")
+            for t in self._topics.values()
+        ]
+        rows += [BusEntry("service", a, s.skill.__name__, "") for a, s in self._services.items()]
+        rows += [BusEntry("action", a, s.skill.__name__, self._busy(s.exclusive)) for a, s in self._actions.items()]
+        rows += [
+            BusEntry("parameter", p.name, type(p.value).__name__, repr(p.value)) for p in self.parameters.listing()
+        ]
+        rows += [BusEntry("lease", name, "Holder", holder) for name, holder in self.leases.listing()]
+        return tuple(sorted(rows, key=lambda row: (row.kind, row.name)))
+
+    def _busy(self, exclusive: str) -> str:
+        running = self._running.get(exclusive)
+        return f"busy with {running.address} of {running.holder}" if running else ""
+
+    def _free_address(self, skill: type[Skill[Any]], namespace: str) -> str:
+        address = f"{namespace}/{skill.skill_name()}"
+        if address in self._services or address in self._actions:
+            raise BusError("somebody answers at this address already", where=address)
+        return address
+
+    def _nobody(self, address: str) -> NoSuchSkill:
+        known = [*self._services, *self._actions]
+        return NoSuchSkill("nobody answers at this address", where=address, hint=near_names(address, known))
+
+
+def _refuser(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]], Awaitable[Any]]:
+    async def refuse(_goal: object, handle: ActiveGoal[Any]) -> None:
+        raise GoalRejected(
+            f"busy with goal {other.id} of {other.holder} at {other.address}",
+            where=handle.address,
+            hint="wait for its end or cancel it",
+        )
+
+    return refuse

@@ -1,0 +1,56 @@
+"""Reads the signature of a handler and refuses one whose annotations do not fit its skill."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any, get_args, get_origin, get_type_hints
+
+from engine.errors import HandlerNotTyped
+from engine.skill import Action, Skill
+
+
+def verify_handler(skill: type[Skill[Any]], handler: Callable[..., Any], address: str) -> None:
+    """Check that `handler` is annotated with the skill's request, result and feedback types.
+
+    Raises:
+        HandlerNotTyped: an annotation is missing or names another type.
+    """
+    expected = expected_signature(skill)
+    name = getattr(handler, "__qualname__", repr(handler))
+    try:
+        hints = get_type_hints(handler)
+    except (NameError, TypeError) as error:
+        raise HandlerNotTyped(
+            f"the annotations of {name} cannot be resolved: {error}", where=address, hint=f"write it as {expected}"
+        ) from error
+    parameters = [p for p in inspect.signature(handler).parameters.values() if p.default is p.empty]
+    found = [hints.get(parameter.name) for parameter in parameters]
+    due: list[Any] = [skill]
+    if issubclass(skill, Action):
+        due.append(skill.feedback_type())
+        if len(found) == 2:
+            found[1] = _goal_argument(found[1])
+    if found != due or hints.get("return", inspect.Parameter.empty) != skill.result_type():
+        raise HandlerNotTyped(
+            f"{name} is not annotated as its skill asks", where=address, hint=f"write it as {expected}"
+        )
+
+
+def expected_signature(skill: type[Skill[Any]]) -> str:
+    """Return the signature that a handler of `skill` must have, as text."""
+    result = _type_name(skill.result_type())
+    if issubclass(skill, Action):
+        feedback = _type_name(skill.feedback_type())
+        return f"async def handler(goal: {skill.__name__}, handle: ActiveGoal[{feedback}]) -> {result}"
+    return f"async def handler(request: {skill.__name__}) -> {result}"
+
+
+def _goal_argument(hint: Any) -> Any:
+    arguments = get_args(hint)
+    named = getattr(get_origin(hint), "__name__", "")
+    return arguments[0] if named == "ActiveGoal" and arguments else None
+
+
+def _type_name(kind: Any) -> str:
+    return getattr(kind, "__name__", str(kind))

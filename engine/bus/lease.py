@@ -1,0 +1,96 @@
+"""Who may command which resource: one run at a time, and within it one branch at a time.
+
+A resource is a bus name such as `left` or `left/gripper`. A run that commands any part of
+`left` owns all of `left` until it ends; inside the run a branch leases exactly what it names
+for as long as its state is active.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from engine.errors import LeaseRefused
+
+
+@dataclass(frozen=True)
+class Holder:
+    """A run (or `cli`, `jog`, …) and the branch of it, a node path, that commands a resource."""
+
+    run: str
+    branch: str = ""
+
+    def __str__(self) -> str:
+        return f"run {self.run} at {self.branch}" if self.branch else f"run {self.run}"
+
+
+class LeaseTable:
+    """All leases of one bus; used on the loop thread only."""
+
+    def __init__(self) -> None:
+        self._owners: dict[str, str] = {}
+        self._branches: dict[str, list[Holder]] = {}
+
+    def acquire(self, resources: Iterable[str], holder: Holder) -> None:
+        """Lease all of `resources` or none of them; nested leases of the same branch are counted.
+
+        Raises:
+            LeaseRefused: somebody else holds one; the message names the holder.
+        """
+        wanted = tuple(resources)
+        for resource in wanted:
+            self._refuse_foreign(resource, holder)
+        for resource in wanted:
+            self._owners[_root(resource)] = holder.run
+            self._branches.setdefault(resource, []).append(holder)
+
+    def release(self, resources: Iterable[str], holder: Holder) -> None:
+        """Give branch leases back; the run keeps the resource until `release_run`."""
+        for resource in resources:
+            held = self._branches.get(resource, [])
+            if holder in held:
+                held.remove(holder)
+            if not held:
+                self._branches.pop(resource, None)
+
+    def release_run(self, run: str) -> None:
+        """Give back everything a run owned."""
+        self._owners = {name: owner for name, owner in self._owners.items() if owner != run}
+        kept = {name: [h for h in held if h.run != run] for name, held in self._branches.items()}
+        self._branches = {name: held for name, held in kept.items() if held}
+
+    def owner(self, resource: str) -> str | None:
+        """Return the run that owns a resource, if any."""
+        return self._owners.get(_root(resource))
+
+    def listing(self) -> tuple[tuple[str, str], ...]:
+        """Return (resource, holder) for everything leased, sorted."""
+        rows = {name: f"run {owner}" for name, owner in self._owners.items()}
+        rows.update({name: str(held[-1]) for name, held in self._branches.items()})
+        return tuple(sorted(rows.items()))
+
+    def _refuse_foreign(self, resource: str, holder: Holder) -> None:
+        owner = self._owners.get(_root(resource))
+        if owner is not None and owner != holder.run:
+            raise LeaseRefused(
+                f"{resource} is commanded by {self._describe(resource, owner)}",
+                where=str(holder),
+                hint=f"wait for run {owner} to end or stop it",
+            )
+        for other in self._branches.get(resource, ()):
+            if other.branch != holder.branch:
+                raise LeaseRefused(
+                    f"{resource} is commanded by {other} in another branch",
+                    where=str(holder),
+                    hint="let one branch at a time command it",
+                )
+
+    def _describe(self, resource: str, owner: str) -> str:
+        for name, held in self._branches.items():
+            if _root(name) == _root(resource) and held:
+                return str(held[-1])
+        return f"run {owner}"
+
+
+def _root(resource: str) -> str:
+    return resource.partition("/")[0]

@@ -1,0 +1,110 @@
+"""The bus of a running server, reached over HTTP with the operator's token."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any, Self
+
+import httpx
+import msgspec
+
+from engine.bus.action import GoalEnd, GoalStatus
+from engine.bus.bus import BusEntry
+from engine.errors import BusError
+from engine.event import Cause
+
+SERVER_FILE = "server.json"
+
+
+class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """Where a server is reached; readable by its owner only, as the token commands the cell."""
+
+    url: str
+    token: str
+    pid: int
+
+
+class _Failure(msgspec.Struct):
+    message: str = ""
+    where: str | None = None
+    hint: str | None = None
+
+
+class _End(msgspec.Struct):
+    status: str
+    result: Any
+    cause: Cause | None
+
+
+class RemoteBus:
+    """A bus behind a server; make it with `connect`."""
+
+    def __init__(self, client: httpx.AsyncClient) -> None:
+        self._client = client
+
+    @classmethod
+    @asynccontextmanager
+    async def connect(cls, folder: Path) -> AsyncGenerator[Self]:
+        """Reach the server that keeps its state in `folder`.
+
+        Raises:
+            BusError: no server runs there.
+        """
+        record = _record(folder)
+        headers = {"Authorization": f"Bearer {record.token}"}
+        async with httpx.AsyncClient(base_url=record.url, headers=headers, timeout=10.0, trust_env=False) as client:
+            try:
+                yield cls(client)
+            except httpx.TransportError as error:
+                raise BusError(
+                    f"the server does not answer: {error}", where=record.url, hint="start it with `flexcell serve`"
+                ) from error
+
+    async def listing(self) -> tuple[BusEntry, ...]:
+        """Return everything on the bus."""
+        response = await self._client.get("/api/v1/bus")
+        return msgspec.json.decode(_verified(response).content, type=tuple[BusEntry, ...])
+
+    async def echo(self, topic: str) -> AsyncGenerator[str, None]:
+        """Go through the messages of a topic as JSON, the latest one first."""
+        async with self._client.stream("GET", "/api/v1/bus/echo", params={"topic": topic}, timeout=None) as response:
+            if not response.is_success:
+                await response.aread()
+            _verified(response)
+            async for line in response.aiter_lines():
+                if line:
+                    yield line
+
+    async def call(self, address: str, request: object) -> str:
+        """Ask a service; returns its answer as JSON."""
+        body = {"address": address, "request": request}
+        return _verified(await self._client.post("/api/v1/bus/call", json=body)).text
+
+    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+        """Send a goal and wait for its end; the server cancels it when this connection is lost."""
+        body = {"address": address, "request": goal}
+        response = _verified(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
+        end = msgspec.json.decode(response.content, type=_End)
+        return GoalEnd(GoalStatus(end.status), end.result, end.cause)
+
+
+def _record(folder: Path) -> ServerRecord:
+    file = folder / SERVER_FILE
+    try:
+        return msgspec.json.decode(file.read_bytes(), type=ServerRecord)
+    except (OSError, msgspec.DecodeError) as error:
+        raise BusError(
+            "no server runs here", where=file, hint="start one with `flexcell serve`, or give --cell FILE"
+        ) from error
+
+
+def _verified(response: httpx.Response) -> httpx.Response:
+    if response.is_success:
+        return response
+    try:
+        failure = msgspec.json.decode(response.content, type=_Failure)
+    except msgspec.DecodeError:
+        failure = _Failure(message=f"the server answered {response.status_code}")
+    raise BusError(failure.message, where=failure.where, hint=failure.hint)

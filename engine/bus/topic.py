@@ -1,0 +1,138 @@
+"""A topic: a typed latest value and the stream of its changes.
+
+`publish` calls the subscribers directly on the loop thread; a subscriber that wants to await
+asks for a `stream`. A failing subscriber is reported and left out; it never hurts the publisher.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import AsyncIterator, Callable
+from typing import Generic, Self, TypeVar
+
+from engine.clock import Clock
+from engine.errors import BusError
+
+M = TypeVar("M")
+_log = logging.getLogger("flexcell.bus")
+
+
+class Subscription(Generic[M]):
+    """One subscriber; `close` ends it and may be called more than once."""
+
+    def __init__(self, topic: Topic[M], callback: Callable[[M], None]) -> None:
+        self._topic = topic
+        self.callback = callback
+
+    def close(self) -> None:
+        """Receive nothing more."""
+        self._topic.remove(self)
+
+
+class Stream(Generic[M]):
+    """The messages since it was opened, for `async for`; keeps at most `size`, dropping the oldest."""
+
+    def __init__(self, topic: Topic[M], size: int) -> None:
+        self._waiting: deque[M] = deque(maxlen=size)
+        self._arrived = asyncio.Event()
+        self.dropped = 0
+        self._subscription = topic.subscribe(self._take)
+
+    def _take(self, message: M) -> None:
+        if len(self._waiting) == self._waiting.maxlen:
+            self.dropped += 1
+        self._waiting.append(message)
+        self._arrived.set()
+
+    async def next(self) -> M:
+        """Wait for the next message."""
+        while not self._waiting:
+            self._arrived.clear()
+            await self._arrived.wait()
+        return self._waiting.popleft()
+
+    async def __aiter__(self) -> AsyncIterator[M]:
+        while True:
+            yield await self.next()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Stop receiving."""
+        self._subscription.close()
+
+
+class Topic(Generic[M]):
+    """A named channel of one message type."""
+
+    def __init__(self, name: str, kind: type[M], clock: Clock) -> None:
+        self.name = name
+        self.kind = kind
+        self.count = 0
+        self._clock = clock
+        self._latest: M | None = None
+        self._provider: Callable[[], M] | None = None
+        self._subscriptions: tuple[Subscription[M], ...] = ()
+        self._stamps_s: deque[float] = deque(maxlen=64)
+
+    @property
+    def latest(self) -> M | None:
+        """The newest message, or what the provider makes now; None before the first."""
+        return self._provider() if self._provider is not None else self._latest
+
+    @property
+    def subscriber_count(self) -> int:
+        """How many listen; a publisher may skip building what nobody reads."""
+        return len(self._subscriptions)
+
+    @property
+    def rate_hz(self) -> float:
+        """Mean rate over the last messages, 0 when there were fewer than two."""
+        if len(self._stamps_s) < 2 or self._stamps_s[-1] == self._stamps_s[0]:
+            return 0.0
+        return (len(self._stamps_s) - 1) / (self._stamps_s[-1] - self._stamps_s[0])
+
+    def provide(self, provider: Callable[[], M]) -> None:
+        """Let `latest` be made on demand, for publishers that skip unread messages."""
+        self._provider = provider
+
+    def publish(self, message: M) -> None:
+        """Keep `message` as the latest and hand it to every subscriber.
+
+        Raises:
+            BusError: the message is not of the topic's type.
+        """
+        if not isinstance(message, self.kind):
+            raise BusError(
+                f"a {type(message).__name__} was published where {self.kind.__name__} is due", where=self.name
+            )
+        self._latest = message
+        self.count += 1
+        self._stamps_s.append(self._clock.now_s())
+        for subscription in self._subscriptions:
+            try:
+                subscription.callback(message)
+            except Exception:
+                # Any subscriber may fail in any way; the publisher, often a robot, must go on.
+                _log.exception("a subscriber of %s failed and was removed", self.name)
+                subscription.close()
+
+    def subscribe(self, callback: Callable[[M], None]) -> Subscription[M]:
+        """Call `callback` on the loop thread with each new message until closed."""
+        subscription = Subscription(self, callback)
+        self._subscriptions = (*self._subscriptions, subscription)
+        return subscription
+
+    def remove(self, subscription: Subscription[M]) -> None:
+        """Forget a subscriber; unknown ones are ignored."""
+        self._subscriptions = tuple(s for s in self._subscriptions if s is not subscription)
+
+    def stream(self, *, size: int = 1000) -> Stream[M]:
+        """Return an awaitable stream of the messages from now on; `size=1` conflates."""
+        return Stream(self, size)

@@ -1,0 +1,6 @@
+"""The static check: findings about a behavior before it runs, each with node path and file position."""
+
+from engine.check.check import check_behavior, check_file
+from engine.check.finding import CODES, Finding, Severity
+
+__all__ = ["CODES", "Finding", "Severity", "check_behavior", "check_file"]

@@ -1,0 +1,62 @@
+"""Checks what a behavior declares about itself: parameters, outcomes and success."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from engine.check.finding import Finding, new_finding
+from engine.check.subject import Subject
+from engine.document.parameter import Parameter
+from engine.nearness import near_names
+
+_NUMERIC = ("number", "integer")
+
+
+def check_declarations(subject: Subject) -> Iterator[Finding]:
+    """Find contradictions in parameters, `success` and `outcomes`."""
+    for name, parameter in subject.behavior.parameters.items():
+        yield from _check_parameter(subject, name, parameter)
+    declared = subject.behavior.outcomes
+    for index, outcome in enumerate(subject.behavior.success):
+        if outcome not in declared:
+            position = subject.behavior.source.position(("success", index))
+            message = f"`success` names `{outcome}`, which is not in `outcomes`"
+            hint = near_names(outcome, declared)
+            yield new_finding("unknown-success", message, path=subject.base, position=position, hint=hint)
+    reached = subject.outcomes.get("root")
+    if reached is None:
+        return
+    root = subject.nodes["root"].node
+    leaving = {*reached, *([root.timeout.to] if root.timeout else []), *([root.on_error] if root.on_error else [])}
+    for index, outcome in enumerate(declared):
+        if outcome not in leaving:
+            position = subject.behavior.source.position(("outcomes", index))
+            message = f"nothing leads to the outcome `{outcome}`"
+            hint = "remove it, or lead a transition to it"
+            yield new_finding("unused-outcome", message, path=subject.base, position=position, hint=hint)
+
+
+def _check_parameter(subject: Subject, name: str, parameter: Parameter) -> Iterator[Finding]:
+    def found(code: str, message: str, *keys: str | int, hint: str = "") -> Finding:
+        position = subject.behavior.source.position(("parameters", name, *keys), of_key=not keys)
+        return new_finding(code, message, path=subject.base, position=position, hint=hint)
+
+    low, high = parameter.minimum, parameter.maximum
+    if (low is not None or high is not None) and parameter.type not in _NUMERIC:
+        key = "minimum" if low is not None else "maximum"
+        hint = f"only {' and '.join(_NUMERIC)} have limits"
+        yield found("bad-declaration", f"parameter `{name}` is a {parameter.type} and has limits", key, hint=hint)
+    if low is not None and high is not None and low > high:
+        message = f"parameter `{name}`: the minimum {low:g} is above the maximum {high:g}"
+        yield found("bad-declaration", message, "minimum", hint="exchange them")
+    for index, choice in enumerate(parameter.choices):
+        problem = parameter.problem(choice)
+        if problem:
+            yield found("bad-declaration", f"choice of parameter `{name}`: {problem}", "choices", index)
+    if parameter.required:
+        hint = "give it a `default`"
+        yield found("required-parameter", f"parameter `{name}` must be given for each run", hint=hint)
+        return
+    problem = parameter.problem(parameter.default)
+    if problem:
+        yield found("bad-declaration", f"default of parameter `{name}`: {problem}", "default")

@@ -1,0 +1,63 @@
+"""A finding: what is wrong with a behavior, where, and what to do; `CODES` lists all kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from engine.errors import Position
+
+Severity = Literal["error", "warning"]
+
+CODES: Mapping[str, tuple[Severity, str]] = {
+    "invalid-document": ("error", "the file cannot be read as a behavior"),
+    "circular-behavior": ("error", "behaviors refer to one another in a circle"),
+    "unknown-state": ("error", "no state has this name, or its class is broken"),
+    "unknown-parameter": ("error", "the state or behavior has no such parameter"),
+    "missing-parameter": ("error", "a parameter without default is not given"),
+    "bad-parameter": ("error", "a given parameter has the wrong type or is out of range"),
+    "unknown-input": ("error", "the state or behavior has no such input key"),
+    "unknown-output": ("error", "the state or behavior has no such output key"),
+    "undefined-key": ("error", "an input reads a userdata key that nothing around it defines"),
+    "bad-expression": ("error", "an expression is not well formed"),
+    "undeclared-name": ("error", "an expression uses a name that is no parameter or userdata key"),
+    "missing-entry": ("warning", "a named entry is not in the entries that are known"),
+    "bad-declaration": ("error", "a parameter of the behavior contradicts itself"),
+    "required-parameter": ("warning", "a parameter of the behavior has no default, so each run must give it"),
+    "unknown-success": ("error", "`success` names an outcome that is not declared"),
+    "unknown-outcome": ("error", "an outcome is used that the node does not have"),
+    "unknown-target": ("error", "a transition leads to something that does not exist"),
+    "unconnected-outcome": ("error", "an outcome of a node leads nowhere"),
+    "ambiguous-target": ("error", "a name is a state of a machine and an outcome of it"),
+    "missing-initial": ("error", "the initial state of a machine does not exist"),
+    "unreachable-node": ("warning", "no transition leads to a node"),
+    "no-path-to-outcome": ("warning", "from a node no outcome of the machine can be reached"),
+    "unused-outcome": ("warning", "an outcome is declared or connected that nothing leads to"),
+    "unknown-child": ("error", "a condition names a child that does not exist"),
+    "uncovered-combination": ("error", "all children may finish so that no condition holds"),
+    "combinations-not-checked": ("warning", "there are too many combinations of child outcomes to check"),
+    "shared-resource": ("error", "nodes that run side by side command the same device"),
+}
+"""Every code a finding can have: its severity and what it means."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """One finding; `code` is stable, `path` is the node path `root/approach/left`."""
+
+    severity: Severity
+    code: str
+    message: str
+    path: str
+    position: Position
+    hint: str = ""
+
+    def __str__(self) -> str:
+        advice = f" ({self.hint})" if self.hint else ""
+        return f"{self.position}: {self.severity}: {self.message}{advice} [{self.code}]"
+
+
+def new_finding(code: str, message: str, *, path: str, position: Position, hint: str = "") -> Finding:
+    """Make a finding with the severity that belongs to its code."""
+    return Finding(severity=CODES[code][0], code=code, message=message, path=path, position=position, hint=hint)

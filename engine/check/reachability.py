@@ -1,0 +1,58 @@
+"""Checks that every state of a machine can be reached and can come to an end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from engine.check.finding import Finding
+from engine.check.subject import Placed, Subject, targets
+from engine.nearness import near_names
+
+
+def check_reachability(subject: Subject) -> Iterator[Finding]:
+    """Find missing initial states, states nothing leads to, and states that never lead out."""
+    for placed in subject.nodes.values():
+        machine = placed.node.machine
+        if machine is None:
+            continue
+        if machine.initial not in machine.states:
+            message = f"there is no state `{machine.initial}` to begin with"
+            hint = near_names(machine.initial, machine.states)
+            yield subject.finding("missing-initial", message, placed.path, "machine", "initial", hint=hint)
+            continue
+        yield from _check_machine(subject, placed, machine.initial)
+
+
+def _check_machine(subject: Subject, placed: Placed, initial: str) -> Iterator[Finding]:
+    leads = {name: tuple(targets(child).values()) for name, child in placed.node.children.items()}
+    reached = _reachable([initial], leads)
+    for name in leads:
+        if name not in reached:
+            hint = "remove it, or lead a transition to it"
+            yield subject.finding(
+                "unreachable-node", f"no transition leads to `{name}`", f"{placed.path}/{name}", hint=hint
+            )
+    comes_from: dict[str, list[str]] = {}
+    for name, following in leads.items():
+        for target in following:
+            comes_from.setdefault(target, []).append(name)
+    ends = [target for target in comes_from if target not in leads]
+    leaving = _reachable(ends, comes_from)
+    # States that lead nowhere at all are reported as unconnected; a trap has transitions and no way out.
+    trap = [name for name in leads if name in reached and name not in leaving and leads[name]]
+    if trap:
+        shown = ", ".join(f"`{name}`" for name in trap[:5])
+        message = f"from {shown}{' and others' if len(trap) > 5 else ''} no outcome of this machine can be reached"
+        hint = "lead a transition out of the loop, unless it is meant to run until it is stopped"
+        yield subject.finding("no-path-to-outcome", message, f"{placed.path}/{trap[0]}", hint=hint)
+
+
+def _reachable(start: Iterable[str], leads: Mapping[str, Iterable[str]]) -> set[str]:
+    reached: set[str] = set()
+    due = list(start)
+    while due:
+        name = due.pop()
+        if name not in reached:
+            reached.add(name)
+            due += leads.get(name, ())
+    return reached

@@ -1,0 +1,105 @@
+"""Checks that every outcome leads somewhere and every transition to something that exists."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+from engine.check.finding import Finding
+from engine.check.subject import Placed, Subject, targets
+from engine.document.behavior import Node
+from engine.nearness import near_names
+
+
+def check_wiring(subject: Subject) -> Iterator[Finding]:
+    """Find unknown states, outcomes and targets, and outcomes without a target."""
+    for placed in subject.nodes.values():
+        node = placed.node
+        if node.state is not None and node.state in subject.unknown:
+            hint = subject.unknown[node.state]
+            yield subject.finding("unknown-state", f"there is no state `{node.state}`", placed.path, "state", hint=hint)
+        yield from _check_retry(subject, placed)
+        if node.machine is not None:
+            yield from _check_machine(subject, placed)
+    yield from _check_root(subject)
+
+
+def _check_retry(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    outcomes = subject.outcomes.get(placed.path)
+    retry = placed.node.retry
+    if retry is None or outcomes is None:
+        return
+    for index, outcome in enumerate(retry.outcomes):
+        if outcome not in outcomes:
+            message = f"`{placed.name}` has no outcome `{outcome}` to retry on"
+            keys = ("retry", "outcomes", index)
+            yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=near_names(outcome, outcomes))
+
+
+def _check_machine(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    siblings = placed.node.children
+    leaving = _ways_out(subject, placed)
+    for name in siblings:
+        if leaving is not None and name in leaving:
+            message = f"`{name}` is a state of this machine and an outcome of it"
+            yield subject.finding("ambiguous-target", message, f"{placed.path}/{name}", hint="rename the state")
+    for child in subject.children(placed):
+        yield from _check_targets(subject, child, siblings, leaving)
+        yield from _check_outcomes(subject, child)
+
+
+def _ways_out(subject: Subject, placed: Placed) -> Collection[str] | None:
+    """Return the outcomes that a machine may have; None where its container takes any."""
+    if placed.container is None:
+        return subject.behavior.outcomes
+    return placed.node.transitions if placed.container.machine is not None else None
+
+
+def _check_targets(
+    subject: Subject, child: Placed, siblings: Collection[str], leaving: Collection[str] | None
+) -> Iterator[Finding]:
+    for keys, target in targets(child.node).items():
+        if leaving is None or target in siblings or target in leaving:
+            continue
+        message = f"`{target}` is neither a state of this machine nor an outcome that leads out of it"
+        hint = near_names(target, {*siblings, *leaving})
+        yield subject.finding("unknown-target", message, child.path, *keys, hint=hint)
+
+
+def _check_outcomes(subject: Subject, child: Placed) -> Iterator[Finding]:
+    outcomes = subject.outcomes.get(child.path)
+    if outcomes is None:
+        return
+    connected = child.node.transitions
+    for outcome in outcomes:
+        if outcome not in connected and not _reported_inside(child.node):
+            message = f"outcome `{outcome}` of `{child.name}` leads nowhere"
+            hint = f"add `{outcome}: …` to its `transitions`"
+            yield subject.finding("unconnected-outcome", message, child.path, hint=hint)
+    for outcome in connected:
+        if outcome in outcomes:
+            continue
+        fixed = child.node.state is not None or child.node.behavior is not None
+        code = "unknown-outcome" if fixed else "unused-outcome"
+        message = f"`{child.name}` has no outcome `{outcome}`"
+        keys = ("transitions", outcome)
+        yield subject.finding(code, message, child.path, *keys, hint=near_names(outcome, outcomes), at_key=True)
+
+
+def _reported_inside(node: Node) -> bool:
+    """A machine's loose ends are reported at the transition inside it, where the slip is likely to be."""
+    return node.machine is not None
+
+
+def _check_root(subject: Subject) -> Iterator[Finding]:
+    root = subject.nodes["root"]
+    declared = subject.behavior.outcomes
+    for keys, target in targets(root.node).items():
+        if target not in declared:
+            message = f"`{target}` is not an outcome of this behavior"
+            yield subject.finding("unknown-target", message, "root", *keys, hint=near_names(target, declared))
+    if root.node.machine is not None:
+        return
+    for outcome in subject.outcomes.get("root", ()):
+        if outcome not in declared:
+            message = f"outcome `{outcome}` of the root is not in `outcomes` of the behavior"
+            yield subject.finding("unconnected-outcome", message, "root", hint=near_names(outcome, declared))

@@ -1,0 +1,156 @@
+"""`flexcell bus`: looks at the skill bus of a running server, or of a cell opened for the moment."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from engine.bus import GoalStatus
+from engine.bus.access import BusAccess, LocalBus
+from engine.bus.remote import RemoteBus
+from engine.cause import describe
+from engine.cell import OpenCell
+from engine.cli.exit_code import ExitCode
+from engine.cli.inputs import read_json
+from engine.document.cell import load_cell
+
+app = typer.Typer(
+    help="Look at the skill bus of a running server, or of a cell file with --cell.", no_args_is_help=True
+)
+
+Cell = Annotated[
+    Path | None, typer.Option("--cell", help="Open this cell for the moment instead of asking the running server.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
+_STATE = Path(".flexcell")
+
+
+@app.command("list")
+def list_(cell: Cell = None, server: Folder = _STATE, json: AsJson = False) -> None:
+    """List topics, services, actions, parameters and leases."""
+
+    async def main() -> None:
+        async with _bus(cell, server) as bus:
+            entries = await bus.listing()
+        if json:
+            sys.stdout.write(msgspec.json.encode(entries).decode() + "\n")
+            return
+        table = Table("kind", "name", "type", "now", box=None)
+        for entry in entries:
+            table.add_row(entry.kind, entry.name, entry.type, entry.detail)
+        Console().print(table)
+
+    asyncio.run(main())
+
+
+@app.command("echo")
+def echo(
+    topic: Annotated[str, typer.Argument(help="Such as left/joint_state.")],
+    count: Annotated[int, typer.Option("-n", "--count", help="Stop after so many messages; 0: never.", min=0)] = 0,
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Print the messages of a topic, one JSON object a line, the latest first."""
+
+    async def main() -> None:
+        async with _bus(cell, server) as bus:
+            printed = 0
+            async for message in bus.echo(topic):
+                sys.stdout.write(message + "\n")
+                sys.stdout.flush()
+                printed += 1
+                if printed == count:
+                    return
+
+    _until_interrupted(main())
+
+
+@app.command("hz")
+def hz(
+    topic: Annotated[str, typer.Argument(help="Such as left/joint_state.")],
+    seconds: Annotated[float, typer.Option(help="How long to listen.", min=0.1)] = 2.0,
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Measure the rate of a topic."""
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+        arrivals: list[float] = []
+        async with _bus(cell, server) as bus:
+            try:
+                async with asyncio.timeout(seconds):
+                    async for _ in bus.echo(topic):
+                        arrivals.append(loop.time())
+            except TimeoutError:
+                pass  # the time to listen is over
+        # The first message is the latest one from before.
+        fresh = arrivals[1:]
+        rate = (len(fresh) - 1) / (fresh[-1] - fresh[0]) if len(fresh) > 1 else 0.0
+        sys.stdout.write(f"{rate:.1f} Hz, {len(fresh)} messages in {seconds:g} s\n")
+
+    _until_interrupted(main())
+
+
+@app.command("call")
+def call(
+    address: Annotated[str, typer.Argument(help="Such as left/forward_kinematics.")],
+    request: Annotated[str, typer.Argument(help="The request as a JSON object.")] = "{}",
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Ask a service and print its answer as JSON."""
+
+    async def main() -> None:
+        async with _bus(cell, server) as bus:
+            sys.stdout.write(await bus.call(address, read_json(request, "the request")) + "\n")
+
+    asyncio.run(main())
+
+
+@app.command("goal")
+def goal(
+    address: Annotated[str, typer.Argument(help="Such as left/joint_trap_vel.")],
+    request: Annotated[str, typer.Argument(help="The goal as a JSON object.")] = "{}",
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Send an action goal, wait for its end and print the result. This moves the robot."""
+
+    async def main() -> ExitCode:
+        async with _bus(cell, server) as bus:
+            end = await bus.perform(address, read_json(request, "the goal"))
+        sys.stdout.write(msgspec.json.encode({"status": end.status.value, "result": end.result}).decode() + "\n")
+        if end.status is GoalStatus.SUCCEEDED:
+            return ExitCode.SUCCESS
+        sys.stderr.write(f"{end.status.value}: {describe(end.cause) if end.cause else 'no reason given'}\n")
+        return ExitCode.OTHER_OUTCOME
+
+    raise typer.Exit(asyncio.run(main()))
+
+
+@asynccontextmanager
+async def _bus(cell: Path | None, server: Path) -> AsyncGenerator[BusAccess]:
+    if cell is None:
+        async with RemoteBus.connect(server) as remote:
+            yield remote
+    else:
+        async with OpenCell(load_cell(cell)) as opened:
+            yield LocalBus(opened.bus)
+
+
+def _until_interrupted(main: object) -> None:
+    try:
+        asyncio.run(main)  # pyright: ignore[reportArgumentType]
+    except KeyboardInterrupt:
+        raise typer.Exit(ExitCode.INTERRUPTED) from None

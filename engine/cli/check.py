@@ -1,0 +1,93 @@
+"""`flexcell check`: static findings with file, line and column."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from engine.check import Finding, check_file
+from engine.check.finding import new_finding
+from engine.cli.exit_code import ExitCode
+from engine.cli.findings import as_github, as_json, as_sarif
+from engine.document import load_behavior, load_source
+from engine.document.cell import load_cell
+from engine.document.entries import load_entries
+from engine.errors import DocumentError, Position
+from engine.plan import Catalogue
+from engine.registry import load_states
+
+_ENTRIES = tuple((key, "entries") for key in ("joints", "poses", "dmps", "records"))
+
+
+def check(
+    files: Annotated[list[Path], typer.Argument(help="Behavior, cell or entries documents.", show_default=False)],
+    format_: Annotated[
+        Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
+    ] = "text",
+    json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+) -> None:
+    """Check documents without running anything. Exit code 2 when there is an error in any."""
+    catalogue = load_states()
+    findings = [finding for file in files for finding in findings_of(file, catalogue)]
+    chosen = "json" if json else format_
+    if chosen == "json":
+        sys.stdout.write(as_json(findings) + "\n")
+    elif chosen == "sarif":
+        sys.stdout.write(as_sarif(findings) + "\n")
+    elif chosen == "github":
+        sys.stdout.writelines(as_github(finding) + "\n" for finding in findings)
+    else:
+        sys.stdout.writelines(f"{finding}\n" for finding in findings)
+        errors = sum(finding.severity == "error" for finding in findings)
+        warnings = len(findings) - errors
+        sys.stderr.write(f"{len(files)} checked: {errors} errors, {warnings} warnings\n")
+    if any(finding.severity == "error" for finding in findings):
+        raise typer.Exit(ExitCode.BAD_INPUT)
+
+
+def findings_of(file: Path, catalogue: Catalogue) -> tuple[Finding, ...]:
+    """Return the findings of one document of any kind; one that cannot be read is one finding."""
+    try:
+        kind = document_kind(file)
+        if kind == "behavior":
+            return check_file(file, catalogue, _entries_of(file))
+        if kind == "cell":
+            seed = load_cell(file).seed_file
+            if seed is not None:
+                load_entries(seed)
+        else:
+            load_entries(file)
+    except DocumentError as error:
+        where = error.where if isinstance(error.where, Position) else Position(file=str(file), line=1, column=1)
+        return (new_finding("invalid-document", error.message, path="", position=where, hint=error.hint or ""),)
+    return ()
+
+
+def _entries_of(file: Path) -> frozenset[str] | None:
+    """Return the names of the entries that the behavior's own cell is seeded with, None where it names no cell."""
+    try:
+        cell_file = load_behavior(file).cell_file
+    except DocumentError:
+        return None  # check_file reports it
+    seed = load_cell(cell_file).seed_file if cell_file is not None else None
+    return load_entries(seed).names() if seed is not None else None
+
+
+def document_kind(file: Path) -> str:
+    """Tell behavior, cell and entries documents apart by their keys.
+
+    Raises:
+        DocumentError: it cannot be read.
+    """
+    data = load_source(file).data
+    for key, kind in (("root", "behavior"), ("outcomes", "behavior"), ("cell", "cell"), *_ENTRIES):
+        if isinstance(data, dict) and key in data:
+            return kind
+    raise DocumentError(
+        "this is no behavior, cell or entries document",
+        where=Position(file=str(file), line=1, column=1),
+        hint="a behavior has `root:`, a cell has `cell:`",
+    )

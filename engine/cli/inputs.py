@@ -1,0 +1,83 @@
+"""Reads what the commands are given: behaviors, cells, parameters, JSON values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import msgspec
+
+from engine.check import Finding, check_behavior
+from engine.document import Behavior, load_behavior
+from engine.document.cell import Cell, load_cell
+from engine.document.parameter import Parameter
+from engine.errors import DocumentError, FlexcellError
+from engine.nearness import near_names
+from engine.plan import Catalogue
+
+
+def read_behavior(file: Path, catalogue: Catalogue) -> tuple[Behavior, tuple[Finding, ...]]:
+    """Load and check a behavior; the findings include warnings.
+
+    Raises:
+        DocumentError: it cannot be read at all.
+    """
+    behavior = load_behavior(file)
+    return behavior, check_behavior(behavior, catalogue)
+
+
+def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:
+    """Load the cell named on the command line, else the one the behavior names, else none."""
+    if file is not None:
+        return load_cell(file)
+    if behavior is not None and behavior.cell_file is not None:
+        return load_cell(behavior.cell_file)
+    return None
+
+
+def read_parameters(given: Sequence[str], declared: Mapping[str, Parameter]) -> dict[str, object]:
+    """Read `name=value` pairs by the types that the behavior declares.
+
+    Raises:
+        DocumentError: a pair is not `name=value`, names no parameter, or has a value of another type.
+    """
+    values: dict[str, object] = {}
+    for pair in given:
+        name, text = _split(pair, "-p")
+        if name not in declared:
+            raise DocumentError(f"there is no parameter `{name}`", hint=near_names(name, declared))
+        try:
+            values[name] = declared[name].from_text(text)
+        except DocumentError as error:
+            raise DocumentError(f"parameter `{name}`: {error.message}") from error
+    return values
+
+
+def read_inputs(given: Sequence[str]) -> dict[str, object]:
+    """Read `key=json` pairs as initial userdata.
+
+    Raises:
+        DocumentError: a pair is not `key=json`.
+    """
+    return {key: read_json(text, f"--input {key}") for key, text in (_split(pair, "--input") for pair in given)}
+
+
+def read_json(text: str, where: str) -> object:
+    """Read a JSON value given on the command line.
+
+    Raises:
+        FlexcellError: it is not JSON; says where in the text.
+    """
+    try:
+        return msgspec.json.decode(text)
+    except msgspec.DecodeError as error:
+        raise FlexcellError(
+            f"{text!r} is not JSON: {error}", where=where, hint="text needs quotes: '\"word\"'"
+        ) from error
+
+
+def _split(pair: str, option: str) -> tuple[str, str]:
+    name, equals, text = pair.partition("=")
+    if not equals or not name:
+        raise DocumentError(f"{pair!r} is not name=value", where=option)
+    return name, text

@@ -1,0 +1,78 @@
+"""The `flexcell` command: puts the commands together and turns errors into one line."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from engine.cli import bus, check, run, schema, serve, states, store
+from engine.cli.exit_code import ExitCode
+from engine.errors import FlexcellError
+
+app = typer.Typer(
+    help="Run, check and serve behaviors of robot work cells.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command("run")(run.run)
+app.command("check")(check.check)
+app.command("serve")(serve.serve)
+app.add_typer(states.app, name="states")
+app.add_typer(store.app, name="store")
+app.add_typer(bus.app, name="bus")
+app.command("schema")(schema.schema)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"flexcell {version('flexcell')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    show_version: Annotated[
+        bool, typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Take the options that hold for every command."""
+
+
+def main() -> None:
+    """Run the command line; the console script."""
+    # Linear algebra libraries start a thread per core; small matrices only lose by it.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    try:
+        verify_packages()
+        app()
+    except FlexcellError as error:
+        sys.stderr.write(f"flexcell: {error}\n")
+        sys.exit(ExitCode.BAD_INPUT)
+    except BrokenPipeError:
+        # The reader of our output, such as `head`, has left; there is nobody to tell.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(ExitCode.SUCCESS)
+
+
+def verify_packages() -> None:
+    """Check that nothing on the import path shadows one of the five packages.
+
+    Raises:
+        FlexcellError: a package of the same name elsewhere would be imported instead of ours.
+    """
+    home = Path(__file__).resolve().parents[2]
+    for name in ("states", "robots", "editor_web", "behaviors"):
+        spec = find_spec(name)
+        if spec is None or not spec.origin or Path(spec.origin).resolve().parents[1] != home:
+            found = spec.origin if spec is not None else "nowhere"
+            raise FlexcellError(
+                f"the package `{name}` was found at {found}, not in {home}",
+                hint=f"rename your own `{name}` or take its folder off PYTHONPATH",
+            )

@@ -1,0 +1,86 @@
+"""`flexcell serve`: the cell, its runs and the dashboard behind one local port."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+import webbrowser
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import typer
+
+from engine.bus.remote import SERVER_FILE, ServerRecord
+from engine.cell import OpenCell
+from engine.cli.exit_code import ExitCode
+from engine.document.cell import Cell, load_cell
+from engine.journal import Journal
+from engine.registry import SERVERS, load_maker, load_states
+from engine.session import Session
+
+ServeDashboard = Callable[..., Coroutine[Any, Any, None]]
+
+
+def serve(
+    cell: Annotated[
+        Path | None, typer.Option(help="The cell to connect; without one, behaviors run without robots.")
+    ] = None,
+    port: Annotated[int, typer.Option(help="TCP port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)] = 8642,
+    host: Annotated[str, typer.Option(help="Loopback address to listen on.")] = "127.0.0.1",
+    project: Annotated[Path, typer.Option(help="Folder with `behaviors/` in it.")] = Path(),
+    state: Annotated[Path, typer.Option(help="Folder for tokens and the journal.")] = Path(".flexcell"),
+    seed: Annotated[int, typer.Option(help="Seed of the part poses of a simulated cell.", min=0)] = 0,
+    open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+) -> None:
+    """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
+    loaded = load_cell(cell) if cell is not None else None
+    state.mkdir(parents=True, exist_ok=True)
+    asyncio.run(_serve(loaded, port=port, host=host, project=project, state=state, seed=seed, open_page=open_))
+    raise typer.Exit(ExitCode.INTERRUPTED)
+
+
+async def _serve(
+    cell: Cell | None, *, port: int, host: str, project: Path, state: Path, seed: int, open_page: bool
+) -> None:
+    new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
+    catalogue = load_states()
+    server_file = state / SERVER_FILE
+
+    def ready(dashboard: Any) -> None:
+        _write_private(server_file, ServerRecord(url=dashboard.url, token=dashboard.token, pid=os.getpid()))
+        sys.stdout.write(f"Dashboard: {dashboard.login_url}\nStop with Ctrl-C.\n")
+        sys.stdout.flush()
+        if open_page:
+            webbrowser.open(dashboard.login_url)
+
+    with Journal.open(state) as journal:
+        async with (
+            OpenCell(cell, seed=seed) as opened,
+            Session(opened, project=project, catalogue=catalogue, journal=journal) as session,
+        ):
+            serving = asyncio.create_task(
+                new_dashboard(session, token_file=state / "tokens.json", host=host, port=port, on_ready=ready),
+                name="serve",
+            )
+            loop = asyncio.get_running_loop()
+            for number in (signal.SIGINT, signal.SIGTERM):
+                loop.add_signal_handler(number, serving.cancel)
+            try:
+                await serving
+            except asyncio.CancelledError:
+                sys.stderr.write("stopping: bringing the robots to rest\n")
+            finally:
+                server_file.unlink(missing_ok=True)
+
+
+def _write_private(file: Path, record: ServerRecord) -> None:
+    """Write the record so that only the owner can ever read it."""
+    part = file.with_suffix(".part")
+    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    with os.fdopen(descriptor, "wb") as stream:
+        stream.write(msgspec.json.encode(record))
+    part.replace(file)

@@ -1,0 +1,120 @@
+"""`flexcell states`: which states there are, and all about one of them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.errors import RegistryError
+from engine.nearness import near_names
+from engine.registry import load_states, state_by_path
+from engine.state import State
+
+app = typer.Typer(help="Show the states that behaviors can use.", invoke_without_command=True)
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+@app.callback()
+def list_states(context: typer.Context, json: AsJson = False) -> None:
+    """List all states; `states show NAME` tells all about one."""
+    if context.invoked_subcommand is not None:
+        return
+    signatures = [read_signature(state) for state in load_states().values()]
+    if json:
+        sys.stdout.write(msgspec.json.encode([_plain(signature) for signature in signatures]).decode() + "\n")
+        return
+    table = Table("state", "outcomes", "what it does", box=None)
+    for signature in signatures:
+        table.add_row(signature.name, " ".join(signature.outcomes), signature.summary)
+    Console().print(table)
+
+
+@app.command("show")
+def show(
+    name: Annotated[str, typer.Argument(help="A state such as motion.MoveJoints, or package.module:Class.")],
+    json: AsJson = False,
+) -> None:
+    """Show parameters, input and output keys and outcomes of one state."""
+    signature = read_signature(_find(name))
+    if json:
+        sys.stdout.write(msgspec.json.encode(_plain(signature)).decode() + "\n")
+        return
+    console = Console(highlight=False)
+    console.print(f"[bold]{signature.name}[/]\n{signature.doc}\n")
+    console.print(f"outcomes: {', '.join(signature.outcomes)}")
+    for title, rows in _tables(signature).items():
+        if rows:
+            table = Table(title, "type", "default", "meaning", box=None)
+            for row in rows:
+                table.add_row(*row)
+            console.print(table)
+
+
+def _find(name: str) -> type[State]:
+    if ":" in name:
+        return state_by_path(name)
+    catalogue = load_states()
+    if name not in catalogue:
+        raise RegistryError(f"there is no state {name}", hint=near_names(name, catalogue))
+    return catalogue[name]
+
+
+def _tables(signature: StateSignature) -> dict[str, list[tuple[str, str, str, str]]]:
+    return {
+        "parameter": [
+            (name, type_text(parameter), default_text(parameter), description(parameter))
+            for name, parameter in signature.parameters.items()
+        ],
+        "input key": [(name, type_text(key), default_text(key), "") for name, key in signature.inputs.items()],
+        "output key": [(name, type_text(key), "", "") for name, key in signature.outputs.items()],
+    }
+
+
+def _plain(signature: StateSignature) -> dict[str, object]:
+    return {
+        "name": signature.name,
+        "description": signature.doc,
+        "outcomes": signature.outcomes,
+        "success": signature.success,
+        "parameters": {name: parameter.schema for name, parameter in signature.parameters.items()},
+        "inputs": {name: key.schema for name, key in signature.inputs.items()},
+        "outputs": {name: key.schema for name, key in signature.outputs.items()},
+    }
+
+
+def type_text(key: KeySignature) -> str:
+    """Write a type with its limits in a few words, such as `number > 0, <= 1`."""
+    schema = key.schema
+    limits = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+    bounds = [f"{sign} {schema[name]}" for name, sign in limits.items() if name in schema]
+    kind = schema.get("type") or _alternatives(schema)
+    unit = schema.get("unit")
+    return " ".join(part for part in (str(kind), ", ".join(bounds), f"[{unit}]" if unit else "") if part)
+
+
+def default_text(key: KeySignature) -> str:
+    """Write the default as JSON, `required` where there is none."""
+    return "required" if key.required else msgspec.json.encode(key.default).decode()
+
+
+def description(key: KeySignature) -> str:
+    """Return what the state's author says of it."""
+    return str(key.schema.get("description", ""))
+
+
+def _alternatives(schema: Mapping[str, object]) -> str:
+    if "$ref" in schema:
+        return str(schema["$ref"]).rpartition("/")[2]
+    options = schema.get("anyOf")
+    if isinstance(options, list):
+        found = msgspec.convert(options, list[dict[str, object]])
+        return " or ".join(str(option.get("type") or _alternatives(option)) for option in found)
+    return "any"

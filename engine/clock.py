@@ -1,0 +1,235 @@
+"""Time of a run: the real clock, or a virtual one that jumps to the next thing that is due.
+
+The event loop is the clock: `RealClock` and `VirtualClock` only read its time. Under a
+`VirtualLoop` nothing waits: when no callback is ready, time jumps to the next timer, and every
+simulation attached to the loop is stepped up to there first. Time stands still while worker
+threads are at work, so their results arrive at a definite instant.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import selectors
+from collections.abc import Callable, Coroutine
+from concurrent.futures import Executor
+from typing import Any, Protocol, TypeVar
+
+from engine.errors import FlexcellError
+
+T = TypeVar("T")
+
+
+class Clock(Protocol):
+    """What states, runs and devices ask for time."""
+
+    @property
+    def virtual(self) -> bool:
+        """True when time passes only as fast as the work that needs it."""
+        ...
+
+    def now_s(self) -> float:
+        """Seconds since the clock started."""
+        ...
+
+    async def sleep(self, duration_s: float) -> None:
+        """Let `duration_s` pass; 0 lets everything that is ready run first."""
+        ...
+
+
+class Lockstep(Protocol):
+    """A simulation that advances only when the virtual loop lets time pass."""
+
+    @property
+    def busy(self) -> bool:
+        """True while it can still wake somebody."""
+        ...
+
+    def advance(self, until_s: float) -> float:
+        """Step towards `until_s` (may be infinite); return early once a callback was scheduled."""
+        ...
+
+
+class NothingCanWake(FlexcellError):
+    """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
+
+
+class LoopClock:
+    """The time of the running event loop, counted from the clock's making."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self._start_s = 0.0 if self.virtual else self._loop.time()
+
+    @property
+    def virtual(self) -> bool:
+        """True on a `VirtualLoop`."""
+        return isinstance(self._loop, VirtualLoop)
+
+    def now_s(self) -> float:
+        """Seconds since the clock was made, or since the virtual loop started."""
+        return self._loop.time() - self._start_s
+
+    async def sleep(self, duration_s: float) -> None:
+        """Let `duration_s` pass."""
+        await asyncio.sleep(duration_s)
+
+
+class _JumpingSelector(selectors.BaseSelector):
+    """Polls real files without waiting and lets virtual time pass instead."""
+
+    def __init__(self) -> None:
+        self._real = selectors.DefaultSelector()
+        self.pass_time: Callable[[float | None], float | None] = lambda timeout: timeout
+
+    def register(self, fileobj: Any, events: int, data: Any = None) -> selectors.SelectorKey:
+        return self._real.register(fileobj, events, data)
+
+    def unregister(self, fileobj: Any) -> selectors.SelectorKey:
+        return self._real.unregister(fileobj)
+
+    def modify(self, fileobj: Any, events: int, data: Any = None) -> selectors.SelectorKey:
+        return self._real.modify(fileobj, events, data)
+
+    def close(self) -> None:
+        self._real.close()
+
+    def get_map(self) -> Any:
+        return self._real.get_map()
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if timeout is not None and timeout <= 0:
+            return self._real.select(0)
+        ready = self._real.select(0)
+        if ready:
+            return ready
+        return self._real.select(self.pass_time(timeout))
+
+
+class VirtualLoop(asyncio.SelectorEventLoop):
+    """An event loop whose time jumps; make it with `run_virtual`."""
+
+    def __init__(self) -> None:
+        self._jumping = _JumpingSelector()
+        super().__init__(self._jumping)
+        self._jumping.pass_time = self._pass_time
+        self._now_s = 0.0
+        self._stepped: list[Lockstep] = []
+        self._working = 0
+        self._outside = 0
+        self._idle_waiters: list[tuple[int, asyncio.Future[None]]] = []
+
+    def time(self) -> float:
+        """Virtual seconds since the loop was made."""
+        return self._now_s
+
+    def attach(self, simulation: Lockstep) -> None:
+        """Step `simulation` along with time from now on."""
+        self._stepped.append(simulation)
+
+    def detach(self, simulation: Lockstep) -> None:
+        """Stop stepping it."""
+        self._stepped.remove(simulation)
+
+    def expect_outside(self, change: int) -> None:
+        """Count (+1) or discount (-1) something real that will wake the loop, such as a server."""
+        self._outside += change
+
+    async def idle(self, depth: int) -> None:
+        """Return when nothing more is ready at this instant; the deepest waiter goes first, alone."""
+        waiter: asyncio.Future[None] = self.create_future()
+        entry = (depth, waiter)
+        self._idle_waiters.append(entry)
+        try:
+            await waiter
+        finally:
+            self._idle_waiters.remove(entry)
+
+    def run_in_executor(  # type: ignore[override]
+        self, executor: Executor | None, func: Callable[..., T], *args: Any
+    ) -> asyncio.Future[T]:
+        """Run in a thread while virtual time stands still."""
+        self._working += 1
+        future = super().run_in_executor(executor, func, *args)
+        future.add_done_callback(self._work_done)
+        return future
+
+    def _work_done(self, _: asyncio.Future[Any]) -> None:
+        self._working -= 1
+
+    def _pass_time(self, timeout_s: float | None) -> float | None:
+        """Let time pass up to the next timer; return how long to really wait for files."""
+        if self._working:
+            return None
+        due = [entry for entry in self._idle_waiters if not entry[1].done()]
+        if due:
+            max(due, key=lambda entry: entry[0])[1].set_result(None)
+            return 0
+        target_s = math.inf if timeout_s is None else self._now_s + timeout_s
+        busy = [simulation for simulation in self._stepped if simulation.busy]
+        if math.isinf(target_s) and not busy:
+            if self._outside:
+                return None
+            self.call_soon(self._nothing_can_wake)
+            return 0
+        # Simulations that are not busy still take part: parts fall while a behavior sleeps.
+        for simulation in self._stepped if not math.isinf(target_s) else busy:
+            target_s = min(target_s, simulation.advance(target_s))
+        self._now_s = max(self._now_s, target_s)
+        return 0
+
+    def _nothing_can_wake(self) -> None:
+        waiting = sorted(task.get_name() for task in asyncio.all_tasks(self) if not task.done())
+        error = NothingCanWake(
+            f"nothing can happen any more at t={self._now_s:.3f} s",
+            hint=f"waiting for ever: {', '.join(waiting)}",
+        )
+        main = self._main_task
+        if main is not None and not main.done():
+            self.stuck = error
+            main.cancel(str(error))
+        else:
+            self.stop()
+
+    _main_task: asyncio.Task[Any] | None = None
+    stuck: NothingCanWake | None = None
+
+    def run_main(self, main: Coroutine[Any, Any, T]) -> T:
+        """Run `main` to its end, then cancel what it left behind.
+
+        Raises:
+            NothingCanWake: everything waits and nothing is due.
+        """
+        asyncio.set_event_loop(self)
+        try:
+            self._main_task = self.create_task(main, name="main")
+            try:
+                return self.run_until_complete(self._main_task)
+            except asyncio.CancelledError:
+                if self.stuck is not None:
+                    raise self.stuck from None
+                raise
+        finally:
+            self._close_down()
+
+    def _close_down(self) -> None:
+        self._outside += 1  # the executor's threads report their end from outside
+        left = asyncio.all_tasks(self)
+        for task in left:
+            task.cancel()
+        if left:
+            self.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+        self.run_until_complete(self.shutdown_asyncgens())
+        self.run_until_complete(self.shutdown_default_executor())
+        asyncio.set_event_loop(None)
+        self.close()
+
+
+def run_virtual(main: Coroutine[Any, Any, T]) -> T:
+    """Run a coroutine on a fresh virtual loop: hours pass in milliseconds, twice the same."""
+    return VirtualLoop().run_main(main)
+
+
+def new_clock() -> LoopClock:
+    """Return the clock of the running loop, virtual or real."""
+    return LoopClock()

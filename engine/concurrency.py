@@ -1,0 +1,156 @@
+"""The concurrency container: children side by side, ended by the first satisfied condition."""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from engine.cause import under
+from engine.errors import StateError
+from engine.event import Cause
+from engine.execution import Execution
+from engine.node import NOTHING, Entry, Left, Node, explain, log
+from engine.settle import settle
+from engine.state import Outcome
+from engine.userdata import Scope
+
+_OVERDUE_S = 5.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Condition:
+    """`outcome` is taken when every named child has finished with the outcome named for it."""
+
+    outcome: str
+    when: Mapping[str, str]
+
+    def holds(self, finished: Mapping[str, Left]) -> bool:
+        """Tell whether all named children have finished so."""
+        return all(name in finished and finished[name].outcome == due for name, due in self.when.items())
+
+
+@dataclass(frozen=True, kw_only=True)
+class Concurrency:
+    """Children by name and conditions, both in document order."""
+
+    children: Mapping[str, Node]
+    conditions: tuple[Condition, ...]
+    otherwise: str | None = None
+    userdata: Mapping[str, object] = field(default_factory=dict[str, object])
+
+    @property
+    def kind(self) -> str:
+        """The key of this container in documents."""
+        return "concurrency"
+
+    @property
+    def nominal(self) -> frozenset[str]:
+        """Outcomes of conditions that ask only for nominal outcomes of the children."""
+        return self._nominal
+
+    @cached_property
+    def _nominal(self) -> frozenset[str]:
+        return frozenset(
+            c.outcome
+            for c in self.conditions
+            if all(due in self.children[name].work.nominal for name, due in c.when.items())
+        )
+
+    def enter(self, scope: Scope) -> Entry:
+        """Nothing is evaluated: the children evaluate theirs."""
+        return NOTHING
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Start all children, decide whenever some have finished, preempt and await the others."""
+        inner = Scope(path, self.userdata, scope)
+        branches = {name: Scope(path, {}, inner, isolated=True) for name in self.children}
+        tasks = {
+            name: asyncio.create_task(child.perform(branches[name], execution), name=child.path)
+            for name, child in self.children.items()
+        }
+        execution.waits += 1
+        try:
+            outcome = await self._decide(path, tasks)
+        finally:
+            await _preempt(tasks, execution)
+        _raise_late_failure(tasks)
+        for name in self.children:
+            for key, value in branches[name].own_values().items():
+                inner.write(key, value)
+        return outcome
+
+    async def _decide(self, path: str, tasks: Mapping[str, asyncio.Task[Left]]) -> Outcome:
+        finished: dict[str, Left] = {}
+        while True:
+            waiting = {task for name, task in tasks.items() if name not in finished}
+            if not waiting:
+                return self._uncovered(path, finished)
+            await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+            await settle(depth=path.count("/"))
+            for name, task in tasks.items():
+                if task.done() and name not in finished:
+                    finished[name] = _as_outcome(task.result())
+            for condition in self.conditions:
+                if condition.holds(finished):
+                    return Outcome(condition.outcome, cause=self._cause(condition.outcome, finished))
+
+    def _cause(self, outcome: str, finished: Mapping[str, Left]) -> Cause | None:
+        if outcome in self.nominal:
+            return None
+        for name, child in self.children.items():
+            left = finished.get(name)
+            if left is not None and (left.cause is not None or left.outcome not in child.work.nominal):
+                return explain(child, left)
+        return None
+
+    def _uncovered(self, path: str, finished: Mapping[str, Left]) -> Outcome:
+        how = ", ".join(f"{name}: {left.outcome}" for name, left in finished.items())
+        if self.otherwise is None:
+            raise StateError(
+                f"all children have finished ({how}) and no condition matches",
+                where=path,
+                hint="add a condition for this combination, or `otherwise`",
+            )
+        return Outcome(
+            self.otherwise,
+            cause=under(f"no condition matches ({how})", self._cause(self.otherwise, finished), where=path),
+        )
+
+
+def _as_outcome(left: Left) -> Left:
+    """Give a child that was left by timeout or on_error the outcome named there."""
+    return left if left.target is None else Left(left.target, None, left.cause)
+
+
+async def _preempt(tasks: Mapping[str, asyncio.Task[Left]], execution: Execution) -> None:
+    """Cancel the unfinished children once and wait for their clean-up, however often we are cancelled."""
+    unfinished = {task for task in tasks.values() if not task.done()}
+    for task in tasks.values():  # in document order: clean-up must happen in the same order every time
+        task.cancel()
+    cancelled: asyncio.CancelledError | None = None
+    for patience in itertools.count():
+        if not unfinished:
+            break
+        try:
+            _, unfinished = await asyncio.wait(unfinished, timeout=_OVERDUE_S)
+        except asyncio.CancelledError as error:
+            cancelled = error
+            continue
+        for late in sorted(task.get_name() for task in unfinished):
+            waited_s = (patience + 1) * _OVERDUE_S
+            log(execution, late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
+    for task in tasks.values():
+        if not task.cancelled():
+            task.exception()  # seen here; the first one, in document order, is what travels on
+    if cancelled is not None:
+        raise cancelled
+
+
+def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
+    """A child whose clean-up failed is an error, though another had decided the outcome."""
+    for task in tasks.values():
+        if not task.cancelled() and (error := task.exception()) is not None:
+            raise error

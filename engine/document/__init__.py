@@ -1,0 +1,54 @@
+"""Documents: behaviors, cells and entries as strict YAML or JSON, read into frozen models.
+
+A document that cannot be used is a `DocumentError` with file, line and column.
+"""
+
+from engine.document.behavior import Behavior, BehaviorDocument, Concurrency, Condition, Machine, Node, Retry, Timeout
+from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, Placement, RobotEntry, load_cell
+from engine.document.entries import Entries, EntriesDocument, load_entries, write_entries
+from engine.document.expression import Template, compile_template
+from engine.document.loader import CircularReference, load_behavior, parse_behavior, read_behavior
+from engine.document.parameter import Parameter, bind_parameters
+from engine.document.schema import write_schemas
+from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.document.yaml_source import Source, load_source, parse_source
+from engine.document.yaml_writer import write_yaml
+
+__all__ = [
+    "Behavior",
+    "BehaviorDocument",
+    "Cell",
+    "CellDocument",
+    "CircularReference",
+    "Concurrency",
+    "Condition",
+    "Entries",
+    "EntriesDocument",
+    "Fixture",
+    "Jitter",
+    "KeySignature",
+    "Machine",
+    "Node",
+    "Parameter",
+    "Part",
+    "Placement",
+    "Retry",
+    "RobotEntry",
+    "Source",
+    "StateSignature",
+    "Template",
+    "Timeout",
+    "bind_parameters",
+    "compile_template",
+    "load_behavior",
+    "load_cell",
+    "load_entries",
+    "load_source",
+    "parse_behavior",
+    "parse_source",
+    "read_behavior",
+    "read_signature",
+    "write_entries",
+    "write_schemas",
+    "write_yaml",
+]

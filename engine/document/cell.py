@@ -1,0 +1,222 @@
+"""Cell documents: which robots, world, fixtures, parts and store make up a work cell.
+
+Lengths are metres, angles radians, masses kilograms. Paths are relative to the document, except
+`store.path`, which is relative to the current directory because it is written at run time.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict, convert
+from engine.document.yaml_source import DataPath, Source, load_source
+from engine.errors import DocumentError
+from engine.messages import Pose, Quaternion, Vector3
+
+Length = Annotated[float, Meta(gt=0.0, description="A length in metres, above 0")]
+Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or more")]
+Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
+Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
+Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more")]
+
+
+class Placement(Strict, frozen=True, kw_only=True):
+    """Where something stands in the world frame: position, and rotation about fixed x, y, z axes in turn."""
+
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+
+    def pose(self) -> Pose:
+        """Return the placement as a pose in the frame `world`."""
+        return Pose(xyz=self.xyz, xyzw=_quaternion(self.rpy))
+
+
+class SqliteStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
+    """Named entries in a file; `seed` is an entries document that fills what is missing."""
+
+    path: Annotated[str, Meta(min_length=1, description="Database file, relative to the current directory")]
+    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
+
+
+class MujocoWorld(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
+    """The simulated surroundings."""
+
+    step_s: Annotated[float, Meta(gt=0.0, le=0.01, description="Physics step in seconds")] = 0.001
+    gravity: bool = True
+
+
+class GripperEntry(Strict, frozen=True, kw_only=True):
+    """The gripper at the flange of a robot."""
+
+    model: Annotated[str, Meta(min_length=1, description="Name of the gripper model")]
+
+
+class RobotEntry(Strict, frozen=True, kw_only=True):
+    """One robot: its model, who drives it, where its base stands and what it holds.
+
+    `driver` is `sim`, or a mapping with the driver's name as `kind` and its own options beside it.
+    """
+
+    model: Annotated[str, Meta(min_length=1, description="Name of the robot model")]
+    driver: Literal["sim"] | dict[str, object] = "sim"
+    base: Placement = Placement()
+    gripper: GripperEntry | None = None
+
+    @property
+    def simulated(self) -> bool:
+        """True when the world of the cell makes this robot."""
+        return self.driver == "sim"
+
+    @property
+    def driver_kind(self) -> str:
+        """The name of the driver; its options are the other keys of `driver`."""
+        return self.driver if isinstance(self.driver, str) else str(self.driver["kind"])
+
+
+class Jitter(Strict, frozen=True, kw_only=True):
+    """How far a part may lie off, uniformly to both sides, when a run is seeded."""
+
+    xy_m: Offset = 0.0
+    yaw_rad: Angle = 0.0
+
+
+class Fixture(Strict, frozen=True, kw_only=True):
+    """A fixed body.
+
+    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
+    edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
+    or cylinder, and the middle of the underside of a tray.
+    """
+
+    shape: Literal["box", "cylinder", "tray"]
+    size_m: tuple[Length, ...]
+    wall_m: Length = 0.005
+    at: Placement = Placement()
+    color: Color = "#b0b0b0"
+
+
+class Part(Strict, frozen=True, kw_only=True):
+    """A free body with real contact.
+
+    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length. `at` is its centre.
+    """
+
+    shape: Literal["box", "cylinder"]
+    size_m: tuple[Length, ...]
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")]
+    at: Placement = Placement()
+    jitter: Jitter = Jitter()
+    color: Color = "#d0d0d0"
+
+
+class CellDocument(Strict, frozen=True, kw_only=True):
+    """A work cell as written."""
+
+    flexcell: Literal[1]
+    cell: Name
+    description: str = ""
+    store: SqliteStore | None = None
+    world: MujocoWorld | None = None
+    robots: dict[Name, RobotEntry] = {}
+    fixtures: dict[Name, Fixture] = {}
+    parts: dict[Name, Part] = {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """A cell document with the file it came from."""
+
+    document: CellDocument
+    file: Path
+    source: Source = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """The name of the cell."""
+        return self.document.cell
+
+    @property
+    def seed_file(self) -> Path | None:
+        """The entries document that fills the store, resolved; None without one."""
+        store = self.document.store
+        return self.resolve(store.seed) if store is not None and store.seed is not None else None
+
+    def resolve(self, path: str) -> Path:
+        """Return a path of the document, which is relative to its folder, as one that can be opened."""
+        return (self.file.parent / path).resolve()
+
+
+def load_cell(path: Path | str) -> Cell:
+    """Read a cell document.
+
+    Raises:
+        DocumentError: the file cannot be read or is not a valid cell; `where` is the position.
+    """
+    file = Path(path)
+    source = load_source(file)
+    document = convert(source, CellDocument, refused=_REFUSED)
+    _require_sizes(document, source)
+    _require_drivers(document, source)
+    _require_world(document, source)
+    return Cell(document=document, file=file, source=source)
+
+
+_LATER = "it comes with a later version; remove it"
+_REFUSED = {"modules": _LATER, "cameras": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
+
+
+def _require_sizes(document: CellDocument, source: Source) -> None:
+    bodies: list[tuple[DataPath, Fixture | Part]] = [
+        *((("fixtures", name), fixture) for name, fixture in document.fixtures.items()),
+        *((("parts", name), part) for name, part in document.parts.items()),
+    ]
+    for path, body in bodies:
+        due = 2 if body.shape == "cylinder" else 3
+        if len(body.size_m) != due:
+            meaning = "diameter, length" if due == 2 else "edge lengths x, y, z"
+            raise DocumentError(
+                f"the size of a {body.shape} has {due} lengths, not {len(body.size_m)}",
+                where=source.position((*path, "size_m")),
+                hint=meaning,
+            )
+        if path[0] == "parts" and path[1] in document.fixtures:
+            raise DocumentError(
+                f"`{path[1]}` is a fixture and a part", where=source.position(path, of_key=True), hint="rename one"
+            )
+
+
+def _require_drivers(document: CellDocument, source: Source) -> None:
+    for name, robot in document.robots.items():
+        if isinstance(robot.driver, dict) and not isinstance(robot.driver.get("kind"), str):
+            raise DocumentError(
+                f"the driver of robot `{name}` has no `kind`",
+                where=source.position(("robots", name, "driver")),
+                hint="write `driver: sim` or `driver: {kind: NAME, …}`",
+            )
+
+
+def _require_world(document: CellDocument, source: Source) -> None:
+    if document.world is not None:
+        return
+    for name, robot in document.robots.items():
+        if robot.simulated:
+            raise DocumentError(
+                f"robot `{name}` is simulated, and the cell has no world",
+                where=source.position(("robots", name), of_key=True),
+                hint="add `world: {kind: mujoco}`",
+            )
+
+
+def _quaternion(rpy: Vector3) -> Quaternion:
+    (cr, cp, cy), (sr, sp, sy) = (tuple(f(angle / 2) for angle in rpy) for f in (math.cos, math.sin))
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )

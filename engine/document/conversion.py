@@ -1,0 +1,197 @@
+"""Plain data to typed models; what does not fit is reported at its line and column."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from typing import TypeVar, cast
+
+import msgspec
+import msgspec.inspect as inspect
+
+from engine.document.yaml_source import DataPath, Source
+from engine.errors import DocumentError
+from engine.nearness import near_names
+
+T = TypeVar("T")
+
+_AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`(?P<key>key)` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
+_UNKNOWN = re.compile(r"Object contains unknown field `(.*)`", re.DOTALL)
+_MISSING = re.compile(r"Object missing required field `(.*)`")
+_TYPES = {"object": "mapping", "array": "list", "str": "text", "float": "number", "int": "integer", "bool": "boolean"}
+
+
+class Strict(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """Root of the models of a document: a key that is not a field is an error."""
+
+
+def convert(source: Source, kind: type[T], *, refused: Mapping[str, str] | None = None) -> T:
+    """Return the document as a `kind`.
+
+    Args:
+        source: What was read.
+        kind: A model, usually a `Strict` one.
+        refused: For keys that are known and not supported, what to say about them.
+
+    Raises:
+        DocumentError: the data does not fit; `where` is the position.
+    """
+    try:
+        return msgspec.convert(source.data, kind)
+    except msgspec.ValidationError as error:
+        raise _located(source, kind, str(error), refused or {}) from None
+
+
+def _located(source: Source, kind: object, complaint: str, refused: Mapping[str, str]) -> DocumentError:
+    path = _find(source.data, kind, complaint)
+    what, key_is_wrong = _what(complaint)
+    unknown = _UNKNOWN.fullmatch(what)
+    if unknown:
+        name = unknown[1]
+        where = source.position((*path, name), of_key=True)
+        if name in refused:
+            return DocumentError(f"this version does not run `{name}`", where=where, hint=refused[name])
+        hint = near_names(name, field_names(kind, path))
+        return DocumentError(f"unknown key `{name}`", where=where, hint=hint)
+    missing = _MISSING.fullmatch(what)
+    if missing:
+        return DocumentError(f"the key `{missing[1]}` is missing", where=source.position(path, of_key=True))
+    where = source.position(path, of_key=key_is_wrong)
+    subject = f"`{path[-1]}`: " if path else ""
+    return DocumentError(f"{subject}{in_words(what)}", where=where, hint=_advice(kind, path, of_key=key_is_wrong))
+
+
+def _what(complaint: str) -> tuple[str, bool]:
+    match = cast("re.Match[str]", _AT.match(complaint))
+    return match["what"], match["key"] is not None
+
+
+def in_words(what: str) -> str:
+    """Say what msgspec complains of with the type names that authors of YAML know."""
+
+    def types(match: re.Match[str]) -> str:
+        names = [_TYPES.get(name, name) for name in match[1].split(" | ")]
+        return " or ".join("nothing" if name == "null" else name for name in names)
+
+    said = re.sub(r"`([a-z |]+)`", types, what)
+    return f"{said[:1].lower()}{said[1:]}"
+
+
+def _find(data: object, kind: object, complaint: str) -> DataPath:
+    """Return where the complaint is about; msgspec leaves out which key of a mapping it was."""
+    match = cast("re.Match[str]", _AT.match(complaint))
+    steps = re.findall(r"\.([^.\[\]]+)|\[(\d+|\.\.\.)\]", match["path"] or "$")
+    # A complaint about a key says in which mapping; the key is one more step that has to be found.
+    extra = [("", "...")] if match["key"] else []
+    return tuple(_walk(data, kind, complaint, [*steps, *extra]))
+
+
+def _walk(data: object, kind: object, complaint: str, steps: list[tuple[str, str]]) -> Iterator[str | int]:
+    trail: list[str | int] = []
+    here = data
+    for name, index in steps:
+        step = name or (index if index == "..." else int(index))
+        if step == "...":
+            if not isinstance(here, dict):
+                return
+            step = _culprit(data, trail, cast("dict[str, object]", here), kind, complaint)
+        if isinstance(step, str) and isinstance(here, dict):
+            here = cast("dict[str, object]", here).get(step)
+        elif isinstance(step, int) and isinstance(here, list):
+            here = cast("list[object]", here)[step]
+        else:
+            return
+        trail.append(step)
+        yield step
+
+
+def _culprit(data: object, trail: list[str | int], mapping: dict[str, object], kind: object, complaint: str) -> str:
+    """Find the first key that alone brings the same complaint."""
+    for key, value in mapping.items():
+        try:
+            msgspec.convert(_with_only(data, trail, {key: value}), cast("type[object]", kind))
+        except msgspec.ValidationError as error:
+            if str(error) == complaint:
+                return key
+    return next(iter(mapping))
+
+
+def _with_only(data: object, trail: list[str | int], replacement: object) -> object:
+    """Return a copy of `data` in which the value at `trail` is replaced."""
+    if not trail:
+        return replacement
+    step, rest = trail[0], trail[1:]
+    if isinstance(data, dict):
+        mapping = cast("dict[str, object]", data)
+        return {**mapping, cast("str", step): _with_only(mapping[cast("str", step)], rest, replacement)}
+    items = list(cast("list[object]", data))
+    items[cast("int", step)] = _with_only(items[cast("int", step)], rest, replacement)
+    return items
+
+
+@cache
+def _type_of(kind: object) -> inspect.Type:
+    return inspect.type_info(kind)
+
+
+def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
+    """Return the keys that a mapping at `path` of a document of this kind may have."""
+    return tuple(name for struct in _structs_at(kind, path) for name in (f.encode_name for f in struct.fields))
+
+
+def _advice(kind: object, path: DataPath, *, of_key: bool) -> str | None:
+    """Return what the model says about the value (or the key) at `path`: its description, or the choices."""
+    if of_key:
+        mappings = [option for option in _types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
+        return next((found for option in mappings if (found := _description([option.key_type]))), None)
+    described = _declared_at(kind, path)
+    choices = [str(v) for option in described if isinstance(option, inspect.LiteralType) for v in option.values]
+    return _description(described) or (f"known: {', '.join(choices)}" if choices else None)
+
+
+def _declared_at(kind: object, path: DataPath) -> list[inspect.Type]:
+    """Return the types declared at `path`, with their annotations."""
+    if not path:
+        return []
+    declared = [inner for container in _types_at(kind, path[:-1]) for inner in _inside(container, path[-1])]
+    return [t for found in declared for t in (found.types if isinstance(found, inspect.UnionType) else (found,))]
+
+
+def _description(options: Iterable[inspect.Type]) -> str | None:
+    for option in options:
+        if isinstance(option, inspect.Metadata):
+            extra = cast("Mapping[str, object] | None", option.extra_json_schema)  # pyright: ignore[reportUnknownMemberType]
+            return str(extra["description"]) if extra and "description" in extra else None
+    return None
+
+
+def _structs_at(kind: object, path: DataPath) -> list[inspect.StructType]:
+    return [option for option in _types_at(kind, path) if isinstance(option, inspect.StructType)]
+
+
+def _types_at(kind: object, path: DataPath) -> list[inspect.Type]:
+    here: list[inspect.Type] = list(_options(_type_of(kind)))
+    for step in path:
+        here = [option for container in here for inner in _inside(container, step) for option in _options(inner)]
+    return here
+
+
+def _options(kind: inspect.Type) -> Iterator[inspect.Type]:
+    if isinstance(kind, inspect.Metadata):
+        yield from _options(kind.type)
+    elif isinstance(kind, inspect.UnionType):
+        for option in kind.types:
+            yield from _options(option)
+    else:
+        yield kind
+
+
+def _inside(kind: inspect.Type, step: str | int) -> Iterator[inspect.Type]:
+    if isinstance(kind, inspect.StructType):
+        # A field of a recursive model refers to the type that is being described; ask for it afresh.
+        yield from (_type_of(kind.cls) if f.type is kind else f.type for f in kind.fields if f.encode_name == step)
+    elif isinstance(kind, inspect.DictType):
+        yield kind.value_type
+    elif isinstance(kind, inspect.VarTupleType | inspect.ListType):
+        yield kind.item_type

@@ -1,0 +1,35 @@
+"""Durations as documents write them: `30 s`, `500 ms`, `2 min`, `1 h`, or a number of seconds."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Annotated
+
+from msgspec import Meta
+
+from engine.errors import DocumentError
+
+_PATTERN = r"^[0-9]+(\.[0-9]+)? ?(ms|s|min|h)$"
+_SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
+_MEANING = "A duration: a number of seconds, or text such as `500 ms`, `30 s`, `2 min`, `1 h`"
+
+Duration = (
+    Annotated[float, Meta(ge=0.0, description=_MEANING)] | Annotated[str, Meta(pattern=_PATTERN, description=_MEANING)]
+)
+
+
+def seconds(duration: float | str) -> float:
+    """Return a duration in seconds.
+
+    Raises:
+        DocumentError: it is negative, not finite, or has no unit that is known.
+    """
+    if isinstance(duration, str):
+        if not re.fullmatch(_PATTERN, duration):
+            raise DocumentError(f"{duration!r} is not a duration", hint="write `30 s`, `500 ms`, `2 min` or `1 h`")
+        amount = duration.rstrip("mshin ")
+        return float(amount) * _SECONDS[duration[len(amount) :].strip()]
+    if not math.isfinite(duration) or duration < 0:
+        raise DocumentError(f"{duration!r} is not a duration", hint="a number of seconds, 0 or more")
+    return float(duration)

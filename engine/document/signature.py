@@ -1,0 +1,122 @@
+"""What a state class declares: outcomes, parameters, input and output keys, as one frozen description."""
+
+from __future__ import annotations
+
+import inspect
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+import msgspec
+
+from engine.errors import StateError
+from engine.state import State
+
+Schema = Mapping[str, object]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeySignature:
+    """One parameter, input key or output key.
+
+    `schema` is its JSON Schema, with description and unit where the class gives them; `default`
+    is meaningful where it is not `required`.
+    """
+
+    name: str
+    type: Any
+    required: bool
+    default: object
+    schema: Schema
+
+
+@dataclass(frozen=True, kw_only=True)
+class StateSignature:
+    """A state as documents and the palette see it."""
+
+    name: str
+    doc: str
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+    parameters: Mapping[str, KeySignature]
+    inputs: Mapping[str, KeySignature]
+    outputs: Mapping[str, KeySignature]
+    state: type[State] = field(repr=False)
+
+    @property
+    def summary(self) -> str:
+        """The first line of its documentation."""
+        return self.doc.partition("\n")[0]
+
+
+@lru_cache(maxsize=4096)
+def read_signature(state: type[State]) -> StateSignature:
+    """Describe a state class.
+
+    Raises:
+        StateError: the class breaks the rules of states; names the class and the rule.
+    """
+    name = state.state_name or f"{state.__module__}:{state.__qualname__}"
+    if not state.outcomes:
+        raise _broken(state, "it declares no outcomes", "add `outcomes: ClassVar[tuple[str, ...]] = (…)`")
+    stray = [outcome for outcome in state.success if outcome not in state.outcomes]
+    if stray:
+        raise _broken(state, f"its success names `{stray[0]}`, which is not one of its outcomes", "correct `success`")
+    return StateSignature(
+        name=name,
+        doc=inspect.getdoc(state) or "",
+        outcomes=state.outcomes,
+        success=state.success,
+        parameters=_parameters(state),
+        inputs=_inputs(state),
+        outputs={key: _key(key, kind, required=True, default=None) for key, kind in state.outputs.items()},
+        state=state,
+    )
+
+
+def _parameters(state: type[State]) -> dict[str, KeySignature]:
+    return {
+        found.encode_name: _key(found.encode_name, found.type, required=found.required, default=_default(found))
+        for found in msgspec.structs.fields(state)
+    }
+
+
+def _default(found: msgspec.structs.FieldInfo) -> object:
+    if found.default_factory is not msgspec.NODEFAULT:
+        return found.default_factory()
+    return None if found.required else found.default
+
+
+def _inputs(state: type[State]) -> dict[str, KeySignature]:
+    run = state.run
+    if not inspect.iscoroutinefunction(run):
+        raise _broken(state, "its `run` is not a coroutine", "write `async def run(self, ctx) -> Outcome`")
+    try:
+        hints = typing.get_type_hints(run, include_extras=True)
+    except NameError as error:
+        raise _broken(state, f"an annotation of `run` cannot be read: {error}", "import the name it uses") from error
+    inputs: dict[str, KeySignature] = {}
+    for argument in list(inspect.signature(run).parameters.values())[2:]:
+        if argument.kind is not inspect.Parameter.KEYWORD_ONLY:
+            raise _broken(state, f"the input `{argument.name}` of `run` is positional", "write `*` before the inputs")
+        if argument.name not in hints:
+            raise _broken(state, f"the input `{argument.name}` of `run` has no type", "annotate it")
+        required = argument.default is inspect.Parameter.empty
+        default = None if required else argument.default
+        inputs[argument.name] = _key(argument.name, hints[argument.name], required=required, default=default)
+    return inputs
+
+
+def _key(name: str, kind: Any, *, required: bool, default: object) -> KeySignature:
+    schema = msgspec.json.schema(kind, schema_hook=_schema_of_custom)
+    return KeySignature(name=name, type=kind, required=required, default=default, schema=schema)
+
+
+def _schema_of_custom(kind: type) -> dict[str, object]:
+    return {"description": "any value" if kind is object else f"a {kind.__name__}"}
+
+
+def _broken(state: type[State], what: str, advice: str) -> StateError:
+    return StateError(what, where=f"{state.__module__}:{state.__qualname__}", hint=advice)

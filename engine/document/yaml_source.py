@@ -1,0 +1,357 @@
+"""Strict YAML 1.2 and JSON text to plain data, with the line and column of every key and value.
+
+What is accepted is the part of YAML 1.2 that means the same to every reader: one UTF-8 document of
+mappings, sequences and scalars of the core schema. Anchors, aliases, tags, merge keys, duplicate
+keys, integers beyond 64 bits and numbers that are not finite are refused, as is text that is too
+large or nested too deeply. Keys are always text. The parser's event stream is read without
+recursion, so hostile text costs no more than its size.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import stat
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NoReturn, Protocol, cast
+
+import yaml
+
+from engine.errors import DocumentError, Position
+
+MAX_BYTES = 2_000_000
+MAX_DEPTH = 64
+MAX_NODES = 200_000
+DataPath = tuple[str | int, ...]
+
+_INT = re.compile(r"[-+]?[0-9]+")
+_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_BASED = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
+_NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+_WORDS: dict[str, bool | None] = {
+    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
+    **dict.fromkeys(("true", "True", "TRUE"), True),
+    **dict.fromkeys(("false", "False", "FALSE"), False),
+}
+_UNREADABLE = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
+_SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+
+
+@dataclass(slots=True)
+class _Place:
+    """Where a key and its value stand, counted from 0, and the places inside the value."""
+
+    key_line: int
+    key_column: int
+    line: int
+    column: int
+    children: dict[str | int, _Place] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """A document as read: plain data and where each part of it stands in `file`."""
+
+    file: str
+    data: object
+    place: _Place = field(repr=False)
+
+    def position(self, path: DataPath, *, of_key: bool = False) -> Position:
+        """Return where the value (or the key) at `path` stands; for a path that is absent, its nearest ancestor."""
+        place = self.place
+        for step in path:
+            child = place.children.get(step) if place.children is not None else None
+            if child is None:
+                of_key = True
+                break
+            place = child
+        if of_key:
+            return Position(file=self.file, line=place.key_line + 1, column=place.key_column + 1)
+        return Position(file=self.file, line=place.line + 1, column=place.column + 1)
+
+
+def load_source(path: Path) -> Source:
+    """Read a YAML or JSON file.
+
+    Raises:
+        DocumentError: the file cannot be read or is not an acceptable document; `where` is the position.
+    """
+    start = Position(file=str(path), line=1, column=1)
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise DocumentError("this is not a file", where=start, hint="give the path of a YAML or JSON file")
+        with path.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise DocumentError(f"cannot read this file: {reason}", where=start, hint="check its path") from error
+    return parse_source(content, file=str(path))
+
+
+def parse_source(content: bytes | str, *, file: str) -> Source:
+    """Parse YAML or JSON text; `file` is the name to show in positions.
+
+    Raises:
+        DocumentError: the text is not an acceptable document; `where` is the position.
+    """
+    text = _decode(content, file) if isinstance(content, bytes) else content
+    if len(text) > MAX_BYTES:
+        raise _too_large(file)
+    if text.startswith("\ufeff"):
+        _refuse(file, 0, 0, "the file starts with a byte order mark", "save it as UTF-8 without BOM")
+    unreadable = _UNREADABLE.search(text)
+    if unreadable:
+        line, column = _line_and_column(text, unreadable.start())
+        shown = f"U+{ord(unreadable.group()):04X}"
+        _refuse(file, line, column, f"the character {shown} is not allowed in a document", "remove or escape it")
+    if file.endswith(".json"):
+        text = _SURROGATE_PAIR.sub(_one_code_point, text)
+    return _read_events(text, file)
+
+
+def _decode(content: bytes, file: str) -> str:
+    if len(content) > MAX_BYTES:
+        raise _too_large(file)
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        _refuse(file, 0, 0, "the file is UTF-16", "save it as UTF-8")
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        before = content[: error.start].decode("utf-8")
+        line, column = _line_and_column(before, len(before))
+        byte = content[error.start]
+        position = Position(file=file, line=line + 1, column=column + 1)
+        raise DocumentError(f"byte 0x{byte:02x} is not UTF-8", where=position, hint="save it as UTF-8") from error
+
+
+def _one_code_point(pair: re.Match[str]) -> str:
+    """Join the two halves in which JSON writes a character that YAML writes with one escape."""
+    backslashes, high, low = pair.groups()
+    code = 0x10000 + ((int(high, 16) - 0xD800) << 10) + (int(low, 16) - 0xDC00)
+    return f"{backslashes}\\U{code:08x}"
+
+
+def _line_and_column(text: str, index: int) -> tuple[int, int]:
+    line = text.count("\n", 0, index)
+    return line, index - (text.rfind("\n", 0, index) + 1)
+
+
+def _too_large(file: str) -> DocumentError:
+    limit = f"{MAX_BYTES / 1e6:g} MB"
+    where = Position(file=file, line=1, column=1)
+    return DocumentError(f"the file is larger than {limit}", where=where, hint="split it with behavior references")
+
+
+def _refuse(file: str, line: int, column: int, message: str, hint: str | None = None) -> NoReturn:
+    raise DocumentError(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
+
+
+class _Mark(Protocol):
+    line: int
+    column: int
+
+
+class _Event(Protocol):
+    """The members of PyYAML's parser events that are used here."""
+
+    start_mark: _Mark
+    anchor: str | None
+    tag: str | None
+    value: str
+    implicit: tuple[bool, bool]
+    version: tuple[int, int] | None
+    tags: dict[str, str] | None
+
+
+def _read_events(text: str, file: str) -> Source:
+    builder = _Builder(file)
+    # PyYAML's C parser is untyped: the cast contains it here.
+    parser = yaml.CSafeLoader(text)
+    next_event = cast(Callable[[], _Event | None], parser.get_event)
+    try:
+        while (event := next_event()) is not None:
+            if builder.take(event):
+                break
+    except yaml.MarkedYAMLError as error:
+        mark = cast("_Mark | None", error.problem_mark or error.context_mark)
+        line, column = (mark.line, mark.column) if mark is not None else (0, 0)
+        raise _syntax_error(error, file, line, column, text) from None
+    except yaml.YAMLError as error:
+        raise DocumentError(str(error).splitlines()[0], where=Position(file=file, line=1, column=1)) from None
+    finally:
+        parser.dispose()
+    return builder.source()
+
+
+def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int, text: str) -> DocumentError:
+    lines = text.split("\n", line + 1)
+    here = lines[line][column : column + 1] if line < len(lines) else ""
+    message = error.problem or "this is not YAML"
+    hint = error.context
+    if here == "\t":
+        message, hint = "a tab stands where YAML wants spaces", "indent with spaces"
+    elif here in ("{", "}") or "expected ',' or '}'" in message:
+        message, hint = "a brace stands here without its partner", "put text with `${…}` in quotes"
+    elif "mapping values are not allowed" in message:
+        message, hint = "a second `:` on this line", "put the text in quotes"
+    return DocumentError(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
+
+
+class _Builder:
+    """Puts data and places together from parser events, with a stack instead of recursion."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._documents = 0
+        self._nodes = 0
+        self._root: list[object] = []
+        self._root_place = _Place(0, 0, 0, 0)
+        # One row per open container: the container, its place, and the pending key of a mapping.
+        self._container: dict[str, object] | list[object] | None = None
+        self._place = self._root_place
+        self._key: tuple[str, int, int] | None = None
+        self._stack: list[tuple[dict[str, object] | list[object] | None, _Place, tuple[str, int, int] | None]] = []
+
+    def take(self, event: _Event) -> bool:
+        """Use one event; True when the stream is over."""
+        kind = cast("object", type(event))
+        if kind is yaml.ScalarEvent:
+            self._scalar(event)
+        elif kind is yaml.MappingStartEvent:
+            self._open(event, {})
+        elif kind is yaml.SequenceStartEvent:
+            self._open(event, [])
+        elif kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
+            self._container, self._place, self._key = self._stack.pop()
+        elif kind is yaml.AliasEvent:
+            self._refuse(event, f"the alias `*{event.anchor}` is not supported", "write the value out")
+        elif kind is yaml.DocumentStartEvent:
+            self._start_document(event)
+        return kind is yaml.StreamEndEvent
+
+    def source(self) -> Source:
+        """Return what was built."""
+        if not self._root:
+            _refuse(self._file, 0, 0, "the document is empty")
+        return Source(file=self._file, data=self._root[0], place=self._root_place)
+
+    def _start_document(self, event: _Event) -> None:
+        self._documents += 1
+        if self._documents > 1:
+            self._refuse(event, "a second document starts here", "one file holds one document: remove `---`")
+        if event.version is not None and tuple(event.version) != (1, 2):
+            self._refuse(event, f"this is YAML {event.version[0]}.{event.version[1]}", "documents are YAML 1.2")
+        if event.tags:
+            self._refuse(event, "`%TAG` is not supported")
+
+    def _count(self, event: _Event) -> _Mark:
+        self._nodes += 1
+        if self._nodes > MAX_NODES:
+            self._refuse(event, f"the document has more than {MAX_NODES} values", "split it with behavior references")
+        if event.anchor is not None:
+            self._refuse(
+                event, f"the anchor `&{event.anchor}` is not supported", "write the value out where it is used"
+            )
+        if event.tag is not None:
+            self._refuse(event, f"the tag `{event.tag}` is not supported", "remove it")
+        return event.start_mark
+
+    def _scalar(self, event: _Event) -> None:
+        mark = self._count(event)
+        value = event.value
+        plain = event.implicit[0]
+        container = self._container
+        if type(container) is dict and self._key is None:
+            self._take_key(event, value, plain)
+            return
+        resolved = self._resolve(event, value) if plain else value
+        self._add(resolved, mark.line, mark.column)
+
+    def _take_key(self, event: _Event, key: str, plain: bool) -> None:
+        container = cast("dict[str, object]", self._container)
+        if plain and (key == "" or key == "~"):
+            self._refuse(event, "a key is empty", "write a name before the `:`")
+        if plain and key == "<<":
+            self._refuse(event, "the merge key `<<` is not supported", "write the keys out")
+        if key in container:
+            first = cast("dict[str | int, _Place]", self._place.children)[key]
+            self._refuse(event, f"the key `{_short(key)}` is repeated; it is first on line {first.key_line + 1}")
+        mark = event.start_mark
+        self._key = (key, mark.line, mark.column)
+
+    def _open(self, event: _Event, container: dict[str, object] | list[object]) -> None:
+        mark = self._count(event)
+        if type(self._container) is dict and self._key is None:
+            self._refuse(event, "a key must be text, not a mapping or list", "put `${…}` and `{…}` in quotes")
+        if len(self._stack) >= MAX_DEPTH:
+            self._refuse(event, f"nested deeper than {MAX_DEPTH} levels", "split the document with behavior references")
+        outer = (self._container, self._place, None)
+        place = self._add(container, mark.line, mark.column)
+        place.children = {}
+        self._stack.append(outer)
+        self._container, self._place, self._key = container, place, None
+
+    def _add(self, value: object, line: int, column: int) -> _Place:
+        container = self._container
+        if container is None:
+            self._root.append(value)
+            self._root_place = _Place(line, column, line, column)
+            return self._root_place
+        children = cast("dict[str | int, _Place]", self._place.children)
+        if type(container) is dict:
+            key, key_line, key_column = cast("tuple[str, int, int]", self._key)
+            self._key = None
+            container[key] = value
+            place = children[key] = _Place(key_line, key_column, line, column)
+        else:
+            place = children[len(children)] = _Place(line, column, line, column)
+            cast("list[object]", container).append(value)
+        return place
+
+    def _resolve(self, event: _Event, text: str) -> object:
+        try:
+            return plain_scalar(text)
+        except ValueError as error:
+            self._refuse(event, str(error), "put it in quotes if it is text")
+
+    def _refuse(self, event: _Event, message: str, hint: str | None = None) -> NoReturn:
+        _refuse(self._file, event.start_mark.line, event.start_mark.column, message, hint)
+
+
+def plain_scalar(text: str) -> bool | int | float | str | None:
+    """Return what unquoted text means in the core schema of YAML 1.2.
+
+    Raises:
+        ValueError: it is a number that is not finite or does not fit into 64 bits; says so.
+    """
+    first = text[:1]
+    if first in "~nNtTfF":
+        return _WORDS.get(text, text)
+    if first not in "+-.0123456789":
+        return text
+    if _INT.fullmatch(text):
+        return _integer(text, 10)
+    if _FLOAT.fullmatch(text):
+        number = float(text)
+        if not math.isfinite(number):
+            raise ValueError(f"{_short(text)} is too large for a number")
+        return number
+    if _BASED.fullmatch(text):
+        return _integer(text[2:], 8 if text[1] == "o" else 16)
+    if _NOT_FINITE.fullmatch(text):
+        raise ValueError(f"{text} is not a finite number")
+    return text
+
+
+def _integer(digits: str, base: int) -> int:
+    # Twenty-four places hold any 64-bit number with sign in octal; longer text is not worth converting.
+    number = int(digits, base) if len(digits) <= 24 else None
+    if number is None or not -(2**63) <= number < 2**63:
+        raise ValueError(f"{_short(digits)} does not fit into 64 bits")
+    return number
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:37]}…"

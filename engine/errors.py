@@ -1,0 +1,102 @@
+"""The one family of errors: each says what failed, where, and what the reader can do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Position:
+    """A place in a source file; lines and columns count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+class FlexcellError(Exception):
+    """Root of every error this project raises on purpose.
+
+    Args:
+        message: What happened, in one line.
+        where: The file position, node path, device or frame it is about.
+        hint: What the reader can do about it.
+    """
+
+    def __init__(self, message: str, *, where: object | None = None, hint: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.where = where
+        self.hint = hint
+
+    def __str__(self) -> str:
+        place = f"{self.where}: " if self.where is not None else ""
+        advice = f" ({self.hint})" if self.hint else ""
+        return f"{place}{self.message}{advice}"
+
+
+class DocumentError(FlexcellError):
+    """A behavior, cell or entries document cannot be used; `where` is a `Position`."""
+
+
+class ExpressionError(FlexcellError):
+    """A `${…}` expression does not compile, or failed when evaluated."""
+
+
+class UserdataError(FlexcellError):
+    """A state read or wrote a key that it does not declare or that is not defined."""
+
+
+class StateError(FlexcellError):
+    """A state broke its contract or raised; `where` is the node path."""
+
+
+class RegistryError(FlexcellError):
+    """A name resolves to no state, robot or store."""
+
+
+class BusError(FlexcellError):
+    """Root of everything the skill bus refuses."""
+
+
+class HandlerNotTyped(BusError):
+    """A handler without complete annotations was offered to the bus."""
+
+
+class NoSuchSkill(BusError):
+    """Nobody answers at this bus address."""
+
+
+class LeaseRefused(BusError):
+    """A resource is held by somebody else; the message names the holder."""
+
+
+class GoalRejected(BusError):
+    """An action server refused a goal before executing any of it."""
+
+
+class SkillFailed(BusError):
+    """A skill was accepted and could not be carried out."""
+
+
+class StoreError(FlexcellError):
+    """The store refused or lost something."""
+
+
+class EntryNotFound(StoreError):
+    """No entry has this kind and name."""
+
+
+class JournalError(FlexcellError):
+    """The journal cannot be written; the run must stop."""
+
+
+class CellError(FlexcellError):
+    """A cell document names something that cannot be built or connected."""
+
+
+class RobotError(FlexcellError):
+    """A robot or device reported a fault or lost its connection."""

@@ -1,0 +1,27 @@
+"""The journal of runs: every event, durable before an effect leaves the engine.
+
+`Journal.open(directory)` gives the SQLite journal, `begin` the part of one run; `append` is a
+plain cheap call and `await commit()` returns when all of it is on the disk.
+"""
+
+from engine.journal.codec import decode_event, encode_event, encode_event_log
+from engine.journal.journal import Journal, SqliteRunJournal, journal_path
+from engine.journal.null import NullJournal, NullRunJournal
+from engine.journal.port import JournalPort, RunJournal, RunRecord
+from engine.journal.reader import list_runs, read_events
+
+__all__ = [
+    "Journal",
+    "JournalPort",
+    "NullJournal",
+    "NullRunJournal",
+    "RunJournal",
+    "RunRecord",
+    "SqliteRunJournal",
+    "decode_event",
+    "encode_event",
+    "encode_event_log",
+    "journal_path",
+    "list_runs",
+    "read_events",
+]

@@ -1,0 +1,163 @@
+"""The journal of runs: append-only, in one SQLite file, durable before an effect leaves the engine."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from engine.errors import JournalError
+from engine.event import Event
+from engine.journal.database import JournalDatabase
+from engine.journal.writer import WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
+
+JOURNAL_FILE = "journal.db"
+
+
+def journal_path(place: Path | str) -> Path:
+    """Return the journal file for a directory (`journal.db` in it) or for a path of a file (`*.db`)."""
+    path = Path(place)
+    return path if path.suffix == ".db" and not path.is_dir() else path / JOURNAL_FILE
+
+
+class SqliteRunJournal:
+    """The part of a `Journal` that belongs to one run."""
+
+    def __init__(self, ledger: Ledger, writer: GroupWriter) -> None:
+        self._ledger = ledger
+        self._writer = writer
+        self._queue = writer.queue
+
+    @property
+    def run_id(self) -> str:
+        """The run it belongs to."""
+        return self._ledger.run_id
+
+    @property
+    def epoch(self) -> int:
+        """1 for the engine that began the run, one more for each that resumed it."""
+        return self._ledger.epoch
+
+    def append(self, event: Event) -> None:
+        """Take an event; it is encoded and written by the next commit of any run."""
+        self._ledger.appended += 1
+        self._queue.append((self._ledger, event))
+        if len(self._queue) >= WAKE_AT_EVENTS:
+            self._writer.wake()
+
+    async def commit(self) -> None:
+        """Return once everything appended before is on the disk.
+
+        Raises:
+            JournalError: it could not be written, now or at an earlier commit; the run must stop.
+        """
+        ledger, writer = self._ledger, self._writer
+        if (failure := writer.failure or ledger.failure) is not None:
+            raise _again(failure)
+        if ledger.durable == ledger.appended:
+            return
+        if not writer.threaded:
+            writer.flush()
+            if (failure := writer.failure or ledger.failure) is not None:
+                raise _again(failure)
+            return
+        waiter = Waiter(ledger, asyncio.get_running_loop().create_future())
+        writer.queue.append(waiter)
+        writer.wake()
+        if (failure := writer.failure) is not None:
+            # Closed or broken since the first look: the writer may have told its last waiter already.
+            waiter.future.cancel()
+            raise _again(failure)
+        await waiter.future
+
+
+class Journal:
+    """All runs journaled in one file; open it with `Journal.open`, close it or use `with`."""
+
+    def __init__(self, database: JournalDatabase, writer: GroupWriter) -> None:
+        self.path = database.path
+        self._database = database
+        self._writer = writer
+        self._closed = False
+
+    @classmethod
+    def open(cls, place: Path | str, *, inline: bool = False, busy_timeout_s: float = 5.0) -> Journal:
+        """Open or create the journal in a directory, or at a path that ends in `.db`.
+
+        Args:
+            place: The directory or file.
+            inline: Write on the calling thread inside `commit`, so that a run in virtual time
+                stays deterministic; otherwise one writer thread commits for all runs together.
+            busy_timeout_s: How long to wait for another process that holds the file locked.
+
+        Raises:
+            JournalError: the file cannot be opened.
+        """
+        database = JournalDatabase.open(journal_path(place), busy_timeout_s=busy_timeout_s)
+        writer = GroupWriter(database)
+        if not inline:
+            writer.start()
+        return cls(database, writer)
+
+    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> SqliteRunJournal:
+        """Enter a new run durably (one disk sync, on the calling thread) and return its journal.
+
+        Raises:
+            JournalError: this run exists already, or the journal cannot be written.
+        """
+        self._refuse_unusable()
+        with self._writer.lock:
+            epoch = self._database.insert_run(
+                run_id, behavior=behavior, document=document, started_unix_s=started_unix_s
+            )
+        return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
+
+    def resume(self, run_id: str) -> SqliteRunJournal:
+        """Take over an existing run: from now on the engine that drove it before cannot commit.
+
+        Raises:
+            JournalError: there is no such run, or the journal cannot be written.
+        """
+        self._refuse_unusable()
+        with self._writer.lock:
+            epoch = self._database.take_over_run(run_id)
+        return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
+
+    def close(self) -> None:
+        """Write what is left and release the file; may be called again.
+
+        Raises:
+            JournalError: what was left could not be written and no commit had said so before.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        known = self._writer.failure
+        try:
+            self._writer.stop()
+        finally:
+            self._database.close()
+        failure = self._writer.failure
+        self._writer.failure = failure or JournalError("the journal is closed", where=self.path, hint="open it again")
+        if failure is not None and failure is not known:
+            raise _again(failure)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _refuse_unusable(self) -> None:
+        if self._writer.failure is not None:
+            raise _again(self._writer.failure)
+
+
+def _again(failure: JournalError) -> JournalError:
+    # A fresh object for each raise: one shared exception would collect the tracebacks of all.
+    copy = JournalError(failure.message, where=failure.where, hint=failure.hint)
+    copy.__cause__ = failure.__cause__
+    return copy

@@ -1,0 +1,36 @@
+"""A journal that keeps nothing: for benchmarks and for `--journal none`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from engine.event import Event
+
+
+@dataclass(frozen=True, kw_only=True)
+class NullRunJournal:
+    """Forgets every event at once."""
+
+    run_id: str
+    epoch: int = 1
+
+    def append(self, event: Event) -> None:
+        """Forget the event."""
+
+    async def commit(self) -> None:
+        """Return at once; nothing is durable."""
+
+
+class NullJournal:
+    """Begins and resumes any run and writes nothing."""
+
+    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> NullRunJournal:
+        """Return a journal that forgets."""
+        return NullRunJournal(run_id=run_id)
+
+    def resume(self, run_id: str) -> NullRunJournal:
+        """Return a journal that forgets."""
+        return NullRunJournal(run_id=run_id)
+
+    def close(self) -> None:
+        """Do nothing."""

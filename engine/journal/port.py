@@ -1,0 +1,83 @@
+"""What a run asks of a journal, whichever kind it is."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import msgspec
+
+from engine.event import Event
+
+
+class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """One run as the journal knows it.
+
+    `status` is running, or as `RunEnded` gave it: finished, stopped, errored. A run still
+    `running` after a crash can be resumed. `epoch` counts the engines that have driven it.
+    """
+
+    id: str
+    behavior: str
+    document: str
+    status: str
+    epoch: int
+    started_unix_s: float
+    last_seq: int
+
+
+class RunJournal(Protocol):
+    """The part of a journal that belongs to one run; used on the run's event loop."""
+
+    @property
+    def run_id(self) -> str:
+        """The run it belongs to."""
+        ...
+
+    @property
+    def epoch(self) -> int:
+        """1 for the engine that began the run, one more for each that resumed it."""
+        ...
+
+    def append(self, event: Event) -> None:
+        """Take an event; nothing is written before the next commit. Never fails, never waits.
+
+        The event and what it holds must not be changed afterwards. A `RunEnded` also sets the
+        status of the run.
+        """
+        ...
+
+    async def commit(self) -> None:
+        """Return once everything appended before is on the disk.
+
+        Raises:
+            JournalError: it could not be written, now or at an earlier commit; the run must stop.
+        """
+        ...
+
+
+class JournalPort(Protocol):
+    """Where runs are journaled."""
+
+    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> RunJournal:
+        """Enter a new run durably and return its journal; `document` is the behavior's content hash.
+
+        Raises:
+            JournalError: this run exists already, or the journal cannot be written.
+        """
+        ...
+
+    def resume(self, run_id: str) -> RunJournal:
+        """Take over an existing run: from now on the engine that drove it before cannot commit.
+
+        Raises:
+            JournalError: there is no such run, or the journal cannot be written.
+        """
+        ...
+
+    def close(self) -> None:
+        """Write what is left and release the file; may be called again.
+
+        Raises:
+            JournalError: what was left could not be written and nobody has been told yet.
+        """
+        ...

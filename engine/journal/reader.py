@@ -1,0 +1,72 @@
+"""Reads a journal without writing to it: for timelines, run reports, replay and resuming."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+from engine.errors import JournalError
+from engine.event import AnyEvent
+from engine.journal.codec import decode_event
+from engine.journal.database import journal_fault
+from engine.journal.journal import journal_path
+from engine.journal.port import RunRecord
+from engine.nearness import near_names
+from engine.sqlite_file import read_sqlite
+
+_RUNS = """
+SELECT id, behavior, hash, status, epoch, started,
+       coalesce((SELECT max(seq) FROM event WHERE event.run = run.id), 0) FROM run ORDER BY started, rowid
+"""
+
+
+def list_runs(place: Path | str) -> tuple[RunRecord, ...]:
+    """Return the runs of a journal directory or file, oldest first.
+
+    Raises:
+        JournalError: there is no journal, or it cannot be read.
+    """
+    with _reading(place) as connection:
+        return tuple(
+            RunRecord(
+                id=str(run),
+                behavior=str(behavior),
+                document=str(document),
+                status=str(status),
+                epoch=int(epoch),
+                started_unix_s=float(started),
+                last_seq=int(last),
+            )
+            for run, behavior, document, status, epoch, started, last in connection.execute(_RUNS)
+        )
+
+
+def read_events(place: Path | str, run_id: str) -> tuple[AnyEvent, ...]:
+    """Return the durable events of a run by `seq`; empty when it stored none yet.
+
+    Raises:
+        JournalError: there is no such journal or run, or a stored event is damaged.
+    """
+    with _reading(place) as connection:
+        known = [str(row[0]) for row in connection.execute("SELECT id FROM run ORDER BY started")]
+        if run_id not in known:
+            raise JournalError(f"there is no run {run_id}", where=journal_path(place), hint=near_names(run_id, known))
+        rows = connection.execute("SELECT data FROM event WHERE run = ? ORDER BY seq", (run_id,))
+        return tuple(decode_event(str(row[0])) for row in rows)
+
+
+@contextmanager
+def _reading(place: Path | str) -> Generator[sqlite3.Connection]:
+    path = journal_path(place)
+    if not path.is_file():
+        raise JournalError("there is no journal here", where=path, hint="give the directory given to --journal")
+    try:
+        connection = read_sqlite(path)
+        try:
+            yield connection
+        finally:
+            connection.close()
+    except sqlite3.Error as error:
+        raise journal_fault("cannot be read", path, error) from error

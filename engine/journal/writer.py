@@ -1,0 +1,154 @@
+"""Group commit: everything that waits is written in one transaction, then all who wait are told, in order."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from engine.errors import JournalError
+from engine.event import Event
+from engine.journal.database import JournalDatabase, RunRefused
+
+WAKE_AT_EVENTS = 4096
+"""So many uncommitted events wake the writer by themselves, which bounds the memory they take."""
+
+
+@dataclass(eq=False)
+class Ledger:
+    """How far one run has been written; `failure` is the reason why it never will be again."""
+
+    run_id: str
+    epoch: int
+    appended: int = 0
+    durable: int = 0
+    failure: JournalError | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Waiter:
+    """Somebody on an event loop who wants to know that what `ledger` was given so far is durable."""
+
+    ledger: Ledger
+    future: asyncio.Future[None] = field(repr=False)
+
+    def tell(self, error: JournalError | None) -> None:
+        """Wake the waiting loop; called from the writer thread."""
+        try:
+            self.future.get_loop().call_soon_threadsafe(self._resolve, error)
+        except RuntimeError:
+            # That loop was closed in the meantime: nobody waits there any more.
+            return
+
+    def _resolve(self, error: JournalError | None) -> None:
+        if self.future.done():
+            return
+        if error is None:
+            self.future.set_result(None)
+        else:
+            self.future.set_exception(error)
+
+
+Item = tuple[Ledger, Event] | Waiter
+
+
+class GroupWriter:
+    """Writes what is in its queue; `flush` on the calling thread, or `start` a thread that does.
+
+    Appending to the queue is all that a run pays; encoding happens when the group is written.
+    """
+
+    def __init__(self, database: JournalDatabase) -> None:
+        self.queue: deque[Item] = deque()
+        self.failure: JournalError | None = None
+        self._database = database
+        self._lock = threading.Lock()
+        self._wake = threading.Event()
+        self._closing = False
+        self._thread: threading.Thread | None = None
+
+    @property
+    def lock(self) -> threading.Lock:
+        """Guards the database; hold it to use the connection beside the writer."""
+        return self._lock
+
+    @property
+    def threaded(self) -> bool:
+        """True when a thread of its own writes."""
+        return self._thread is not None
+
+    def start(self) -> None:
+        """Let a thread write from now on."""
+        # A daemon, so that a journal nobody closed cannot keep the process from ending.
+        self._thread = threading.Thread(target=self._serve, name="journal writer", daemon=True)
+        self._thread.start()
+
+    def wake(self) -> None:
+        """Tell the thread that somebody waits."""
+        self._wake.set()
+
+    def stop(self) -> None:
+        """Write what is left and end the thread."""
+        self._closing = True
+        self._wake.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+        self.flush()
+
+    def flush(self) -> None:
+        """Write everything queued now in one group and tell the waiters.
+
+        A failure is kept in `failure` or in its ledger, where every later commit finds it.
+        """
+        with self._lock:
+            items = [self.queue.popleft() for _ in range(len(self.queue))]
+            waiters = [item for item in items if isinstance(item, Waiter)]
+            try:
+                self._write(_by_ledger(items))
+            except Exception as error:
+                # Nobody may be left waiting, whatever broke: every commit, waiting or later, raises it.
+                self.failure = self.failure or _unexpected(error)
+            finally:
+                for waiter in waiters:
+                    waiter.tell(self.failure or waiter.ledger.failure)
+
+    def _serve(self) -> None:
+        while not self._closing:
+            self._wake.wait()
+            self._wake.clear()
+            self.flush()
+
+    def _write(self, groups: dict[Ledger, list[Event]]) -> None:
+        while True:
+            ready = {ledger: events for ledger, events in groups.items() if ledger.failure is None}
+            if not ready or self.failure is not None:
+                return
+            try:
+                self._database.store([(ledger.run_id, ledger.epoch, events) for ledger, events in ready.items()])
+            except RunRefused as error:
+                refused = next(ledger for ledger in ready if ledger.run_id == error.where)
+                refused.failure = JournalError(error.message, where=self._database.path, hint=error.hint)
+                continue
+            except JournalError as error:
+                self.failure = error
+                return
+            for ledger, events in ready.items():
+                ledger.durable += len(events)
+            return
+
+
+def _by_ledger(items: Sequence[Item]) -> dict[Ledger, list[Event]]:
+    groups: dict[Ledger, list[Event]] = {}
+    for item in items:
+        if not isinstance(item, Waiter):
+            groups.setdefault(item[0], []).append(item[1])
+    return groups
+
+
+def _unexpected(error: BaseException) -> JournalError:
+    failure = JournalError(f"the journal writer broke: {type(error).__name__}: {error}", hint="report this defect")
+    failure.__cause__ = error
+    return failure

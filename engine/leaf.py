@@ -1,0 +1,149 @@
+"""A state as a node's work: evaluates parameters, reads inputs, leases, runs, checks, writes outputs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import msgspec
+
+from engine.bus import Holder
+from engine.context import RunningContext
+from engine.document.expression import Template
+from engine.document.signature import StateSignature
+from engine.errors import FlexcellError, StateError, UserdataError
+from engine.event import UserdataWritten
+from engine.execution import Execution
+from engine.nearness import near_names
+from engine.node import Entry
+from engine.state import Outcome, State
+from engine.userdata import Scope
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leaf:
+    """One state of a behavior: its class, its parameters as a template, and how its keys are mapped."""
+
+    state: type[State]
+    signature: StateSignature
+    parameters: Template
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str]
+    position: str
+
+    @property
+    def kind(self) -> str:
+        """The key of this node in documents."""
+        return "state"
+
+    @property
+    def nominal(self) -> frozenset[str]:
+        """The outcomes its class calls success; all of them where it does not say."""
+        return self._nominal
+
+    @cached_property
+    def _nominal(self) -> frozenset[str]:
+        return frozenset(self.state.success or self.state.outcomes)
+
+    @cached_property
+    def _constant(self) -> Entry | None:
+        """The entry where neither parameters nor inputs depend on userdata."""
+        if self.parameters.names or self.signature.inputs:
+            return None
+        given = self.parameters.evaluate({})
+        return Entry(self._instance(given), {}, _plain(given))
+
+    def enter(self, scope: Scope) -> Entry:
+        """Evaluate the parameters and read the inputs."""
+        if self._constant is not None:
+            return self._constant
+        variables = {name: scope.read(name, reader=self.position) for name in self.parameters.names}
+        given = self.parameters.evaluate(variables)
+        inputs: dict[str, object] = dict(self._inputs(scope))
+        return Entry(self._instance(given), inputs, _plain({**_mapping(given), **inputs}))
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Run the state once and write its outputs."""
+        state = entry.state
+        if state is None:
+            raise StateError("entered without a state", where=path)
+        resources = state.resources()
+        holder = Holder(execution.run, path)
+        execution.bus.leases.acquire(resources, holder)
+        try:
+            outcome: Any = await state.run(RunningContext(execution, path, visit), **entry.inputs)
+        except (FlexcellError, asyncio.CancelledError):
+            raise
+        except Exception as error:
+            # A custom state may raise anything; what travels on names the state and its place.
+            raise StateError(
+                f"{self.signature.name} raised {type(error).__name__}: {error}", where=self.position
+            ) from error
+        finally:
+            execution.bus.leases.release(resources, holder)
+        if not isinstance(outcome, Outcome) or outcome.name not in self.state.outcomes:
+            raise self._undeclared_outcome(outcome)
+        self._write(outcome, path, scope, execution)
+        return outcome
+
+    def _instance(self, given: object) -> State:
+        try:
+            return msgspec.convert(given, self.state)
+        except msgspec.ValidationError as error:
+            raise StateError(
+                f"the parameters of {self.signature.name} do not fit: {error}", where=self.position
+            ) from error
+
+    def _inputs(self, scope: Scope) -> Iterator[tuple[str, object]]:
+        for key, declared in self.signature.inputs.items():
+            source = self.inputs.get(key, key)
+            if declared.required or scope.has(source):
+                value = scope.read(source, reader=self.position)
+                try:
+                    yield key, msgspec.convert(value, declared.type)
+                except msgspec.ValidationError as error:
+                    raise UserdataError(
+                        f"userdata key {source!r} does not fit input {key!r} of {self.signature.name}: {error}",
+                        where=self.position,
+                    ) from error
+
+    def _write(self, outcome: Outcome, path: str, scope: Scope, execution: Execution) -> None:
+        for key, value in outcome.outputs.items():
+            if key not in self.signature.outputs:
+                raise UserdataError(
+                    f"{self.signature.name} wrote {key!r}, which it does not declare",
+                    where=self.position,
+                    hint=f"declare it in `outputs`; {near_names(key, self.signature.outputs)}",
+                )
+            target = self.outputs.get(key, key)
+            written_to = scope.write(target, value)
+            recorder = execution.recorder
+            recorder.record(
+                UserdataWritten(
+                    seq=recorder.next_seq(),
+                    time_s=recorder.now_s(),
+                    path=path,
+                    scope=written_to,
+                    key=target,
+                    value=msgspec.to_builtins(value),
+                )
+            )
+
+    def _undeclared_outcome(self, outcome: object) -> StateError:
+        said = f"outcome {outcome.name!r}" if isinstance(outcome, Outcome) else f"a {type(outcome).__name__}"
+        return StateError(
+            f"{self.signature.name} ended with {said}, which it does not declare",
+            where=self.position,
+            hint=f"its outcomes are {', '.join(self.state.outcomes)}",
+        )
+
+
+def _mapping(given: object) -> dict[str, object]:
+    return msgspec.convert(given, dict[str, object])
+
+
+def _plain(value: object) -> dict[str, object]:
+    return msgspec.to_builtins(value)

@@ -1,0 +1,196 @@
+"""The behaviors of a project folder: found, loaded, checked, and read anew when a file changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from engine.check import Finding, check_behavior
+from engine.document import Behavior, Parameter, load_behavior, load_source
+from engine.errors import DocumentError, Position
+from engine.graph import GraphNode, new_graph
+from engine.nearness import near_names
+from engine.plan import Catalogue
+
+_SUFFIXES = (".yaml", ".yml", ".json")
+
+
+class ParameterView(msgspec.Struct, frozen=True, kw_only=True):
+    """One parameter as a form shows it."""
+
+    name: str
+    schema: dict[str, object]
+    required: bool
+
+
+class FindingView(msgspec.Struct, frozen=True, kw_only=True):
+    """One finding with its place in the document."""
+
+    severity: str
+    code: str
+    message: str
+    path: str
+    line: int
+    column: int
+    hint: str
+
+
+class BehaviorView(msgspec.Struct, frozen=True, kw_only=True):
+    """A behavior as the dashboard lists and draws it; `graph` is None when it cannot be read."""
+
+    id: str
+    name: str
+    description: str
+    parameters: tuple[ParameterView, ...] = ()
+    findings: tuple[FindingView, ...] = ()
+    graph: GraphNode | None = None
+    view: dict[str, tuple[float, float]] = {}
+    success: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> int:
+        """Number of findings that prevent a run."""
+        return sum(finding.severity == "error" for finding in self.findings)
+
+    @property
+    def warnings(self) -> int:
+        """Number of findings that do not."""
+        return len(self.findings) - self.errors
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Read:
+    stamps: Mapping[Path, int]
+    view: BehaviorView
+    behavior: Behavior | None
+
+
+class Library:
+    """The behaviors under `project`; ids are paths relative to it with forward slashes."""
+
+    def __init__(self, project: Path, catalogue: Catalogue) -> None:
+        self.catalogue = catalogue
+        self._project = project.resolve()
+        self._read: dict[str, _Read] = {}
+
+    def views(self) -> tuple[BehaviorView, ...]:
+        """Return all behaviors sorted by id; an unreadable one is listed with its error."""
+        return tuple(self._fresh(behavior_id).view for behavior_id in sorted(self._ids()))
+
+    def view(self, behavior_id: str) -> BehaviorView:
+        """Return one behavior.
+
+        Raises:
+            DocumentError: no document of the project has this id.
+        """
+        return self._fresh(self._known(behavior_id)).view
+
+    def behavior(self, behavior_id: str) -> Behavior:
+        """Return one behavior ready to be planned.
+
+        Raises:
+            DocumentError: there is none, or it has errors; the first one is given.
+        """
+        read = self._fresh(self._known(behavior_id))
+        for finding in read.view.findings:
+            if finding.severity == "error":
+                where = Position(file=behavior_id, line=finding.line, column=finding.column)
+                raise DocumentError(finding.message, where=where, hint=finding.hint or None)
+        if read.behavior is None:
+            raise DocumentError("this behavior cannot be read", where=behavior_id)
+        return read.behavior
+
+    def _known(self, behavior_id: str) -> str:
+        known = set(self._ids())
+        if behavior_id not in known:
+            raise DocumentError(f"there is no behavior {behavior_id!r}", hint=near_names(behavior_id, known))
+        return behavior_id
+
+    def _ids(self) -> Iterator[str]:
+        for file in (self._project / "behaviors").rglob("*"):
+            if file.suffix in _SUFFIXES and file.is_file() and file.resolve().is_relative_to(self._project):
+                behavior_id = file.relative_to(self._project).as_posix()
+                if not self._is_other(behavior_id):
+                    yield behavior_id
+
+    def _is_other(self, behavior_id: str) -> bool:
+        """Tell cells and entries from behaviors; what cannot be read counts as a behavior with an error."""
+        return not self._fresh(behavior_id).view.id
+
+    def _fresh(self, behavior_id: str) -> _Read:
+        read = self._read.get(behavior_id)
+        if read is None or any(_stamp(file) != stamp for file, stamp in read.stamps.items()):
+            read = self._read[behavior_id] = self._load(behavior_id)
+        return read
+
+    def _load(self, behavior_id: str) -> _Read:
+        file = self._project / behavior_id
+        stamps = {file: _stamp(file)}
+        try:
+            data = load_source(file).data
+            if isinstance(data, dict) and "root" not in data:
+                return _Read(stamps=stamps, view=BehaviorView(id="", name="", description=""), behavior=None)
+            behavior = load_behavior(file)
+        except DocumentError as error:
+            return _Read(stamps=stamps, view=_unreadable(behavior_id, error), behavior=None)
+        findings = check_behavior(behavior, self.catalogue)
+        stamps |= {inner.file: _stamp(inner.file) for inner in _all_references(behavior)}
+        return _Read(stamps=stamps, view=self._view(behavior_id, behavior, findings), behavior=behavior)
+
+    def _view(self, behavior_id: str, behavior: Behavior, findings: tuple[Finding, ...]) -> BehaviorView:
+        return BehaviorView(
+            id=behavior_id,
+            name=behavior.name,
+            description=behavior.document.description,
+            parameters=tuple(_parameter(name, parameter) for name, parameter in behavior.parameters.items()),
+            findings=tuple(sorted(map(_finding, findings), key=lambda finding: (finding.line, finding.column))),
+            graph=new_graph(behavior, self.catalogue),
+            view=behavior.document.view,
+            success=behavior.success,
+        )
+
+
+def _all_references(behavior: Behavior) -> Iterator[Behavior]:
+    for target in behavior.references.values():
+        yield target
+        yield from _all_references(target)
+
+
+def _stamp(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except OSError:
+        return 0  # a file that has gone is a change like any other
+
+
+def _parameter(name: str, parameter: Parameter) -> ParameterView:
+    return ParameterView(name=name, schema=parameter.json_schema(), required=parameter.required)
+
+
+def _finding(finding: Finding) -> FindingView:
+    return FindingView(
+        severity=finding.severity,
+        code=finding.code,
+        message=finding.message,
+        path=finding.path,
+        line=finding.position.line,
+        column=finding.position.column,
+        hint=finding.hint or "",
+    )
+
+
+def _unreadable(behavior_id: str, error: DocumentError) -> BehaviorView:
+    line, column = (error.where.line, error.where.column) if isinstance(error.where, Position) else (1, 1)
+    finding = FindingView(
+        severity="error",
+        code="invalid-document",
+        message=error.message,
+        path="",
+        line=line,
+        column=column,
+        hint=error.hint or "",
+    )
+    return BehaviorView(id=behavior_id, name=Path(behavior_id).name, description="", findings=(finding,))

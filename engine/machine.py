@@ -1,0 +1,118 @@
+"""The state machine container: one child at a time, transitions from outcome to target."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from engine.errors import StateError
+from engine.event import Cause, Transitioned
+from engine.execution import Execution
+from engine.nearness import near_names
+from engine.node import NOTHING, Entry, Left, Node, explain
+from engine.state import Outcome
+from engine.userdata import Scope
+
+_FAIRNESS = 256
+
+
+@dataclass(frozen=True, kw_only=True)
+class Machine:
+    """Children by name in document order, of which `initial` runs first."""
+
+    initial: str
+    children: Mapping[str, Node]
+    userdata: Mapping[str, object] = field(default_factory=dict[str, object])
+
+    @property
+    def kind(self) -> str:
+        """The key of this container in documents."""
+        return "machine"
+
+    @property
+    def nominal(self) -> frozenset[str]:
+        """Outcomes reached from the initial child while every child ends nominally."""
+        return self._nominal
+
+    @cached_property
+    def _nominal(self) -> frozenset[str]:
+        reached: set[str] = set()
+        due = [self.initial]
+        while due:
+            name = due.pop()
+            if name in reached:
+                continue
+            reached.add(name)
+            child = self.children.get(name)
+            if child is not None:
+                due += [t for outcome, t in child.transitions.items() if outcome in child.work.nominal]
+        return frozenset(reached - set(self.children))
+
+    def enter(self, scope: Scope) -> Entry:
+        """Nothing is evaluated: the children evaluate theirs."""
+        return NOTHING
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Run children until a transition names an outcome of this machine."""
+        inner = Scope(path, self.userdata, scope)
+        name = self.initial
+        went_wrong: Cause | None = None
+        instants = 0
+        waits = execution.waits
+        while True:
+            child = self.children[name]
+            left = await child.perform(inner, execution)
+            if left.cause is not None or (left.outcome and left.outcome not in child.work.nominal):
+                went_wrong = explain(child, left)
+            target = self._target(child, left)
+            self._record(execution, path, name, left.outcome, target)
+            if target not in self.children:
+                return Outcome(target, cause=None if target in self.nominal else went_wrong)
+            instants = instants + 1 if execution.waits == waits else 0
+            waits = execution.waits
+            if instants and instants % _FAIRNESS == 0:
+                await asyncio.sleep(0)
+                if instants >= execution.instant_limit:
+                    raise self._endless(path, target, instants)
+            name = target
+
+    def _target(self, child: Node, left: Left) -> str:
+        if left.target is not None:
+            return left.target
+        target = child.transitions.get(left.outcome)
+        if target is None:
+            raise StateError(
+                f"outcome {left.outcome!r} leads nowhere",
+                where=child.position or child.path,
+                hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
+            )
+        return target
+
+    def _record(self, execution: Execution, path: str, source: str, outcome: str, target: str) -> None:
+        recorder = execution.recorder
+        recorder.record(
+            Transitioned(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=path,
+                source=source,
+                outcome=outcome,
+                target=target,
+            )
+        )
+
+    def _endless(self, path: str, name: str, instants: int) -> StateError:
+        """Name the loop by following the transitions that can be followed again."""
+        loop = [name]
+        while True:
+            targets = [t for t in self.children[loop[-1]].transitions.values() if t in self.children]
+            if not targets or targets[0] in loop:
+                break
+            loop.append(targets[0])
+        return StateError(
+            f"{instants} transitions in a row without waiting for anything, through {' → '.join(loop)}",
+            where=path,
+            hint="let one of these states wait for something, or leave the loop",
+        )

@@ -1,0 +1,230 @@
+"""A node of an executable behavior: enters its work, applies timeout, retry and on_error, exits.
+
+The same wrapper surrounds a single state and a whole container; what differs is its `Work`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from engine.cause import cause_of, describe, under
+from engine.errors import FlexcellError, JournalError
+from engine.event import Cause, Entered, Exited, Logged, Retried
+from engine.execution import Execution
+from engine.state import Outcome, State
+from engine.userdata import Scope
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timeout:
+    """Preempt the node after `after_s` and go to `target`."""
+
+    after_s: float
+    target: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Retry:
+    """Run the node up to `times` more, waiting `backoff_s` doubled each time, on these outcomes or errors."""
+
+    times: int
+    backoff_s: float = 0.0
+    outcomes: tuple[str, ...] = ()
+    errors: bool = True
+
+
+@dataclass(frozen=True)
+class Left:
+    """How a node was left: with an outcome, or straight to a target (timeout, on_error)."""
+
+    outcome: str
+    target: str | None = None
+    cause: Cause | None = None
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a node was entered with: the state to run, its input values, and both as plain data."""
+
+    state: State | None = None
+    inputs: Mapping[str, object] = field(default_factory=dict[str, object])
+    shown: dict[str, object] = field(default_factory=dict[str, object])
+
+
+NOTHING = Entry()
+
+
+class Work(Protocol):
+    """What a node does between entering and leaving."""
+
+    @property
+    def kind(self) -> str:
+        """state, machine, concurrency or behavior."""
+        ...
+
+    @property
+    def nominal(self) -> frozenset[str]:
+        """The outcomes that mean that nothing went wrong inside."""
+        ...
+
+    def enter(self, scope: Scope) -> Entry:
+        """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
+        ...
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Do it."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Node:
+    """One node with its wiring inside the enclosing container."""
+
+    path: str
+    name: str
+    work: Work
+    transitions: Mapping[str, str] = field(default_factory=dict[str, str])
+    timeout: Timeout | None = None
+    retry: Retry | None = None
+    on_error: str | None = None
+    position: str = ""
+
+    async def perform(self, scope: Scope, execution: Execution) -> Left:
+        """Run the node to its end, whatever that is.
+
+        Raises:
+            FlexcellError: the work raised, retries are used up and `on_error` is not set.
+            CancelledError: the node was preempted; its clean-up is done.
+        """
+        if self.timeout is None and self.retry is None and self.on_error is None:
+            outcome = await self._attempt(scope, execution)
+            return Left(outcome.name, None, outcome.cause)
+        return await self._guarded(scope, execution)
+
+    async def _guarded(self, scope: Scope, execution: Execution) -> Left:
+        try:
+            if self.timeout is None:
+                return await self._retried(scope, execution)
+            return await self._timed(self.timeout, scope, execution)
+        except JournalError:
+            raise
+        except FlexcellError as error:
+            if self.on_error is None:
+                raise
+            return Left("", self.on_error, cause_of(error))
+
+    async def _timed(self, timeout: Timeout, scope: Scope, execution: Execution) -> Left:
+        limit = asyncio.timeout(timeout.after_s)
+        try:
+            async with limit:
+                return await self._retried(scope, execution)
+        except TimeoutError:
+            if not limit.expired():
+                raise
+            cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
+            return Left("", timeout.target, cause)
+
+    async def _retried(self, scope: Scope, execution: Execution) -> Left:
+        retry = self.retry
+        attempt = 1
+        while True:
+            again: Cause | None
+            try:
+                outcome = await self._attempt(scope, execution)
+                left = Left(outcome.name, None, outcome.cause)
+                if retry is None or outcome.name not in retry.outcomes or attempt > retry.times:
+                    return left
+                again = under(f"outcome {outcome.name}", outcome.cause, where=self.path)
+            except JournalError:
+                raise
+            except FlexcellError as error:
+                if retry is None or not retry.errors or attempt > retry.times:
+                    raise
+                again = cause_of(error)
+            attempt += 1
+            wait_s = retry.backoff_s * 2 ** (attempt - 2)
+            recorder = execution.recorder
+            recorder.record(
+                Retried(
+                    seq=recorder.next_seq(),
+                    time_s=recorder.now_s(),
+                    path=self.path,
+                    attempt=attempt,
+                    wait_s=wait_s,
+                    cause=again,
+                )
+            )
+            if wait_s > 0:
+                execution.waits += 1
+                await execution.clock.sleep(wait_s)
+
+    async def _attempt(self, scope: Scope, execution: Execution) -> Outcome:
+        recorder = execution.recorder
+        path = self.path
+        visit = execution.visit(path)
+        entry, refused = self._entered(scope)
+        recorder.record(
+            Entered(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=path,
+                visit=visit,
+                kind=self.work.kind,
+                inputs=entry.shown,
+            )
+        )
+        try:
+            if refused is not None:
+                raise refused
+            outcome = await self.work.run(entry, path, visit, scope, execution)
+        except asyncio.CancelledError:
+            self._record_exit(execution, visit, "", preempted=True)
+            raise
+        except Exception as error:
+            self._record_exit(execution, visit, "", cause=cause_of(error))
+            raise
+        self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
+        return outcome
+
+    def _entered(self, scope: Scope) -> tuple[Entry, FlexcellError | None]:
+        """Evaluate the entry; a failure counts as a failure of the node that was entered."""
+        try:
+            return self.work.enter(scope), None
+        except FlexcellError as error:
+            return NOTHING, error
+
+    def _record_exit(
+        self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
+    ) -> None:
+        recorder = execution.recorder
+        recorder.record(
+            Exited(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=self.path,
+                visit=visit,
+                outcome=outcome,
+                preempted=preempted,
+                cause=cause,
+            )
+        )
+
+
+def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
+    """Write a line into the event log of the run."""
+    recorder = execution.recorder
+    recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=message))
+
+
+def explain(child: Node, left: Left) -> Cause:
+    """Return why a container failed through this child."""
+    said = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
+    return under(said, left.cause, where=child.path)
+
+
+def summary(cause: Cause | None) -> str:
+    """Return a chain as one line, empty for none."""
+    return describe(cause) if cause is not None else ""

@@ -1,0 +1,152 @@
+"""A behavior made executable: every name resolved, every expression compiled, every path known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from engine import concurrency, machine
+from engine.document import behavior as document
+from engine.document.expression import compile_template
+from engine.document.parameter import Parameter, bind_parameters
+from engine.document.signature import read_signature
+from engine.errors import DocumentError
+from engine.leaf import Leaf
+from engine.nearness import near_names
+from engine.node import Node, Retry, Timeout, Work
+from engine.reference import Reference
+from engine.registry import state_by_path
+from engine.state import State
+
+Catalogue = Mapping[str, type[State]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """What a run executes; holds no run's state, so any number of runs may share it."""
+
+    name: str
+    document_hash: str
+    root: Node
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+    parameters: Mapping[str, Parameter]
+    userdata: Mapping[str, object]
+
+    def checked_parameters(self, given: Mapping[str, object]) -> dict[str, object]:
+        """Return a value for every parameter.
+
+        Raises:
+            DocumentError: an unknown, missing or unacceptable one.
+        """
+        return bind_parameters(self.parameters, given, where=self.name)
+
+    def checked_inputs(self, given: Mapping[str, object]) -> dict[str, object]:
+        """Return initial userdata values given for a run.
+
+        Raises:
+            DocumentError: the behavior does not declare such a key.
+        """
+        for key in given:
+            if key not in self.userdata:
+                raise DocumentError(
+                    f"there is no userdata key {key!r}", where=self.name, hint=near_names(key, self.userdata)
+                )
+        return dict(given)
+
+
+def new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str = "root") -> Plan:
+    """Make a behavior executable; `path` is that of its root node.
+
+    Raises:
+        DocumentError: a state is unknown, or an expression does not compile; `where` is the position.
+    """
+    return Plan(
+        name=behavior.name,
+        document_hash=behavior.meaning,
+        root=_Planner(behavior, catalogue, path).node("root", "root", behavior.root),
+        outcomes=behavior.outcomes,
+        success=behavior.success,
+        parameters=behavior.parameters,
+        userdata=behavior.document.userdata,
+    )
+
+
+@dataclass(frozen=True)
+class _Planner:
+    behavior: document.Behavior
+    catalogue: Catalogue
+    base: str
+
+    def node(self, name: str, inside: str, node: document.Node) -> Node:
+        """Plan one node; `inside` is its path in its own document."""
+        makers: dict[str, Callable[[str, document.Node], Work]] = {
+            "state": self._leaf,
+            "machine": self._machine,
+            "concurrency": self._concurrency,
+            "behavior": self._reference,
+        }
+        return Node(
+            path=self.base + inside.removeprefix("root"),
+            name=name,
+            work=makers[node.kind](inside, node),
+            transitions=node.transitions,
+            timeout=Timeout(after_s=node.timeout.after_s, target=node.timeout.to) if node.timeout else None,
+            retry=_retry(node.retry) if node.retry else None,
+            on_error=node.on_error,
+            position=str(self.behavior.position(inside)),
+        )
+
+    def _children(self, inside: str, node: document.Node) -> dict[str, Node]:
+        return {name: self.node(name, f"{inside}/{name}", child) for name, child in node.children.items()}
+
+    def _machine(self, inside: str, node: document.Node) -> Work:
+        initial = node.machine.initial if node.machine else ""
+        return machine.Machine(initial=initial, children=self._children(inside, node), userdata=node.userdata)
+
+    def _concurrency(self, inside: str, node: document.Node) -> Work:
+        container = node.concurrency
+        rules = container.rules if container else ()
+        return concurrency.Concurrency(
+            children=self._children(inside, node),
+            conditions=tuple(concurrency.Condition(outcome=rule.outcome, when=rule.when) for rule in rules),
+            otherwise=container.otherwise if container else None,
+            userdata=node.userdata,
+        )
+
+    def _leaf(self, inside: str, node: document.Node) -> Work:
+        state = self._state(inside, node.state or "")
+        return Leaf(
+            state=state,
+            signature=read_signature(state),
+            parameters=compile_template(node.parameters),
+            inputs=node.inputs,
+            outputs=node.outputs,
+            position=str(self.behavior.position(inside)),
+        )
+
+    def _state(self, inside: str, name: str) -> type[State]:
+        if name in self.catalogue:
+            return self.catalogue[name]
+        if ":" in name:
+            return state_by_path(name)
+        raise DocumentError(
+            f"there is no state `{name}`",
+            where=self.behavior.position(inside, "state"),
+            hint=near_names(name, self.catalogue),
+        )
+
+    def _reference(self, inside: str, node: document.Node) -> Work:
+        target = self.behavior.references[node.behavior or ""]
+        below = self.base + inside.removeprefix("root")
+        return Reference(
+            target=new_plan(target, self.catalogue, path=f"{below}/root"),
+            parameters=compile_template(node.parameters),
+            inputs=node.inputs,
+            outputs=node.outputs,
+            position=str(self.behavior.position(inside)),
+        )
+
+
+def _retry(retry: document.Retry) -> Retry:
+    return Retry(times=retry.times, backoff_s=retry.backoff_s, outcomes=retry.outcomes, errors=retry.errors)

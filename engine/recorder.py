@@ -1,0 +1,82 @@
+"""Records the events of one run: numbers them, journals them, hands them to those who watch."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Protocol
+
+from engine.clock import Clock
+from engine.event import Event
+
+Watcher = Callable[[Event], None]
+_log = logging.getLogger("flexcell.run")
+
+
+class EventSink(Protocol):
+    """Where events are kept durably; the journal is one."""
+
+    def append(self, event: Event) -> None:
+        """Take an event; cheap, not yet durable."""
+        ...
+
+    async def commit(self) -> None:
+        """Return when everything appended before is durable.
+
+        Raises:
+            JournalError: it cannot be written; the run must stop.
+        """
+        ...
+
+
+class MemorySink:
+    """Keeps nothing durably; for runs that nobody wants to resume."""
+
+    def append(self, event: Event) -> None:
+        """Forget the event."""
+
+    async def commit(self) -> None:
+        """Return at once."""
+
+
+class Recorder:
+    """Numbers and hands on the events of one run, on the loop thread."""
+
+    def __init__(self, clock: Clock, sink: EventSink) -> None:
+        self._clock = clock
+        self._sink = sink
+        self._start_s = clock.now_s()
+        self._watchers: tuple[Watcher, ...] = ()
+        self._seq = 0
+
+    def now_s(self) -> float:
+        """Seconds since the run began, to the microsecond so that equal instants print equally."""
+        return round(self._clock.now_s() - self._start_s, 6)
+
+    def next_seq(self) -> int:
+        """Return the number of the next event."""
+        self._seq += 1
+        return self._seq
+
+    def record(self, event: Event) -> None:
+        """Take an event made with `next_seq` and `now_s`."""
+        self._sink.append(event)
+        for watcher in self._watchers:
+            try:
+                watcher(event)
+            except Exception:
+                # A viewer may fail in any way; the run it watches must go on.
+                _log.exception("a watcher of the run failed and was removed")
+                self.unwatch(watcher)
+
+    def watch(self, watcher: Watcher) -> None:
+        """Call `watcher` with every event from now on."""
+        self._watchers = (*self._watchers, watcher)
+
+    def unwatch(self, watcher: Watcher) -> None:
+        """Stop calling it."""
+        self._watchers = tuple(w for w in self._watchers if w is not watcher)
+
+    async def commit(self) -> None:
+        """Make what was recorded durable; due before any effect leaves the engine."""
+        await self._sink.commit()

@@ -1,0 +1,81 @@
+"""A behavior reference as a node's work: another behavior with parameters and keys of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import msgspec
+
+from engine.document.expression import Template
+from engine.execution import Execution
+from engine.node import Entry, Node, explain
+from engine.state import Outcome
+from engine.userdata import Scope
+
+
+class Referred(Protocol):
+    """The executable form of the behavior that is referred to."""
+
+    @property
+    def root(self) -> Node:
+        """Its outermost node, with paths below the reference."""
+        ...
+
+    @property
+    def outcomes(self) -> tuple[str, ...]:
+        """How it can end."""
+        ...
+
+    @property
+    def success(self) -> tuple[str, ...]:
+        """The outcomes that mean success."""
+        ...
+
+    @property
+    def userdata(self) -> Mapping[str, object]:
+        """Initial values of its own scope."""
+        ...
+
+    def checked_parameters(self, given: Mapping[str, object]) -> dict[str, object]:
+        """Values for all its parameters; raises DocumentError."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reference:
+    """Runs `target` in a scope that only `inputs` and `outputs` connect with the outside."""
+
+    target: Referred
+    parameters: Template
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str]
+    position: str
+
+    @property
+    def kind(self) -> str:
+        """The key of this node in documents."""
+        return "behavior"
+
+    @property
+    def nominal(self) -> frozenset[str]:
+        """The outcomes its document calls success; all of them where it does not say."""
+        return frozenset(self.target.success or self.target.outcomes)
+
+    def enter(self, scope: Scope) -> Entry:
+        """Evaluate its parameters and read what flows in."""
+        variables = {name: scope.read(name, reader=self.position) for name in self.parameters.names}
+        given = msgspec.convert(self.parameters.evaluate(variables), dict[str, object])
+        inputs = {inner: scope.read(outer, reader=self.position) for inner, outer in self.inputs.items()}
+        values = {**self.target.checked_parameters(given), **inputs}
+        return Entry(None, values, msgspec.to_builtins(values))
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Run the other behavior to one of its outcomes and copy out what `outputs` names."""
+        inner = Scope(path, {**self.target.userdata, **entry.inputs})
+        left = await self.target.root.perform(inner, execution)
+        name = left.target or left.outcome
+        for key, outer in self.outputs.items():
+            scope.write(outer, inner.read(key, reader=self.position))
+        return Outcome(name, cause=None if name in self.nominal else explain(self.target.root, left))

@@ -1,0 +1,73 @@
+"""The contract of everything a cell connects: robots, grippers, tools, equipment modules, worlds.
+
+A driver, simulated or real, is a plain class with these members. States never see it: they
+meet its skills on the bus under `name`. It belongs to the cell's event loop; whatever threads
+or processes it needs are its own and end in `__aexit__`.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from types import TracebackType
+from typing import Protocol, Self, runtime_checkable
+
+from engine.bus import SkillBus
+
+
+class DeviceStatus(Enum):
+    """Where a device stands between unplugged and moving."""
+
+    DISCONNECTED = "disconnected"
+    CONNECTED = "connected"
+    READY = "ready"
+    MOVING = "moving"
+    STOPPED = "stopped"
+    FAULT = "fault"
+
+
+@runtime_checkable
+class Robot(Protocol):
+    """A device that connects, answers skills, stops and closes."""
+
+    @property
+    def name(self) -> str:
+        """The bus namespace of its skills and the resource that a run leases."""
+        ...
+
+    @property
+    def status(self) -> DeviceStatus:
+        """Where it stands now."""
+        ...
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise its skills and publish its description under `name`."""
+        ...
+
+    async def stop(self) -> None:
+        """Decelerate to standstill and return when measured at rest.
+
+        Raises:
+            RobotError: standstill could not be confirmed.
+        """
+        ...
+
+    async def __aenter__(self) -> Self:
+        """Connect; raises RobotError with the device's address and what to check."""
+        ...
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Come to rest and disconnect."""
+        ...
+
+
+class World(Robot, Protocol):
+    """Simulated surroundings: makes the simulated robots and publishes scene, frames and parts.
+
+    On a `VirtualLoop` it attaches itself to the loop while it is open and is stepped by it.
+    """
+
+    def robots(self) -> tuple[Robot, ...]:
+        """The simulated robots and grippers that live in this world, not yet connected."""
+        ...

@@ -1,0 +1,13 @@
+"""Names runs: by behavior and wall time, with a random end so that two are never the same."""
+
+from __future__ import annotations
+
+import re
+import secrets
+from datetime import UTC, datetime
+
+
+def new_run_id(behavior: str) -> str:
+    """Return a name such as `two_arm_transfer-20260401-101530-3fa2`, safe in paths and URLs."""
+    word = re.sub(r"[^A-Za-z0-9]+", "_", behavior).strip("_")[:48] or "run"
+    return f"{word}-{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(2)}"

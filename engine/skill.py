@@ -1,0 +1,55 @@
+"""A skill is a frozen, typed request whose result type travels with it.
+
+`class Move(Action[Reached, Progress])` declares the goal, the result and the feedback of an
+action in one place; `class Read(Service[Entry])` declares a request and its answer. The bus
+address of a skill is `<namespace>/<skill_name>`.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, ClassVar, Generic, TypeVar, get_args, get_origin
+
+import msgspec
+
+R = TypeVar("R")
+F = TypeVar("F")
+
+
+class Skill(msgspec.Struct, Generic[R], frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Root of services and actions; subclass `Service` or `Action`."""
+
+    @classmethod
+    def skill_name(cls) -> str:
+        """Return the last part of the bus address: the class name in snake case."""
+        return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", cls.__name__).lower()
+
+    @classmethod
+    def result_type(cls) -> Any:
+        """Return the type that answers this skill."""
+        return _type_arguments(cls)[0]
+
+
+class Service(Skill[R], Generic[R], frozen=True, kw_only=True):
+    """A request that is answered once and at once."""
+
+
+class Action(Skill[R], Generic[R, F], frozen=True, kw_only=True):
+    """A goal that takes time: accepted or rejected, gives feedback, can be held and cancelled."""
+
+    holdable: ClassVar[bool] = True
+
+    @classmethod
+    def feedback_type(cls) -> Any:
+        """Return the type of the feedback messages."""
+        return _type_arguments(cls)[1]
+
+
+def _type_arguments(cls: type[Any]) -> tuple[Any, ...]:
+    for ancestor in cls.__mro__:
+        for base in getattr(ancestor, "__orig_bases__", ()):
+            if get_origin(base) in (Service, Action):
+                arguments = get_args(base)
+                if not any(isinstance(a, TypeVar) for a in arguments):
+                    return arguments
+    raise TypeError(f"{cls.__name__} must derive from Service[Result] or Action[Result, Feedback]")

@@ -1,0 +1,62 @@
+"""Skills of a parallel gripper, answered under `<arm>/gripper` (RCY 4.1)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+
+from engine.messages import GripperState, Message
+from engine.skill import Action, Service
+
+Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the pads in metres")]
+FingerSpeed = Annotated[float, msgspec.Meta(gt=0.0, description="Speed of the opening in metres per second")]
+
+
+class GripperFeedback(Message, frozen=True, kw_only=True):
+    """The measured opening on the way."""
+
+    width_m: float
+
+
+class GraspResult(Message, frozen=True, kw_only=True):
+    """What the fingers hold, judged from pad contact and from where they stopped.
+
+    `reason` says in words why nothing is held; it is empty when `held`.
+    """
+
+    held: bool
+    width_m: float
+    force_n: float
+    reason: str = ""
+
+
+class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
+    """Open fully."""
+
+    speed_m_s: FingerSpeed = 0.1
+
+
+class GripperMove(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
+    """Move the fingers to an opening, holding nothing."""
+
+    width_m: Width
+    speed_m_s: FingerSpeed = 0.1
+
+
+class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):
+    """Close until the fingers stop and press with `force_n`.
+
+    Succeeds as an action whether or not something is held; `GraspResult.held` tells. Held means
+    that both pads touch and the final opening lies within `width_m` -/+ the tolerances.
+    """
+
+    width_m: Width
+    force_n: Annotated[float, msgspec.Meta(gt=0.0, le=140.0, description="Grasp force in newton")] = 20.0
+    speed_m_s: FingerSpeed = 0.05
+    tolerance_inner_m: float = 0.01
+    tolerance_outer_m: float = 0.01
+
+
+class ReadGripper(Service[GripperState], frozen=True, kw_only=True):
+    """Return the measured state of the gripper now."""

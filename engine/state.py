@@ -1,0 +1,114 @@
+"""A state is one step of a behavior: a frozen set of typed parameters and a coroutine.
+
+    class Wait(State, frozen=True, kw_only=True):
+        '''Let time pass.'''
+
+        state_name: ClassVar[str] = "flow.Wait"
+        outcomes: ClassVar[tuple[str, ...]] = ("done",)
+        duration_s: Annotated[float, Meta(ge=0, description="How long", extra_json_schema={"unit": "s"})]
+
+        async def run(self, ctx: Context) -> Outcome:
+            await ctx.clock.sleep(self.duration_s)
+            return Outcome("done")
+
+Fields are the parameters (`with:`). Keyword-only arguments of `run` after `ctx` are the input keys
+(`in:`) with their types and defaults. Keys of `outputs` are the output keys (`out:`). Being
+preempted is being cancelled: clean up in `try/finally` and let CancelledError pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine, Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
+
+import msgspec
+
+from engine.clock import Clock
+from engine.event import Cause
+from engine.skill import Action, Service
+
+R = TypeVar("R")
+F = TypeVar("F")
+S = TypeVar("S", bound=msgspec.Struct)
+
+_NO_OUTPUT: Mapping[str, object] = {}
+
+
+class Outcome(msgspec.Struct, frozen=True):
+    """How a state ended: a declared outcome name, its output keys, and why where it went wrong."""
+
+    name: str
+    outputs: Mapping[str, object] = _NO_OUTPUT
+    cause: Cause | None = None
+
+
+@dataclass(frozen=True)
+class ActionEnd(Generic[R]):
+    """How an action goal ended: `status` succeeded, canceled, aborted or rejected."""
+
+    status: str
+    result: R | None
+    cause: Cause | None
+
+
+class Context(Protocol):
+    """What a running state may touch; nothing else is passed to it."""
+
+    @property
+    def clock(self) -> Clock:
+        """The run's time; the only one a state may ask."""
+        ...
+
+    @property
+    def path(self) -> str:
+        """Where this state stands in its behavior, `root/approach/left`."""
+        ...
+
+    async def call(self, request: Service[R], *, to: str) -> R:
+        """Ask the service `<to>/<skill_name>`; raises SkillFailed or NoSuchSkill."""
+        ...
+
+    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+        """Send a goal to `<to>/<skill_name>` and wait for its end.
+
+        A preempted state cancels the goal and waits until the device confirms rest before
+        CancelledError goes on. Pausing the run holds the goal.
+        """
+        ...
+
+    async def latest(self, topic: str, kind: type[S]) -> S:
+        """Return the newest message of a topic, waiting for the first one."""
+        ...
+
+    async def next_message(self, topic: str, kind: type[S]) -> S:
+        """Wait for the next message of a topic."""
+        ...
+
+    def log(self, message: str, *, level: str = "info") -> None:
+        """Write a line into the run's event log."""
+        ...
+
+    def random(self) -> float:
+        """A number in [0, 1) from the run's seed."""
+        ...
+
+
+class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """One step. Subclasses give `state_name`, `outcomes`, parameters as fields, and `run`."""
+
+    state_name: ClassVar[str] = ""
+    outcomes: ClassVar[tuple[str, ...]] = ()
+    outputs: ClassVar[Mapping[str, Any]] = _NO_OUTPUT
+    """Output key → type."""
+    success: ClassVar[tuple[str, ...]] = ()
+    """Outcomes that mean SUCCESS to a behavior tree; the others mean FAILURE."""
+    resume: ClassVar[str] = "rerun"
+    """What to do after a crash in mid-state: rerun, ask, or an outcome."""
+
+    def resources(self) -> tuple[str, ...]:
+        """Names of the robots and devices this state commands; leased while it runs."""
+        return ()
+
+    run: ClassVar[Callable[..., Coroutine[Any, Any, Outcome]]]
+    """Do the step: subclasses write `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""

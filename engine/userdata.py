@@ -1,0 +1,98 @@
+"""Userdata: the values that states of one container share, scoped like the containers are nested.
+
+A read looks outward from the innermost container; a write goes to the nearest scope that has
+the key, else it makes the key in the innermost one. A branch of a concurrency container writes
+into a scope of its own that is merged, in document order, when the container finishes. A
+behavior reference is a wall: only what `in` and `out` name passes.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+
+import msgspec
+
+from engine.errors import UserdataError
+from engine.nearness import near_names
+
+_MISSING = object()
+_IMMUTABLE = (str, int, float, bool, bytes, type(None))
+
+
+class Scope:
+    """The values of one container while it is active."""
+
+    __slots__ = ("_isolated", "_values", "parent", "path")
+
+    def __init__(
+        self, path: str, values: Mapping[str, object], parent: Scope | None = None, *, isolated: bool = False
+    ) -> None:
+        self.path = path
+        self.parent = parent
+        self._values = dict(values)
+        self._isolated = isolated
+
+    def read(self, key: str, *, reader: str) -> object:
+        """Return a value that the reader may change without changing the container's.
+
+        Raises:
+            UserdataError: no scope from here outward has the key; names the reader.
+        """
+        value = self._find(key)
+        if value is _MISSING:
+            raise UserdataError(
+                f"userdata key {key!r} is read but not defined here", where=reader, hint=near_names(key, self.keys())
+            )
+        return detached(value)
+
+    def has(self, key: str) -> bool:
+        """Tell whether a read of `key` would succeed."""
+        return self._find(key) is not _MISSING
+
+    def write(self, key: str, value: object) -> str:
+        """Set a value where the key lives and return the path of that scope."""
+        scope = self._owner(key) or self
+        scope._values[key] = detached(value)
+        return scope.path
+
+    def keys(self) -> Iterator[str]:
+        """Go through all keys that can be read from here."""
+        scope: Scope | None = self
+        while scope is not None:
+            yield from scope._values
+            scope = scope.parent
+
+    def own_values(self) -> dict[str, object]:
+        """Return the values of this scope alone, in order of first writing."""
+        return dict(self._values)
+
+    def visible(self) -> dict[str, object]:
+        """Return everything that can be read from here, inner values hiding outer ones."""
+        outer = self.parent.visible() if self.parent is not None else {}
+        return {**outer, **self._values}
+
+    def _find(self, key: str) -> object:
+        scope: Scope | None = self
+        while scope is not None:
+            if key in scope._values:
+                return scope._values[key]
+            scope = scope.parent
+        return _MISSING
+
+    def _owner(self, key: str) -> Scope | None:
+        scope: Scope | None = self
+        while scope is not None:
+            if key in scope._values or scope._isolated:
+                return scope
+            scope = scope.parent
+        return None
+
+
+def detached(value: object) -> object:
+    """Return `value` itself when nobody can change it, else a deep copy."""
+    if isinstance(value, _IMMUTABLE):
+        return value
+    if isinstance(value, msgspec.Struct) and value.__struct_config__.frozen:
+        return value
+    return copy.deepcopy(value)

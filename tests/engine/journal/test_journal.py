@@ -1,0 +1,277 @@
+"""A journal keeps what it acknowledged, in order, for all runs, and fails loudly and for good."""
+
+from __future__ import annotations
+
+import asyncio
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from engine.errors import JournalError
+from engine.event import Logged, RunEnded
+from engine.journal import Journal, JournalPort, NullJournal, RunJournal, RunRecord, list_runs, read_events
+
+BOTH = pytest.mark.parametrize("inline", [True, False], ids=["inline", "threaded"])
+
+
+def said(seq: int, message: str = "x") -> Logged:
+    """Make an event."""
+    return Logged(seq=seq, time_s=seq * 0.5, path="root", level="info", message=message)
+
+
+def begun(journal: Journal, run: str = "run-1") -> RunJournal:
+    """Begin a run."""
+    return journal.begin(run, behavior="transfer", document="abc", started_unix_s=10.0)
+
+
+@BOTH
+async def test_what_was_committed_is_read_back_while_the_journal_is_open(tmp_path: Path, inline: bool) -> None:
+    """A reader sees the committed events and no more."""
+    with Journal.open(tmp_path, inline=inline) as journal:
+        run = begun(journal)
+        for seq in (1, 2, 3):
+            run.append(said(seq))
+        await run.commit()
+        run.append(said(4))
+        assert read_events(tmp_path, "run-1") == (said(1), said(2), said(3))
+
+
+@BOTH
+async def test_closing_writes_what_no_commit_asked_for_and_may_be_repeated(tmp_path: Path, inline: bool) -> None:
+    """`close` flushes; closing again does nothing."""
+    journal = Journal.open(tmp_path / "runs.db", inline=inline)
+    begun(journal).append(said(1))
+    journal.close()
+    journal.close()
+    assert read_events(tmp_path / "runs.db", "run-1") == (said(1),)
+
+
+@BOTH
+async def test_after_closing_a_commit_says_that_the_journal_is_closed(tmp_path: Path, inline: bool) -> None:
+    """No commit hangs on a closed journal."""
+    journal = Journal.open(tmp_path, inline=inline)
+    run = begun(journal)
+    journal.close()
+    run.append(said(1))
+    with pytest.raises(JournalError, match="the journal is closed"):
+        await asyncio.wait_for(run.commit(), 5)
+
+
+async def test_branches_and_runs_commit_side_by_side_and_lose_nothing(tmp_path: Path) -> None:
+    """Sixteen runs that commit at once all find every event of theirs."""
+    with Journal.open(tmp_path) as journal:
+        runs = [begun(journal, f"run-{n}") for n in range(16)]
+
+        async def write(run: RunJournal) -> None:
+            for seq in range(1, 21):
+                run.append(said(seq))
+                await run.commit()
+
+        await asyncio.gather(*(write(run) for run in runs))
+        stored = [read_events(tmp_path, run.run_id) for run in runs]
+    assert stored == [tuple(said(seq) for seq in range(1, 21))] * 16
+
+
+async def test_commits_are_acknowledged_in_the_order_they_were_asked_for(tmp_path: Path) -> None:
+    """Who asked first is told first."""
+    told: list[int] = []
+    with Journal.open(tmp_path) as journal:
+        run = begun(journal)
+
+        async def write(seq: int) -> None:
+            run.append(said(seq))
+            await run.commit()
+            told.append(seq)
+
+        await asyncio.gather(*(write(seq) for seq in range(1, 51)))
+    assert told == list(range(1, 51))
+
+
+async def test_a_cancelled_commit_disturbs_nobody(tmp_path: Path) -> None:
+    """The event of a cancelled waiter is written all the same."""
+    with Journal.open(tmp_path) as journal:
+        run = begun(journal)
+        run.append(said(1))
+        waiting = asyncio.create_task(run.commit())
+        await asyncio.sleep(0)
+        waiting.cancel()
+        await asyncio.wait([waiting])
+        run.append(said(2))
+        await run.commit()
+        assert read_events(tmp_path, "run-1") == (said(1), said(2))
+
+
+@BOTH
+async def test_the_end_of_a_run_sets_its_status(tmp_path: Path, inline: bool) -> None:
+    """The list of runs tells what each became."""
+    with Journal.open(tmp_path, inline=inline) as journal:
+        first, second = begun(journal, "run-1"), begun(journal, "run-2")
+        first.append(RunEnded(seq=1, time_s=2.0, status="finished", outcome="done"))
+        second.append(said(1))
+        await first.commit()
+        await second.commit()
+        runs = list_runs(tmp_path)
+    assert [(run.id, run.status) for run in runs] == [("run-1", "finished"), ("run-2", "running")]
+    assert runs[0] == RunRecord(
+        id="run-1",
+        behavior="transfer",
+        document="abc",
+        status="finished",
+        epoch=1,
+        started_unix_s=10.0,
+        last_seq=1,
+    )
+
+
+@BOTH
+async def test_an_engine_whose_run_was_taken_over_can_write_no_more(tmp_path: Path, inline: bool) -> None:
+    """Two engines on one file: the one that resumed goes on, the other is fenced for that run only."""
+    with Journal.open(tmp_path, inline=inline) as old, Journal.open(tmp_path, inline=inline) as new:
+        before, beside = begun(old, "run-1"), begun(old, "run-2")
+        before.append(said(1))
+        await before.commit()
+        after = new.resume("run-1")
+        before.append(said(2, "zombie"))
+        with pytest.raises(JournalError, match=r"run run-1 is driven by another engine now \(epoch 2\)"):
+            await before.commit()
+        with pytest.raises(JournalError, match="another engine"):
+            await before.commit()
+        beside.append(said(1))
+        await beside.commit()
+        after.append(said(2, "successor"))
+        await after.commit()
+        assert after.epoch == 2
+        assert read_events(tmp_path, "run-1") == (said(1), said(2, "successor"))
+        assert read_events(tmp_path, "run-2") == (said(1),)
+
+
+@BOTH
+async def test_an_event_that_cannot_be_written_stops_its_own_run_only(tmp_path: Path, inline: bool) -> None:
+    """A strange value in the userdata of one run does not cost another its journal."""
+    with Journal.open(tmp_path, inline=inline) as journal:
+        bad, good = begun(journal, "bad"), begun(journal, "good")
+        bad.append(Logged(seq=1, time_s=0.0, path="root", level="info", message="\ud800"))
+        good.append(said(1))
+        ends = await asyncio.gather(bad.commit(), good.commit(), return_exceptions=True)
+        assert [type(end) for end in ends] == [JournalError, type(None)]
+        assert "event 1 (Logged) cannot be written as JSON" in str(ends[0])
+        assert (read_events(tmp_path, "bad"), read_events(tmp_path, "good")) == ((), (said(1),))
+
+
+@BOTH
+async def test_the_same_sequence_number_twice_is_refused(tmp_path: Path, inline: bool) -> None:
+    """An append-only journal overwrites nothing."""
+    with Journal.open(tmp_path, inline=inline) as journal:
+        run = begun(journal)
+        run.append(said(1, "first"))
+        await run.commit()
+        run.append(said(1, "again"))
+        with pytest.raises(JournalError, match="seq 1 on is stored already"):
+            await run.commit()
+    assert read_events(tmp_path, "run-1") == (said(1, "first"),)
+
+
+@BOTH
+async def test_a_locked_file_fails_this_commit_and_all_later_ones(tmp_path: Path, inline: bool) -> None:
+    """A failed journal stays failed, even when the lock goes away: events are missing in it."""
+    with Journal.open(tmp_path, inline=inline, busy_timeout_s=0.01) as journal:
+        run, other, idle = (begun(journal, f"run-{n}") for n in (1, 2, 3))
+        thief = sqlite3.connect(journal.path, isolation_level=None)
+        thief.execute("BEGIN IMMEDIATE")
+        run.append(said(1))
+        with pytest.raises(
+            JournalError, match=r"journal\.db: the journal cannot be written: .*locked.*end that program"
+        ):
+            await run.commit()
+        thief.close()
+        other.append(said(1))
+        for run_journal in (run, other, idle):
+            with pytest.raises(JournalError, match="locked"):
+                await run_journal.commit()
+        with pytest.raises(JournalError, match="locked"):
+            begun(journal, "run-4")
+    assert [record.last_seq for record in list_runs(tmp_path)] == [0, 0, 0]
+
+
+def test_closing_reports_a_failure_that_no_commit_had_reported(tmp_path: Path) -> None:
+    """What only `close` could find out is not swallowed."""
+    journal = Journal.open(tmp_path, busy_timeout_s=0.01)
+    run = begun(journal)
+    thief = sqlite3.connect(journal.path, isolation_level=None)
+    thief.execute("BEGIN IMMEDIATE")
+    run.append(said(1))
+    with pytest.raises(JournalError, match="locked"):
+        journal.close()
+    thief.close()
+
+
+async def test_a_defect_in_the_writer_reaches_the_waiting_commit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even an error nobody foresaw ends a commit instead of hanging it."""
+    from engine.journal.database import JournalDatabase
+
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("oops")
+
+    with Journal.open(tmp_path) as journal:
+        run = begun(journal)
+        monkeypatch.setattr(JournalDatabase, "store", broken)
+        for seq in (1, 2):
+            run.append(said(seq))
+            with pytest.raises(JournalError, match="the journal writer broke: ZeroDivisionError: oops"):
+                await asyncio.wait_for(run.commit(), 5)
+
+
+def test_a_run_begins_once(tmp_path: Path) -> None:
+    """The same id again is refused and told to resume."""
+    with Journal.open(tmp_path) as journal:
+        begun(journal)
+        with pytest.raises(JournalError, match=r"run run-1 is there already \(resume it\)"):
+            begun(journal)
+
+
+def test_an_unknown_run_cannot_be_resumed(tmp_path: Path) -> None:
+    """Resuming names the missing run."""
+    with Journal.open(tmp_path) as journal, pytest.raises(JournalError, match="there is no run nobody"):
+        journal.resume("nobody")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [(b"this is text, not a database at all" * 40, "not a database.*move it away"), (None, "check that the directory")],
+    ids=["text file", "a file where the directory should be"],
+)
+def test_a_place_that_cannot_be_opened_is_named_with_advice(
+    tmp_path: Path, content: bytes | None, message: str
+) -> None:
+    """What is wrong with the file is said with its path."""
+    if content is None:
+        (tmp_path / "file").write_text("x")
+        place = tmp_path / "file" / "journal.db"
+    else:
+        place = tmp_path / "journal.db"
+        place.write_bytes(content)
+    with pytest.raises(JournalError, match=f"journal.db: the journal cannot be opened: .*{message}"):
+        Journal.open(place)
+
+
+def test_a_journal_of_a_newer_format_is_left_alone(tmp_path: Path) -> None:
+    """A file from the future is refused, not written to."""
+    Journal.open(tmp_path).close()
+    with sqlite3.connect(tmp_path / "journal.db") as connection:
+        connection.execute("PRAGMA user_version=99")
+    connection.close()
+    with pytest.raises(JournalError, match="its format is 99, this program knows 1"):
+        Journal.open(tmp_path)
+
+
+async def test_the_null_journal_takes_the_same_calls() -> None:
+    """Benchmarks can leave the disk out."""
+    journal: JournalPort = NullJournal()
+    run = journal.begin("run-1", behavior="transfer", document="abc", started_unix_s=0.0)
+    run.append(said(1))
+    await run.commit()
+    journal.close()
+    assert (run.run_id, run.epoch, journal.resume("run-2").run_id) == ("run-1", 1, "run-2")

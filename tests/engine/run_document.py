@@ -1,0 +1,75 @@
+"""Runs a behavior written in a test in virtual time and returns what came of it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass
+from textwrap import dedent
+
+from engine.bus import SkillBus
+from engine.clock import new_clock, run_virtual
+from engine.document import parse_behavior
+from engine.event import Entered, Event, Exited, Logged
+from engine.plan import Plan, new_plan
+from engine.run import Run, RunResult
+from tests.engine.fake_states import CATALOGUE
+
+
+@dataclass(frozen=True)
+class Told:
+    """A run's result and its events."""
+
+    result: RunResult
+    events: tuple[Event, ...]
+
+    @property
+    def story(self) -> list[str]:
+        """What happened, a word an event: `+path`, `-path outcome`, `!message`."""
+        lines: list[str] = []
+        for event in self.events:
+            match event:
+                case Entered():
+                    lines.append(f"+{event.path}")
+                case Exited():
+                    lines.append(f"-{event.path} {'preempted' if event.preempted else event.outcome or 'error'}")
+                case Logged():
+                    lines.append(f"!{event.path} {event.message}")
+                case _:
+                    pass
+        return lines
+
+
+HEAD = "flexcell: 1\nname: test\noutcomes: [good, bad]\nsuccess: [good]\n"
+
+
+def plan_of(text: str) -> Plan:
+    """Plan a document; text without `flexcell:` gets a head with outcomes good and bad."""
+    body = dedent(text)
+    return new_plan(parse_behavior(body if "flexcell:" in body else HEAD + body, file="test.yaml"), CATALOGUE)
+
+
+def run_document(
+    text: str,
+    *,
+    stop_at_s: float | None = None,
+    stop_first: bool = False,
+    parameters: Mapping[str, object] | None = None,
+    inputs: Mapping[str, object] | None = None,
+    seed: int = 0,
+) -> Told:
+    """Run a document to its end in virtual time."""
+    plan = plan_of(text)
+    events: list[Event] = []
+
+    async def main() -> RunResult:
+        bus = SkillBus(new_clock())
+        run = Run(plan, run="r", bus=bus, parameters=parameters, inputs=inputs, seed=seed)
+        run.watch(events.append)
+        if stop_first:
+            run.stop("changed my mind")
+        if stop_at_s is not None:
+            asyncio.get_running_loop().call_later(stop_at_s, run.stop, "test")
+        return await run.execute()
+
+    return Told(run_virtual(main()), tuple(events))

@@ -1,0 +1,114 @@
+"""The typed kinds accept what fits and name the field that does not."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import msgspec
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.errors import StoreError
+from engine.messages import Pose
+from engine.skills.entries import EntryRecord
+from engine.store import STANDARD_KINDS, EntryKind, JointDmp, Joints, read_as, verified_value
+
+FINITE = st.floats(-1e6, 1e6)
+POSITIVE = st.floats(1e-6, 1e6)
+
+
+@st.composite
+def dmps(draw: st.DrawFn) -> JointDmp:
+    """Draw a DMP whose lengths agree."""
+    joints, kernels = draw(st.integers(1, 7)), draw(st.integers(1, 8))
+
+    def row(length: int, of: st.SearchStrategy[float] = FINITE) -> tuple[float, ...]:
+        return tuple(draw(st.lists(of, min_size=length, max_size=length)))
+
+    return JointDmp(
+        N=kernels,
+        a_z=draw(POSITIVE),
+        a_x=draw(POSITIVE),
+        tau=draw(POSITIVE),
+        goal=row(joints),
+        y0=row(joints),
+        dy0=row(joints),
+        c=row(kernels),
+        sigma=row(kernels, POSITIVE),
+        w=tuple(row(kernels) for _ in range(joints)),
+    )
+
+
+@given(dmps())
+def test_a_dmp_survives_being_stored(dmp: JointDmp) -> None:
+    """Its fields as JSON read back as the same DMP."""
+    fields = msgspec.json.decode(msgspec.json.encode(dmp))
+    assert verified_value(STANDARD_KINDS, "dmp", fields, where="dmp x") == dmp
+
+
+@given(dmps(), st.sampled_from(["y0", "dy0", "c", "sigma", "w"]))
+def test_a_dmp_with_one_list_too_long_is_refused_by_name(dmp: JointDmp, name: str) -> None:
+    """Every length is checked against the joints and N."""
+    fields: dict[str, Any] = msgspec.to_builtins(dmp)
+    fields[name] = [*fields[name], fields[name][0]]
+    with pytest.raises(StoreError, match=rf"dmp x: this is no dmp: {name} has \d+ values where \d+ are due"):
+        verified_value(STANDARD_KINDS, "dmp", fields, where="dmp x")
+
+
+def test_a_short_row_of_weights_is_named_by_its_joint() -> None:
+    """The second joint lacks a weight."""
+    fields = {
+        "N": 2, "a_z": 48, "a_x": 2, "tau": 1.5, "goal": [1, 1], "y0": [0, 0], "dy0": [0, 0],
+        "c": [1, 0.5], "sigma": [0.1, 0.1], "w": [[1, 2], [3]],
+    }  # fmt: skip
+    with pytest.raises(StoreError, match=r"w\[1\] has 1 values where 2 are due \(2 joints, N = 2\)"):
+        verified_value(STANDARD_KINDS, "dmp", fields, where="dmp x")
+
+
+@given(st.lists(FINITE, min_size=4, max_size=4).filter(lambda q: math.hypot(*q) > 1e-3))
+def test_a_pose_is_accepted_exactly_when_its_quaternion_has_unit_length(quaternion: list[float]) -> None:
+    """Normalised it is taken; three times as long it is not."""
+    length = math.hypot(*quaternion)
+    unit = [part / length for part in quaternion]
+    taken = verified_value(STANDARD_KINDS, "pose", {"xyz": [0, 0, 0], "xyzw": unit}, where="pose x")
+    assert isinstance(taken, Pose)
+    with pytest.raises(StoreError, match="the quaternion xyzw has length 3 instead of 1"):
+        verified_value(STANDARD_KINDS, "pose", {"xyz": [0, 0, 0], "xyzw": [3 * p for p in unit]}, where="pose x")
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"joints": []}, "joints"),
+        ({"joints": [0.1, "a"]}, r"Expected `float`, got `str` - at `\$.joints\[1\]`"),
+        ({"joints": [0.1], "names": ["a", "b"]}, "1 joints but 2 names"),
+        ({"joint": [0.1]}, r"give the fields joints, names"),
+        ([1, 2], "Expected `object`"),
+    ],
+)
+def test_bad_joints_are_refused_with_the_reason(fields: object, message: str) -> None:
+    """The message names the field, or the fields there are."""
+    with pytest.raises(StoreError, match=message):
+        verified_value(STANDARD_KINDS, "joints", fields, where="joints x")
+
+
+def test_a_registered_kind_is_checked_like_the_standard_ones() -> None:
+    """Any Struct can be a kind of its own."""
+
+    class Torque(msgspec.Struct, frozen=True):
+        torque_nm: float
+
+    kinds = {**STANDARD_KINDS, "torque": EntryKind(Torque)}
+    assert verified_value(kinds, "torque", {"torque_nm": 2}, where="torque x") == Torque(2.0)
+    with pytest.raises(StoreError, match="this is no torque"):
+        verified_value(kinds, "torque", {"torque_nm": "much"}, where="torque x")
+
+
+def test_an_entry_reads_as_its_type_or_says_why_not() -> None:
+    """States get typed values out of records."""
+    record = EntryRecord(kind="joints", name="home", value={"joints": [0.5, 1]}, revision=3)
+    assert read_as(record, Joints) == Joints(joints=(0.5, 1.0))
+    with pytest.raises(StoreError, match="joints home: this entry does not read as Pose"):
+        read_as(record, Pose)
