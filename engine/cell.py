@@ -30,11 +30,11 @@ class OpenCell:
 
     Args:
         cell: The document, or None for behaviors that need no robot.
-        seed: Places the parts of a simulated world within their jitter.
+        seed: Places the parts of a simulated world within their jitter; None exactly where they are drawn.
         store_path: Replaces the path of the store in the document.
     """
 
-    def __init__(self, cell: Cell | None, *, seed: int = 0, store_path: str | None = None) -> None:
+    def __init__(self, cell: Cell | None, *, seed: int | None = None, store_path: str | None = None) -> None:
         self.document = cell
         self.seed = seed
         self.bus = SkillBus(new_clock())

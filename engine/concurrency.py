@@ -46,13 +46,9 @@ class Concurrency:
         """The key of this container in documents."""
         return "concurrency"
 
-    @property
+    @cached_property
     def nominal(self) -> frozenset[str]:
         """Outcomes of conditions that ask only for nominal outcomes of the children."""
-        return self._nominal
-
-    @cached_property
-    def _nominal(self) -> frozenset[str]:
         return frozenset(
             c.outcome
             for c in self.conditions

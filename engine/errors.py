@@ -90,6 +90,10 @@ class EntryNotFound(StoreError):
     """No entry has this kind and name."""
 
 
+class EntryConflict(StoreError):
+    """The stored entry has another revision than the writer expected; the message says which."""
+
+
 class JournalError(FlexcellError):
     """The journal cannot be written; the run must stop."""
 

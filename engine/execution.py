@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
 from dataclasses import dataclass, field
 
 from engine.bus import SkillBus
@@ -24,9 +23,10 @@ class Execution:
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
     waits: int = 0
     """How often a state has waited for something; unchanged means that no time passed."""
-    visits: Counter[str] = field(default_factory=Counter[str])
+    visits: dict[str, int] = field(default_factory=dict[str, int])
 
     def visit(self, path: str) -> int:
         """Count an activation of `path` and return which one it is, from 1."""
-        self.visits[path] += 1
-        return self.visits[path]
+        visit = self.visits.get(path, 0) + 1
+        self.visits[path] = visit
+        return visit

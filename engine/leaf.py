@@ -39,13 +39,9 @@ class Leaf:
         """The key of this node in documents."""
         return "state"
 
-    @property
+    @cached_property
     def nominal(self) -> frozenset[str]:
         """The outcomes its class calls success; all of them where it does not say."""
-        return self._nominal
-
-    @cached_property
-    def _nominal(self) -> frozenset[str]:
         return frozenset(self.state.success or self.state.outcomes)
 
     @cached_property
@@ -72,7 +68,8 @@ class Leaf:
             raise StateError("entered without a state", where=path)
         resources = state.resources()
         holder = Holder(execution.run, path)
-        execution.bus.leases.acquire(resources, holder)
+        if resources:
+            execution.bus.leases.acquire(resources, holder)
         try:
             outcome: Any = await state.run(RunningContext(execution, path, visit), **entry.inputs)
         except (FlexcellError, asyncio.CancelledError):
@@ -83,7 +80,8 @@ class Leaf:
                 f"{self.signature.name} raised {type(error).__name__}: {error}", where=self.position
             ) from error
         finally:
-            execution.bus.leases.release(resources, holder)
+            if resources:
+                execution.bus.leases.release(resources, holder)
         if not isinstance(outcome, Outcome) or outcome.name not in self.state.outcomes:
             raise self._undeclared_outcome(outcome)
         self._write(outcome, path, scope, execution)

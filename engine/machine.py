@@ -31,13 +31,9 @@ class Machine:
         """The key of this container in documents."""
         return "machine"
 
-    @property
+    @cached_property
     def nominal(self) -> frozenset[str]:
         """Outcomes reached from the initial child while every child ends nominally."""
-        return self._nominal
-
-    @cached_property
-    def _nominal(self) -> frozenset[str]:
         reached: set[str] = set()
         due = [self.initial]
         while due:

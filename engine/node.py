@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import msgspec
+
 from engine.cause import cause_of, describe, under
 from engine.errors import FlexcellError, JournalError
 from engine.event import Cause, Entered, Exited, Logged, Retried
@@ -36,8 +38,7 @@ class Retry:
     errors: bool = True
 
 
-@dataclass(frozen=True)
-class Left:
+class Left(msgspec.Struct, frozen=True):
     """How a node was left: with an outcome, or straight to a target (timeout, on_error)."""
 
     outcome: str
@@ -100,8 +101,7 @@ class Node:
             CancelledError: the node was preempted; its clean-up is done.
         """
         if self.timeout is None and self.retry is None and self.on_error is None:
-            outcome = await self._attempt(scope, execution)
-            return Left(outcome.name, None, outcome.cause)
+            return await self._attempt(scope, execution)
         return await self._guarded(scope, execution)
 
     async def _guarded(self, scope: Scope, execution: Execution) -> Left:
@@ -133,11 +133,10 @@ class Node:
         while True:
             again: Cause | None
             try:
-                outcome = await self._attempt(scope, execution)
-                left = Left(outcome.name, None, outcome.cause)
-                if retry is None or outcome.name not in retry.outcomes or attempt > retry.times:
+                left = await self._attempt(scope, execution)
+                if retry is None or left.outcome not in retry.outcomes or attempt > retry.times:
                     return left
-                again = under(f"outcome {outcome.name}", outcome.cause, where=self.path)
+                again = under(f"outcome {left.outcome}", left.cause, where=self.path)
             except JournalError:
                 raise
             except FlexcellError as error:
@@ -161,7 +160,7 @@ class Node:
                 execution.waits += 1
                 await execution.clock.sleep(wait_s)
 
-    async def _attempt(self, scope: Scope, execution: Execution) -> Outcome:
+    async def _attempt(self, scope: Scope, execution: Execution) -> Left:
         recorder = execution.recorder
         path = self.path
         visit = execution.visit(path)
@@ -187,7 +186,7 @@ class Node:
             self._record_exit(execution, visit, "", cause=cause_of(error))
             raise
         self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
-        return outcome
+        return Left(outcome.name, None, outcome.cause)
 
     def _entered(self, scope: Scope) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""

@@ -66,7 +66,13 @@ class Context(Protocol):
         ...
 
     async def call(self, request: Service[R], *, to: str) -> R:
-        """Ask the service `<to>/<skill_name>`; raises SkillFailed or NoSuchSkill."""
+        """Ask the service `<to>/<skill_name>`.
+
+        Raises:
+            NoSuchSkill: nobody answers there.
+            SkillFailed: the handler raised something that is not of our family; its error is the cause.
+            FlexcellError: the handler's own, such as EntryNotFound, unchanged.
+        """
         ...
 
     async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:

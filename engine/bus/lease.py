@@ -8,13 +8,13 @@ for as long as its state is active.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+
+import msgspec
 
 from engine.errors import LeaseRefused
 
 
-@dataclass(frozen=True)
-class Holder:
+class Holder(msgspec.Struct, frozen=True):
     """A run (or `cli`, `jog`, …) and the branch of it, a node path, that commands a resource."""
 
     run: str

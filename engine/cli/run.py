@@ -43,7 +43,7 @@ class _Order:
     cell: Cell | None
     parameters: dict[str, object]
     inputs: dict[str, object]
-    seed: int
+    seed: int | None
     journal: str
     store: str | None
     timeout_s: float | None
@@ -65,7 +65,10 @@ def run(
     clock: Annotated[
         Literal["virtual", "real"], typer.Option(help="virtual: as fast as the machine allows, and repeatable.")
     ] = "real",
-    seed: Annotated[int, typer.Option(help="Seed of part poses and random choices.", min=0)] = 0,
+    seed: Annotated[
+        int | None,
+        typer.Option(help="Seed of random choices and of the jitter of parts; parts lie exactly without one.", min=0),
+    ] = None,
     journal: Annotated[str, typer.Option(help="Directory of the journal of runs, or `none`.")] = ".flexcell",
     store: Annotated[str | None, typer.Option(help="Use this store file instead of the cell's.")] = None,
     events: Annotated[Path | None, typer.Option(help="Write the event log here, one JSON object a line.")] = None,
@@ -116,41 +119,58 @@ def _on_clock(main: Coroutine[Any, Any, T], *, virtual: bool) -> T:
     return run_virtual(main) if virtual else asyncio.run(main)
 
 
+class _Interruption:
+    """What a signal asks for, whether it comes before the run is made or while it goes on."""
+
+    def __init__(self) -> None:
+        self.reason = ""
+        self._run: Run | None = None
+
+    def signal(self, name: str) -> None:
+        """Stop the run, or the run to come."""
+        self.reason = f"interrupted by {name}"
+        if self._run is not None:
+            self._run.stop(self.reason)
+
+    def watch_over(self, run: Run) -> None:
+        """Stop `run` at the next signal, or at once when there was one."""
+        self._run = run
+        if self.reason:
+            run.stop(self.reason)
+
+
 async def _execute(order: _Order, log: list[Event]) -> tuple[RunResult, bool]:
-    interrupted = False
+    interruption = _Interruption()
     with ExitStack() as stack:
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, interruption.signal, number.name)
+            stack.callback(loop.remove_signal_handler, number)
         journal = _journal(order, stack)
         async with OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell:
-            run_id = new_run_id(order.plan.name)
-            execution = Run(
-                order.plan,
-                run=run_id,
-                bus=cell.bus,
-                parameters=order.parameters,
-                inputs=order.inputs,
-                seed=order.seed,
-                journal=journal.begin(
-                    run_id,
-                    behavior=order.plan.name,
-                    document=order.plan.document_hash,
-                    started_unix_s=time.time(),
-                ),
-            )
-            execution.watch(log.append)
+            run = _new_run(order, cell, journal)
+            run.watch(log.append)
             if not order.quiet:
-                execution.watch(Progress(Console(stderr=True)).show)
+                run.watch(Progress(Console(stderr=True)).show)
+            interruption.watch_over(run)
+            result = await _within(order.timeout_s, run)
+    return result, bool(interruption.reason)
 
-            def interrupt(name: str) -> None:
-                nonlocal interrupted
-                interrupted = True
-                execution.stop(f"interrupted by {name}")
 
-            loop = asyncio.get_running_loop()
-            for number in (signal.SIGINT, signal.SIGTERM):
-                loop.add_signal_handler(number, interrupt, number.name)
-                stack.callback(loop.remove_signal_handler, number)
-            result = await _within(order.timeout_s, execution)
-    return result, interrupted
+def _new_run(order: _Order, cell: OpenCell, journal: Journal | NullJournal) -> Run:
+    run_id = new_run_id(order.plan.name)
+    entry = journal.begin(
+        run_id, behavior=order.plan.name, document=order.plan.document_hash, started_unix_s=time.time()
+    )
+    return Run(
+        order.plan,
+        run=run_id,
+        bus=cell.bus,
+        parameters=order.parameters,
+        inputs=order.inputs,
+        seed=order.seed or 0,
+        journal=entry,
+    )
 
 
 async def _within(timeout_s: float | None, execution: Run) -> RunResult:

@@ -33,7 +33,9 @@ def serve(
     host: Annotated[str, typer.Option(help="Loopback address to listen on.")] = "127.0.0.1",
     project: Annotated[Path, typer.Option(help="Folder with `behaviors/` in it.")] = Path(),
     state: Annotated[Path, typer.Option(help="Folder for tokens and the journal.")] = Path(".flexcell"),
-    seed: Annotated[int, typer.Option(help="Seed of the part poses of a simulated cell.", min=0)] = 0,
+    seed: Annotated[
+        int | None, typer.Option(help="Seed of the jitter of parts; they lie exactly without one.", min=0)
+    ] = None,
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
@@ -44,7 +46,7 @@ def serve(
 
 
 async def _serve(
-    cell: Cell | None, *, port: int, host: str, project: Path, state: Path, seed: int, open_page: bool
+    cell: Cell | None, *, port: int, host: str, project: Path, state: Path, seed: int | None, open_page: bool
 ) -> None:
     new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
     catalogue = load_states()

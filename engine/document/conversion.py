@@ -58,7 +58,8 @@ def _located(source: Source, kind: object, complaint: str, refused: Mapping[str,
     if missing:
         return DocumentError(f"the key `{missing[1]}` is missing", where=source.position(path, of_key=True))
     where = source.position(path, of_key=key_is_wrong)
-    subject = f"`{path[-1]}`: " if path else ""
+    name = next((step for step in reversed(path) if isinstance(step, str)), None)
+    subject = f"`{name}`: " if name is not None else ""
     return DocumentError(f"{subject}{in_words(what)}", where=where, hint=_advice(kind, path, of_key=key_is_wrong))
 
 
@@ -74,7 +75,9 @@ def in_words(what: str) -> str:
         names = [_TYPES.get(name, name) for name in match[1].split(" | ")]
         return " or ".join("nothing" if name == "null" else name for name in names)
 
-    said = re.sub(r"`([a-z |]+)`", types, what)
+    said = re.sub(r"expected `str` matching regex .*", "not in the allowed form", what, flags=re.IGNORECASE | re.DOTALL)
+    said = re.sub(r"^Invalid enum value (.*)", r"there is no choice \1", said)
+    said = re.sub(r"`([a-z |]+)`", types, said)
     return f"{said[:1].lower()}{said[1:]}"
 
 
@@ -84,10 +87,10 @@ def _find(data: object, kind: object, complaint: str) -> DataPath:
     steps = re.findall(r"\.([^.\[\]]+)|\[(\d+|\.\.\.)\]", match["path"] or "$")
     # A complaint about a key says in which mapping; the key is one more step that has to be found.
     extra = [("", "...")] if match["key"] else []
-    return tuple(_walk(data, kind, complaint, [*steps, *extra]))
+    return tuple(_walk(data, kind, [*steps, *extra]))
 
 
-def _walk(data: object, kind: object, complaint: str, steps: list[tuple[str, str]]) -> Iterator[str | int]:
+def _walk(data: object, kind: object, steps: list[tuple[str, str]]) -> Iterator[str | int]:
     trail: list[str | int] = []
     here = data
     for name, index in steps:
@@ -95,7 +98,7 @@ def _walk(data: object, kind: object, complaint: str, steps: list[tuple[str, str
         if step == "...":
             if not isinstance(here, dict):
                 return
-            step = _culprit(data, trail, cast("dict[str, object]", here), kind, complaint)
+            step = _culprit(data, trail, cast("dict[str, object]", here), kind)
         if isinstance(step, str) and isinstance(here, dict):
             here = cast("dict[str, object]", here).get(step)
         elif isinstance(step, int) and isinstance(here, list):
@@ -106,14 +109,13 @@ def _walk(data: object, kind: object, complaint: str, steps: list[tuple[str, str
         yield step
 
 
-def _culprit(data: object, trail: list[str | int], mapping: dict[str, object], kind: object, complaint: str) -> str:
-    """Find the first key that alone brings the same complaint."""
+def _culprit(data: object, trail: list[str | int], mapping: dict[str, object], kind: object) -> str:
+    """Find the first key that alone brings a complaint; it is the one msgspec met first."""
     for key, value in mapping.items():
         try:
             msgspec.convert(_with_only(data, trail, {key: value}), cast("type[object]", kind))
-        except msgspec.ValidationError as error:
-            if str(error) == complaint:
-                return key
+        except msgspec.ValidationError:
+            return key
     return next(iter(mapping))
 
 
@@ -189,8 +191,7 @@ def _options(kind: inspect.Type) -> Iterator[inspect.Type]:
 
 def _inside(kind: inspect.Type, step: str | int) -> Iterator[inspect.Type]:
     if isinstance(kind, inspect.StructType):
-        # A field of a recursive model refers to the type that is being described; ask for it afresh.
-        yield from (_type_of(kind.cls) if f.type is kind else f.type for f in kind.fields if f.encode_name == step)
+        yield from (f.type for f in kind.fields if f.encode_name == step)
     elif isinstance(kind, inspect.DictType):
         yield kind.value_type
     elif isinstance(kind, inspect.VarTupleType | inspect.ListType):

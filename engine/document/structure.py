@@ -67,7 +67,7 @@ def _require_container_keys(behavior: Behavior, path: str, node: Node) -> None:
     for key, value in (("with", node.parameters), ("in", node.inputs), ("out", node.outputs)):
         if value:
             where = behavior.key_position(path, key)
-            raise DocumentError(f"a {node.kind} has no `{key}`", where=where, hint=_CONTAINER_KEYS[key])
+            raise DocumentError(f"a {node.kind} container has no `{key}`", where=where, hint=_CONTAINER_KEYS[key])
 
 
 def _require_no_transitions(behavior: Behavior, path: str, node: Node) -> None:

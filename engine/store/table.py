@@ -10,7 +10,7 @@ from typing import Any
 
 import msgspec
 
-from engine.errors import EntryNotFound, StoreError
+from engine.errors import EntryConflict, EntryNotFound, StoreError
 from engine.nearness import near_names
 from engine.sqlite_file import advice, open_sqlite
 
@@ -144,7 +144,7 @@ class EntryTable:
         there = 0 if found is None else found.revision
         if there != expected:
             state = f"revision {there} is there" if there else "there is no such entry"
-            raise StoreError(
+            raise EntryConflict(
                 f"{state}, revision {expected} was expected" if expected else f"{state}, none was expected",
                 where=f"{kind} {name}",
                 hint="read it again and decide anew",

@@ -566,7 +566,9 @@ def test_a_circle_of_behaviors_names_the_chain(tmp_path: Path) -> None:
 def test_findings_inside_a_referenced_behavior_carry_its_file_and_the_path_in_the_run(tmp_path: Path) -> None:
     """A referenced behavior is checked once, under the reference that uses it first."""
     bad = REFERRED.replace("arm.Move", "arm.Mvoe")
-    findings = check_file(written(tmp_path, REFERENCE, {"part.yaml": bad}), CATALOGUE)
+    again = "      again: {behavior: part.yaml, with: {share: 1}, transitions: {done: done, failed: failed}}\n"
+    twice = REFERENCE.replace("{done: done, failed: failed}}\n", "{done: again, failed: failed}}\n") + again
+    findings = check_file(written(tmp_path, twice, {"part.yaml": bad}), CATALOGUE)
     found = [(f.path, Path(f.position.file).name) for f in findings if f.code == "unknown-state"]
     assert found == [("root/sub/root/go", "part.yaml")]
 

@@ -1,0 +1,1 @@
+"""Behaviors, cells and entries: data that ships with flexcell."""

@@ -1,0 +1,11 @@
+"""The browser side: a FastAPI application that shows behaviors, runs them and draws the cell.
+
+It stands on `engine` alone: `backend` names what it asks for, `app` serves it, `live` streams it,
+`cell_view` draws it, and `frontend/` is the page (built into `static/`).
+"""
+
+from editor_web.app import new_app
+from editor_web.backend import Backend
+from editor_web.server import Dashboard, dashboard, serve
+
+__all__ = ["Backend", "Dashboard", "dashboard", "new_app", "serve"]

@@ -1,0 +1,131 @@
+"""The FastAPI application: routes, error answers and the lifetime of hub and cell view, behind the gate."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import OrderedDict
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.types import ASGIApp
+
+from editor_web.access import Access, AttemptLimit
+from editor_web.backend import Backend
+from editor_web.cell_view import CellView
+from editor_web.live import LiveHub
+from editor_web.routes import behaviors, bus, cell, live, page, runs, session
+from editor_web.routes.services import Services
+from editor_web.security import Gate
+from editor_web.wire import ErrorBody
+from engine.errors import FlexcellError
+
+STATIC = Path(__file__).parent / "static"
+
+
+def new_app(
+    backend: Backend,
+    *,
+    access: Access,
+    hosts: frozenset[str],
+    port: int,
+    cell_view: CellView | None = None,
+    static: Path = STATIC,
+) -> ASGIApp:
+    """Return the whole server as one ASGI application.
+
+    Args:
+        backend: The engine.
+        access: The tokens that open it.
+        hosts: Values of the Host header to answer to, with port, in lower case.
+        port: Our own port.
+        cell_view: The 3D view; opened and closed with the application.
+        static: Folder of the built page.
+    """
+    limit = AttemptLimit(now_s=time.monotonic)
+    app = api()
+    app.state.services = Services(
+        backend=backend,
+        hub=LiveHub(backend),
+        access=access,
+        limit=limit,
+        cell_view=cell_view,
+        static=static,
+        port=port,
+    )
+    app.state.started = OrderedDict[str, str]()
+    return Gate(app, access=access, limit=limit, hosts=hosts, port=port)
+
+
+def api() -> FastAPI:
+    """Return the application without its parts; enough to describe the HTTP interface."""
+    app = FastAPI(
+        title="flexcell",
+        version=_version(),
+        lifespan=_lifespan,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/v1/openapi.json",
+    )
+    for module in (session, behaviors, runs, bus, live, cell, page):
+        app.include_router(module.router)
+    app.add_exception_handler(FlexcellError, _refused)
+    app.add_exception_handler(RequestValidationError, _malformed)
+    app.add_exception_handler(HTTPException, _http_error)
+    return app
+
+
+def _version() -> str:
+    try:
+        return version("flexcell")
+    except PackageNotFoundError:
+        return "0"
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
+    services: Services = app.state.services
+    services.hub.open()
+    view = services.cell_view
+    if view is not None:
+        await asyncio.to_thread(view.open)
+        view.subscribe()
+    try:
+        yield
+    finally:
+        services.hub.close()
+        if view is not None:
+            view.unsubscribe()
+            await asyncio.to_thread(view.close)
+
+
+def _answer(status: int, message: str, *, where: str = "", hint: str = "") -> JSONResponse:
+    return JSONResponse(ErrorBody(message=message, where=where, hint=hint).model_dump(), status_code=status)
+
+
+async def _refused(request: Request, error: Exception) -> JSONResponse:
+    del request
+    if not isinstance(error, FlexcellError):
+        raise error
+    where = "" if error.where is None else str(error.where)
+    return _answer(422, error.message, where=where, hint=error.hint or "")
+
+
+async def _malformed(request: Request, error: Exception) -> JSONResponse:
+    del request
+    if not isinstance(error, RequestValidationError):
+        raise error
+    first = error.errors()[0]
+    return _answer(422, str(first["msg"]), where=".".join(str(part) for part in first["loc"][1:]))
+
+
+async def _http_error(request: Request, error: Exception) -> JSONResponse:
+    del request
+    if not isinstance(error, HTTPException):
+        raise error
+    return _answer(error.status_code, str(error.detail))

@@ -1,0 +1,207 @@
+// Made by `python -m editor_web.schema`; edit the Python models instead.
+
+/** One behavior with its form, findings and graph. */
+export interface BehaviorBody {
+  readonly id: string
+  readonly name: string
+  readonly description: string
+  readonly errors: number
+  readonly warnings: number
+  readonly parameters: readonly ParameterBody[]
+  readonly findings: readonly FindingBody[]
+  readonly graph: GraphNodeBody | null
+  readonly view: Readonly<Record<string, readonly [number, number]>>
+  readonly success: readonly string[]
+}
+
+/** One line of the list of behaviors. */
+export interface BehaviorSummaryBody {
+  readonly id: string
+  readonly name: string
+  readonly description: string
+  readonly errors: number
+  readonly warnings: number
+}
+
+/** One link of a cause chain, outermost first. */
+export interface CauseLine {
+  readonly message: string
+  readonly where: string
+  readonly kind: string
+}
+
+/** What changed in the watched run since `after`, and the runs that changed; `dropped` log lines are missing. */
+export interface Delta {
+  readonly k: "delta"
+  readonly run: string
+  readonly after: number
+  readonly seq: number
+  readonly now_s: number
+  readonly ticking: boolean
+  readonly runs: readonly RunLine[]
+  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly log: readonly LogLine[]
+  readonly dropped: number
+}
+
+/** Why a request failed: what, where (a parameter's name, a file, a node path), what to do. */
+export interface ErrorBody {
+  readonly message: string
+  readonly where: string
+  readonly hint: string
+}
+
+/** A page of a run's events as the journal holds them; ask again with `after=last`. */
+export interface EventsBody {
+  readonly events: readonly (Readonly<Record<string, unknown>>)[]
+  readonly last: number
+}
+
+/** One problem of a document. */
+export interface FindingBody {
+  readonly severity: string
+  readonly code: string
+  readonly message: string
+  readonly path: string
+  readonly line: number
+  readonly column: number
+  readonly hint: string
+}
+
+/** One node of the behavior with everything inside it. */
+export interface GraphNodeBody {
+  readonly path: string
+  readonly name: string
+  readonly kind: string
+  readonly title: string
+  readonly outcomes: readonly string[]
+  readonly children: readonly GraphNodeBody[]
+  readonly transitions: readonly TransitionBody[]
+  readonly initial: string | null
+  readonly conditions: readonly string[]
+}
+
+/** First frame; another `epoch` than before means that the server was restarted. */
+export interface Hello {
+  readonly k: "hello"
+  readonly version: number
+  readonly epoch: string
+  readonly role: string
+  readonly server_time_s: number
+}
+
+/** One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag. */
+export interface LogLine {
+  readonly seq: number
+  readonly time_s: number
+  readonly kind: string
+  readonly level: string
+  readonly path: string
+  readonly text: string
+  readonly causes: readonly CauseLine[]
+}
+
+/** One node: idle, active, done, failed or stopped. `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine took last, as `source|outcome`. */
+export interface NodeLive {
+  readonly status: string
+  readonly visits: number
+  readonly outcome: string
+  readonly entered_s: number
+  readonly duration_s: number
+  readonly cause: string
+  readonly followed: string
+}
+
+/** One value that is set per run, with the JSON Schema of its field. */
+export interface ParameterBody {
+  readonly name: string
+  readonly schema: Readonly<Record<string, unknown>>
+  readonly required: boolean
+}
+
+/** Nothing happened; the connection lives. */
+export interface Ping {
+  readonly k: "ping"
+  readonly server_time_s: number
+}
+
+/** From the client: answer to a ping. */
+export interface Pong {
+  readonly k: "pong"
+}
+
+/** One run, under way or over. */
+export interface RunBody {
+  readonly id: string
+  readonly behavior: string
+  readonly status: string
+  readonly outcome: string | null
+  readonly success: boolean
+  readonly cause: string
+  readonly started_at_s: number
+  readonly duration_s: number
+}
+
+/** One run in the list of runs; the same fields as the HTTP interface has. */
+export interface RunLine {
+  readonly id: string
+  readonly behavior: string
+  readonly status: string
+  readonly outcome: string | null
+  readonly success: boolean
+  readonly cause: string
+  readonly started_at_s: number
+  readonly duration_s: number
+}
+
+/** Who is logged in, and what this server has. */
+export interface SessionBody {
+  readonly role: string
+  readonly cell_name: string
+  readonly has_cell_view: boolean
+  readonly epoch: string
+}
+
+/** Everything of the watched run (empty when none is) and all runs, newest first. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. */
+export interface Snapshot {
+  readonly k: "snapshot"
+  readonly run: string
+  readonly seq: number
+  readonly now_s: number
+  readonly ticking: boolean
+  readonly runs: readonly RunLine[]
+  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly log: readonly LogLine[]
+}
+
+/** A request to start a run; without a seed the server draws one. */
+export interface StartBody {
+  readonly behavior: string
+  readonly parameters?: Readonly<Record<string, unknown>>
+  readonly seed?: number | null
+}
+
+/** The run that was started. */
+export interface StartedBody {
+  readonly run: string
+}
+
+/** A request to stop a run; `reason` goes into its event log. */
+export interface StopBody {
+  readonly reason?: string
+}
+
+/** An arrow inside a machine. */
+export interface TransitionBody {
+  readonly source: string
+  readonly outcome: string
+  readonly target: string
+}
+
+/** From the client: show this run from now on (empty: the list of runs only); answered by a snapshot. */
+export interface Watch {
+  readonly k: "watch"
+  readonly run?: string
+}
+
+export type Frame = Hello | Snapshot | Delta | Ping

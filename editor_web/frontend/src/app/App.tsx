@@ -1,0 +1,97 @@
+/** The whole page: connection, session, navigation, and the page of the address. */
+import { AppShell, Burger } from '@mantine/core'
+import { useDisclosure, useMediaQuery } from '@mantine/hooks'
+import { lazy, Suspense, useEffect } from 'react'
+import { api } from '../api/client'
+import { connect, useLive, watch } from '../api/live'
+import type { RunLine } from '../api/types'
+import { isActive } from '../document/live'
+import { BehaviorList } from '../features/catalogue/BehaviorList'
+import { RunList } from '../features/runs/RunList'
+import { Header } from './Header'
+import { HomePage } from './HomePage'
+import { Interruption } from './Interruption'
+import { behaviorHref, goTo, runHref, useRoute, type Route } from './route'
+import { useFetched } from './useFetched'
+
+/** Brings the canvas with it, which the first page does not need. */
+const BehaviorPage = lazy(async () => ({ default: (await import('./BehaviorPage')).BehaviorPage }))
+
+export function App() {
+  const route = useRoute()
+  const [menuOpen, menu] = useDisclosure(false)
+  const runs = useLive((s) => s.runs)
+  const session = useFetched('session', api.session)
+  const behaviors = useFetched('behaviors', api.behaviors)
+  const isNarrow = useMediaQuery('(max-width: 62em)', false, { getInitialValueInEffect: false })
+  const shown = shownRun(route, runs)
+  const behaviorId = route.page === 'behavior' ? route.id : shown?.behavior
+
+  useEffect(connect, [])
+  useEffect(() => watch(shown?.id ?? ''), [shown?.id])
+  useEffect(() => {
+    const name = behaviorId ? (behaviorId.split('/').pop() ?? '') : (session.value?.cell_name ?? '')
+    document.title = [name, 'flexcell'].filter(Boolean).join(' · ')
+  }, [behaviorId, session.value])
+
+  function open(href: string): void {
+    menu.close()
+    goTo(href)
+  }
+
+  return (
+    <AppShell
+      header={{ height: 52 }}
+      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen } }}
+    >
+      <a className="skip-link" href="#main">
+        Skip to the content
+      </a>
+      <AppShell.Header className="app-header">
+        <Burger opened={menuOpen} onClick={menu.toggle} hiddenFrom="md" size="sm" aria-label={menuOpen ? 'Close the menu' : 'Open the menu'} />
+        <Header
+          cellName={session.value?.cell_name ?? ''}
+          mayOperate={session.value?.role === 'operator'}
+          active={runs.find(isActive)}
+          onHome={() => open('/')}
+          onRun={(id) => open(runHref(id))}
+        />
+      </AppShell.Header>
+      <AppShell.Navbar className="app-navbar">
+        <BehaviorList
+          behaviors={behaviors.value ?? []}
+          current={behaviorId}
+          href={behaviorHref}
+          onOpen={(id) => open(behaviorHref(id))}
+        />
+        <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
+      </AppShell.Navbar>
+      <AppShell.Main id="main" className="app-main">
+        <Interruption />
+        {behaviorId ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+          <BehaviorPage
+            key={behaviorId}
+            id={behaviorId}
+            run={shown}
+            busyWith={runs.find(isActive)}
+            session={session.value}
+            isNarrow={isNarrow}
+            onStarted={() => open(behaviorHref(behaviorId))}
+          />
+          </Suspense>
+        ) : (
+          <HomePage hasCellView={session.value?.has_cell_view ?? false} onOpenRun={(id) => open(runHref(id))} isUnknownRun={route.page === 'run'} />
+        )}
+      </AppShell.Main>
+    </AppShell>
+  )
+}
+
+/** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */
+function shownRun(route: Route, runs: readonly RunLine[]): RunLine | undefined {
+  if (route.page === 'run') return runs.find((run) => run.id === route.id)
+  if (route.page !== 'behavior') return undefined
+  const own = runs.filter((run) => run.behavior === route.id)
+  return own.find(isActive) ?? own[0]
+}

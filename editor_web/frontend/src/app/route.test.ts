@@ -1,0 +1,12 @@
+/** Addresses. */
+import { expect, it } from 'vitest'
+import { behaviorHref, routeOf } from './route'
+
+it('finds the way back from the address of a behavior, slashes and blanks included', () => {
+  const id = 'behaviors/my cell/a%b.yaml'
+  expect(routeOf(behaviorHref(id))).toEqual({ page: 'behavior', id })
+})
+
+it.each(['/', '/behaviors', '/runs/', '/nothing/here'])('shows the home page for %s', (address) => {
+  expect(routeOf(address)).toEqual({ page: 'home' })
+})

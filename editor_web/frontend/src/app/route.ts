@@ -1,0 +1,52 @@
+/** Which page an address means, and going to another one without loading. */
+import { useSyncExternalStore } from 'react'
+
+export type Route =
+  | { readonly page: 'home' }
+  | { readonly page: 'behavior'; readonly id: string }
+  | { readonly page: 'run'; readonly id: string }
+
+/** Read an address; what it does not know is the home page. */
+export function routeOf(pathname: string): Route {
+  const [, page, ...rest] = pathname.split('/')
+  const id = rest.map(decoded).join('/')
+  if (page === 'behaviors' && id) return { page: 'behavior', id }
+  if (page === 'runs' && id) return { page: 'run', id }
+  return { page: 'home' }
+}
+
+function decoded(part: string): string {
+  try {
+    return decodeURIComponent(part)
+  } catch {
+    return part
+  }
+}
+
+export function behaviorHref(id: string): string {
+  return `/behaviors/${id.split('/').map(encodeURIComponent).join('/')}`
+}
+
+export function runHref(id: string): string {
+  return `/runs/${encodeURIComponent(id)}`
+}
+
+const listeners = new Set<() => void>()
+
+export function goTo(href: string): void {
+  if (href !== location.pathname) history.pushState(null, '', href)
+  listeners.forEach((listener) => listener())
+}
+
+function subscribe(listener: () => void): () => void {
+  listeners.add(listener)
+  addEventListener('popstate', listener)
+  return () => {
+    listeners.delete(listener)
+    removeEventListener('popstate', listener)
+  }
+}
+
+export function useRoute(): Route {
+  return routeOf(useSyncExternalStore(subscribe, () => location.pathname))
+}

@@ -1,0 +1,32 @@
+/** Something fetched from the server, fetched again when its key changes, or the server was restarted. */
+import { useEffect, useState } from 'react'
+import { ServerError } from '../api/client'
+import { useLive } from '../api/live'
+
+export interface Fetched<T> {
+  readonly value: T | undefined
+  readonly problem: string | undefined
+}
+
+export function useFetched<T>(key: string, load: () => Promise<T>): Fetched<T> {
+  const generation = useLive((s) => s.generation)
+  const [state, setState] = useState<Fetched<T> & { key: string }>({ key, value: undefined, problem: undefined })
+  useEffect(() => {
+    let current = true
+    load().then(
+      (value) => current && setState({ key, value, problem: undefined }),
+      (error: unknown) => current && setState({ key, value: undefined, problem: wordsOf(error) }),
+    )
+    return () => {
+      current = false
+    }
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- the key stands for what `load` depends on
+  }, [key, generation])
+  // What another server process said is shown until this one has answered: nothing typed is lost.
+  return state.key === key ? state : { value: undefined, problem: undefined }
+}
+
+function wordsOf(error: unknown): string {
+  if (error instanceof ServerError) return [error.body.message, error.body.hint].filter(Boolean).join(' – ')
+  return error instanceof Error ? error.message : String(error)
+}

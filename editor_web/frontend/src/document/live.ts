@@ -1,0 +1,84 @@
+/** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
+import type { Delta, Frame, LogLine, NodeLive, RunLine, Snapshot } from '../api/types'
+
+/** Log lines kept in the page; older ones are in the journal. */
+export const LOG_LINES = 2000
+
+export interface LiveState {
+  readonly epoch: string
+  readonly role: string
+  readonly run: string
+  readonly seq: number
+  /** The run's clock at `atMs` of the page's own steady clock; it goes on from there while `ticking`. */
+  readonly nowS: number
+  readonly atMs: number
+  readonly ticking: boolean
+  readonly runs: readonly RunLine[]
+  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly log: readonly LogLine[]
+  readonly dropped: number
+}
+
+export const EMPTY: LiveState = {
+  epoch: '',
+  role: '',
+  run: '',
+  seq: 0,
+  nowS: 0,
+  atMs: 0,
+  ticking: false,
+  runs: [],
+  nodes: {},
+  log: [],
+  dropped: 0,
+}
+
+/** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
+export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 'gap' {
+  switch (frame.k) {
+    case 'hello':
+      return { ...(state.epoch === frame.epoch ? state : EMPTY), epoch: frame.epoch, role: frame.role }
+    case 'snapshot':
+      return fromSnapshot(state, frame, atMs)
+    case 'delta':
+      return frame.run !== state.run || frame.after !== state.seq ? 'gap' : withDelta(state, frame, atMs)
+    case 'ping':
+      return state
+  }
+}
+
+function fromSnapshot(state: LiveState, frame: Snapshot, atMs: number): LiveState {
+  const { run, seq, runs, nodes, log, ticking } = frame
+  const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
+  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped }
+}
+
+function withDelta(state: LiveState, frame: Delta, atMs: number): LiveState {
+  const log = frame.log.length > 0 ? [...state.log, ...frame.log] : state.log
+  const over = Math.max(0, log.length - LOG_LINES)
+  return {
+    ...state,
+    seq: frame.seq,
+    nowS: frame.now_s,
+    atMs,
+    ticking: frame.ticking,
+    runs: mergeRuns(state.runs, frame.runs),
+    nodes: Object.keys(frame.nodes).length > 0 ? { ...state.nodes, ...frame.nodes } : state.nodes,
+    log: over > 0 ? log.slice(over) : log,
+    dropped: state.dropped + frame.dropped + over,
+  }
+}
+
+function mergeRuns(runs: readonly RunLine[], changed: readonly RunLine[]): readonly RunLine[] {
+  if (changed.length === 0) return runs
+  const byId = new Map(changed.map((run) => [run.id, run]))
+  const kept = runs.map((run) => byId.get(run.id) ?? run)
+  const known = new Set(runs.map((run) => run.id))
+  const added = changed.filter((run) => !known.has(run.id))
+  return [...added, ...kept].sort((a, b) => b.started_at_s - a.started_at_s)
+}
+
+/** Is this run still going? */
+export function isActive(run: RunLine | undefined): boolean {
+  return run?.status === 'running' || run?.status === 'stopping'
+}

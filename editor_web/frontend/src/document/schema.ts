@@ -1,0 +1,106 @@
+/** From a parameter's JSON Schema to a field of the form: kind, label, range, checks. Pure. */
+import type { ParameterBody } from '../api/types'
+
+export type FieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'json'
+
+export interface Field {
+  readonly name: string
+  readonly kind: FieldKind
+  readonly label: string
+  readonly description: string
+  readonly unit: string
+  readonly required: boolean
+  readonly minimum: number | undefined
+  readonly maximum: number | undefined
+  readonly choices: readonly string[]
+  readonly initial: unknown
+}
+
+/** Describe one parameter as a form field. */
+export function fieldOf(parameter: ParameterBody): Field {
+  const { schema } = parameter
+  const choices = Array.isArray(schema['enum']) ? schema['enum'].map(String) : []
+  const kind = choices.length > 0 ? 'choice' : kindOf(schema['type'])
+  return {
+    name: parameter.name,
+    kind,
+    label: text(schema['title']) || parameter.name,
+    description: text(schema['description']),
+    unit: text(schema['unit']),
+    required: parameter.required,
+    minimum: numeric(schema['minimum']) ?? numeric(schema['exclusiveMinimum']),
+    maximum: numeric(schema['maximum']) ?? numeric(schema['exclusiveMaximum']),
+    choices,
+    initial: initialOf(kind, schema['default']),
+  }
+}
+
+function kindOf(type: unknown): FieldKind {
+  const first = Array.isArray(type) ? type.find((t) => t !== 'null') : type
+  switch (first) {
+    case 'number':
+    case 'integer':
+    case 'boolean':
+      return first
+    case 'string':
+      return 'text'
+    default:
+      return 'json'
+  }
+}
+
+function initialOf(kind: FieldKind, value: unknown): unknown {
+  if (kind === 'json') return value === undefined ? '' : JSON.stringify(value, null, 1)
+  if (kind === 'boolean') return value === true
+  return value ?? ''
+}
+
+function text(value: unknown): string {
+  return typeof value === 'string' ? value : ''
+}
+
+function numeric(value: unknown): number | undefined {
+  return typeof value === 'number' ? value : undefined
+}
+
+/** The allowed range in words, `0.05 – 1`, `≥ 1`; empty without limits. */
+export function rangeText(field: Field): string {
+  const { minimum, maximum } = field
+  if (minimum !== undefined && maximum !== undefined) return `${minimum} – ${maximum}`
+  if (minimum !== undefined) return `≥ ${minimum}`
+  return maximum !== undefined ? `≤ ${maximum}` : ''
+}
+
+/** What is wrong with a value, or nothing; the engine checks again. */
+export function problemWith(field: Field, value: unknown): string | undefined {
+  const empty = value === '' || value === undefined || value === null
+  if (empty) return field.required ? 'A value is required' : undefined
+  if (field.kind === 'json') return isJson(String(value)) ? undefined : 'This is not JSON'
+  if (field.kind !== 'number' && field.kind !== 'integer') return undefined
+  const number = Number(value)
+  if (!Number.isFinite(number)) return 'This is not a number'
+  if (field.kind === 'integer' && !Number.isInteger(number)) return 'This must be a whole number'
+  const tooLow = field.minimum !== undefined && number < field.minimum
+  const tooHigh = field.maximum !== undefined && number > field.maximum
+  return tooLow || tooHigh ? `Must be ${rangeText(field)}` : undefined
+}
+
+function isJson(value: string): boolean {
+  try {
+    JSON.parse(value)
+    return true
+  } catch {
+    return false
+  }
+}
+
+/** The parameters to send; fields left empty are left out, so that the document's default holds. */
+export function parametersOf(fields: readonly Field[], values: Readonly<Record<string, unknown>>): Record<string, unknown> {
+  const filled = fields.filter((field) => values[field.name] !== '' && values[field.name] !== undefined)
+  return Object.fromEntries(filled.map((field) => [field.name, valueOf(field, values[field.name])]))
+}
+
+function valueOf(field: Field, value: unknown): unknown {
+  if (field.kind === 'number' || field.kind === 'integer') return Number(value)
+  return field.kind === 'json' ? (JSON.parse(String(value)) as unknown) : value
+}

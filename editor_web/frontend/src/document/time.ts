@@ -1,0 +1,24 @@
+/** Times in words; never throws, whatever the browser's locale is called. */
+
+/** `0.42 s`, `12.3 s`, `3:05 min`, `1:02:03 h`. */
+export function duration(seconds: number): string {
+  if (!Number.isFinite(seconds) || seconds < 0) return '–'
+  if (seconds < 10) return `${seconds.toFixed(2)} s`
+  if (seconds < 60) return `${seconds.toFixed(1)} s`
+  const whole = Math.floor(seconds)
+  const parts = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60]
+  if (parts[0] === 0) return `${parts[1]}:${pad(parts[2] ?? 0)} min`
+  return `${parts[0]}:${pad(parts[1] ?? 0)}:${pad(parts[2] ?? 0)} h`
+}
+
+/** `14:03:27` in the viewer's time zone; with the date when it is not today's. */
+export function wallTime(secondsSince1970: number, now: Date = new Date()): string {
+  const at = new Date(secondsSince1970 * 1000)
+  const time = [at.getHours(), at.getMinutes(), at.getSeconds()].map(pad).join(':')
+  if (at.toDateString() === now.toDateString()) return time
+  return `${at.getFullYear()}-${pad(at.getMonth() + 1)}-${pad(at.getDate())} ${time}`
+}
+
+function pad(part: number): string {
+  return String(part).padStart(2, '0')
+}

@@ -1,0 +1,41 @@
+/** Looking things up in a behavior's tree of nodes. Pure. */
+import type { GraphNodeBody } from '../api/types'
+
+export const CONTAINER_KINDS: ReadonlySet<string> = new Set(['machine', 'concurrency', 'priority', 'tree', 'foreach'])
+
+/** All nodes, parents before children. */
+export function flatten(root: GraphNodeBody): readonly GraphNodeBody[] {
+  return [root, ...root.children.flatMap(flatten)]
+}
+
+/** The node at a path. */
+export function nodeAt(root: GraphNodeBody, path: string): GraphNodeBody | undefined {
+  return flatten(root).find((node) => node.path === path)
+}
+
+/** The paths from the root down to `path`, both included. */
+export function pathsTo(path: string): readonly string[] {
+  const parts = path.split('/')
+  return parts.map((_, index) => parts.slice(0, index + 1).join('/'))
+}
+
+/** Is it drawn with its children inside? */
+export function isContainer(node: GraphNodeBody): boolean {
+  return node.children.length > 0
+}
+
+/** The kind of a node in words. */
+export function kindLabel(kind: string): string {
+  switch (kind) {
+    case 'machine':
+      return 'State machine'
+    case 'concurrency':
+      return 'Concurrent'
+    case 'behavior':
+      return 'Behavior'
+    case 'state':
+      return 'State'
+    default:
+      return kind.charAt(0).toUpperCase() + kind.slice(1)
+  }
+}

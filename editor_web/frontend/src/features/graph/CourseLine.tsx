@@ -1,0 +1,43 @@
+/** One arrow of a machine along its laid-out course; the one that was followed last is lit. */
+import type { EdgeProps } from '@xyflow/react'
+import { memo } from 'react'
+import { useLive } from '../../api/live'
+import { roundedPath } from '../../document/geometry'
+import type { CourseEdge } from './elements'
+
+export const CourseLine = memo(function CourseLine({ data }: EdgeProps<CourseEdge>) {
+  const course = data?.course
+  const taken = useLive((s) => {
+    const [, source = '', outcome = ''] = (course?.id ?? '').split('|')
+    return course !== undefined && s.nodes[course.machine]?.followed === `${source}|${outcome}`
+  })
+  if (!course) return null
+  const state = `${taken ? ' is-taken' : ''}${/fail|error|abort/.test(course.outcome) ? ' is-failure' : ''}`
+  return (
+    <>
+      <path
+        d={roundedPath(course.points)}
+        className={`course${state}`}
+        markerEnd={`url(#arrow${taken ? '-taken' : ''})`}
+      />
+      <text x={course.label.x} y={course.label.y} className={`course-label${state}`}>
+        {course.outcome}
+      </text>
+    </>
+  )
+})
+
+/** The heads of all arrows, once per canvas. */
+export function ArrowHeads() {
+  return (
+    <svg className="arrow-heads" aria-hidden>
+      <defs>
+        {['arrow', 'arrow-taken'].map((id) => (
+          <marker key={id} id={id} viewBox="0 0 10 10" refX="8.5" refY="5" markerWidth="7" markerHeight="7" orient="auto">
+            <path d="M 0 1 L 9 5 L 0 9 z" className={id} />
+          </marker>
+        ))}
+      </defs>
+    </svg>
+  )
+}

@@ -1,0 +1,201 @@
+/** The live graph of a behavior: laid out once, lit by the run. */
+import '@xyflow/react/dist/style.css'
+import { ActionIcon, Group, Loader, Tooltip } from '@mantine/core'
+import { useElementSize } from '@mantine/hooks'
+import {
+  IconArrowsMaximize,
+  IconArrowsRightDown,
+  IconFocus2,
+  IconMinus,
+  IconPlus,
+} from '@tabler/icons-react'
+import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow } from '@xyflow/react'
+import { useEffect, useMemo, useState, type ReactNode } from 'react'
+import { useLive } from '../../api/live'
+import type { GraphNodeBody, NodeLive } from '../../api/types'
+import { Empty } from '../../components/Empty'
+import { Panel } from '../../components/Panel'
+import { flatten, isContainer } from '../../document/tree'
+import { ArrowHeads, CourseLine } from './CourseLine'
+import { canvasEdges, canvasNodes, type CanvasNode } from './elements'
+import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
+import { useLayout, type Flow, type LaidOut } from './useLayout'
+
+const NODE_TYPES = { leaf: LeafNode, container: ContainerNode, outcome: OutcomeNodeShell }
+const EDGE_TYPES = { course: CourseLine }
+/** Small graphs are not blown up beyond what is read well, more on screens of very high resolution. */
+function fitOptions() {
+  return { padding: 0.04, maxZoom: innerWidth > 2400 ? 1.9 : 1.2 }
+}
+
+export interface GraphProps {
+  readonly root: GraphNodeBody
+  /** Path of the selected node. */
+  readonly selected: string | undefined
+  readonly onSelect: (path: string | undefined) => void
+  /** Shown in the head of the panel. */
+  readonly breadcrumb: ReactNode
+}
+
+export function Graph(props: GraphProps) {
+  return (
+    <ReactFlowProvider>
+      <Canvas {...props} />
+    </ReactFlowProvider>
+  )
+}
+
+function Canvas({ root, selected, onSelect, breadcrumb }: GraphProps) {
+  const { ref, width, height } = useElementSize()
+  const [flow, setFlow] = useState<Flow>('AUTO')
+  const [follows, setFollows] = useState(false)
+  const pane = width > 0 && height > 0 ? { width, height } : undefined
+  const { laidOut, problem } = useLayout(root, flow, pane)
+  const turned = laidOut?.direction === 'RIGHT' ? 'DOWN' : 'RIGHT'
+  return (
+    <Panel
+      title="Graph"
+      className="graph-panel"
+      tools={
+        <>
+          {breadcrumb}
+          <span className="spacer" />
+          <CanvasTools onTurn={() => setFlow(turned)} follows={follows} onFollow={() => setFollows(!follows)} />
+        </>
+      }
+    >
+    <div className="graph" ref={ref}>
+      <ArrowHeads />
+      {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
+      {!laidOut && !problem && (
+        <div className="graph-wait" role="status">
+          <Loader size="sm" aria-hidden />
+          <span>Drawing…</span>
+        </div>
+      )}
+      {laidOut && (
+        <Drawn
+          laidOut={laidOut}
+          pane={`${width}x${height}`}
+          selected={selected}
+          onSelect={onSelect}
+          follows={follows}
+        />
+      )}
+    </div>
+    </Panel>
+  )
+}
+
+interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb'> {
+  readonly laidOut: LaidOut
+  readonly pane: string
+  readonly follows: boolean
+}
+
+/** The paths of the active leaves, in one string so that it changes only when they do. */
+function activeLeaves(root: GraphNodeBody, nodes: Readonly<Record<string, NodeLive>>): string {
+  const leaves = flatten(root).filter((node) => !isContainer(node) && nodes[node.path]?.status === 'active')
+  return leaves.map((node) => node.path).join('\n')
+}
+
+function followOptions(active: string) {
+  return { nodes: active.split('\n').map((id) => ({ id })), padding: 0.35, maxZoom: 1, duration: 300 }
+}
+
+function Drawn({ laidOut, pane, selected, onSelect, follows }: DrawnProps) {
+  const { fitView } = useReactFlow()
+  const active = useLive((s) => (follows ? activeLeaves(laidOut.root, s.nodes) : ''))
+  const drawn = useMemo(() => canvasNodes(laidOut), [laidOut])
+  const edges = useMemo(() => canvasEdges(laidOut), [laidOut])
+  const nodes = useMemo<CanvasNode[]>(
+    () => drawn.map((node) => (node.id === selected ? { ...node, selected: true } : node)),
+    [drawn, selected],
+  )
+
+  useEffect(() => {
+    const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
+    return () => cancelAnimationFrame(frame)
+  }, [laidOut, pane, active, fitView])
+
+  return (
+    <ReactFlow
+      nodes={nodes}
+      edges={edges}
+      nodeTypes={NODE_TYPES}
+      edgeTypes={EDGE_TYPES}
+      onNodeClick={(_, node) => onSelect(node.type === 'outcome' ? undefined : node.id)}
+      onPaneClick={() => onSelect(undefined)}
+      onNodesChange={(changes) => {
+        const chosen = changes.find((change) => change.type === 'select' && change.selected)
+        if (chosen && 'id' in chosen) onSelect(chosen.id)
+      }}
+      nodesDraggable={false}
+      nodesConnectable={false}
+      edgesFocusable={false}
+      deleteKeyCode={null}
+      minZoom={0.1}
+      maxZoom={3}
+      fitView
+      fitViewOptions={fitOptions()}
+      proOptions={{ hideAttribution: false }}
+      aria-label="Graph of the behavior"
+    >
+      <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+    </ReactFlow>
+  )
+}
+
+interface CanvasToolsProps {
+  readonly onTurn: () => void
+  readonly follows: boolean
+  readonly onFollow: () => void
+}
+
+function CanvasTools({ onTurn, follows, onFollow }: CanvasToolsProps) {
+  const { fitView, zoomIn, zoomOut } = useReactFlow()
+  return (
+    <Group gap={2} wrap="nowrap">
+      <Tool label="Follow what is active" onClick={onFollow} pressed={follows}>
+        <IconFocus2 size={16} />
+      </Tool>
+      <Tool label="Zoom in" onClick={() => void zoomIn({ duration: 150 })}>
+        <IconPlus size={16} />
+      </Tool>
+      <Tool label="Zoom out" onClick={() => void zoomOut({ duration: 150 })}>
+        <IconMinus size={16} />
+      </Tool>
+      <Tool label="Show all" onClick={() => void fitView({ ...fitOptions(), duration: 200 })}>
+        <IconArrowsMaximize size={16} />
+      </Tool>
+      <Tool label="Turn the direction of the flow" onClick={onTurn}>
+        <IconArrowsRightDown size={16} />
+      </Tool>
+    </Group>
+  )
+}
+
+interface ToolProps {
+  readonly label: string
+  readonly onClick: () => void
+  /** Given for what is switched on and off. */
+  readonly pressed?: boolean
+  readonly children: ReactNode
+}
+
+function Tool({ label, onClick, pressed, children }: ToolProps) {
+  return (
+    <Tooltip label={label} openDelay={300}>
+      <ActionIcon
+        variant={pressed ? 'light' : 'subtle'}
+        color={pressed ? 'accent' : 'gray'}
+        size="md"
+        aria-label={label}
+        {...(pressed === undefined ? {} : { 'aria-pressed': pressed })}
+        onClick={onClick}
+      >
+        {children}
+      </ActionIcon>
+    </Tooltip>
+  )
+}

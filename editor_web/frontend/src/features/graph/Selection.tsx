@@ -1,0 +1,51 @@
+/** What is known of the selected node: kind, state, outcomes, last visit, why it failed. */
+import { useLive } from '../../api/live'
+import type { GraphNodeBody } from '../../api/types'
+import { Elapsed } from '../../components/Elapsed'
+import { StatusBadge } from '../../components/StatusBadge'
+import { duration } from '../../document/time'
+import { kindLabel } from '../../document/tree'
+
+export function Selection({ node }: { node: GraphNodeBody }) {
+  const live = useLive((s) => s.nodes[node.path])
+  return (
+    <section className="selection" aria-label={`Selected: ${node.name}`}>
+      <div className="selection-head">
+        <strong>{node.name}</strong>
+        {live && <StatusBadge status={live.status} outcome={live.status === 'done' || live.status === 'failed' ? live.outcome : null} />}
+      </div>
+      <dl className="facts">
+        <dt>Kind</dt>
+        <dd>{kindLabel(node.kind)}</dd>
+        {node.title && (
+          <>
+            <dt>Runs</dt>
+            <dd className="mono">{node.title}</dd>
+          </>
+        )}
+        <dt>Outcomes</dt>
+        <dd>{node.outcomes.join(', ') || '–'}</dd>
+        {node.conditions.length > 0 && (
+          <>
+            <dt>Ends</dt>
+            <dd>
+              {node.conditions.map((condition) => (
+                <div key={condition}>{condition}</div>
+              ))}
+            </dd>
+          </>
+        )}
+        <dt>Visits</dt>
+        <dd>{live?.visits ?? 0}</dd>
+        <dt>Time</dt>
+        <dd>{live?.status === 'active' ? <Elapsed sinceS={live.entered_s} /> : live ? duration(live.duration_s) : '–'}</dd>
+        {live?.cause && (
+          <>
+            <dt>Cause</dt>
+            <dd className="is-failed">{live.cause}</dd>
+          </>
+        )}
+      </dl>
+    </section>
+  )
+}

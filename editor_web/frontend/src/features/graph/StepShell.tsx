@@ -1,0 +1,132 @@
+/** One node on the canvas: a leaf, or a container with its children drawn inside. */
+import { Handle, Position, type NodeProps } from '@xyflow/react'
+import { IconArrowsSplit2, IconBox, IconFileImport, IconLogout, IconSitemap } from '@tabler/icons-react'
+import { memo } from 'react'
+import { useLive } from '../../api/live'
+import type { NodeLive } from '../../api/types'
+import { Elapsed } from '../../components/Elapsed'
+import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { duration } from '../../document/time'
+import { kindLabel } from '../../document/tree'
+import type { OutcomeNode, StepNode } from './elements'
+
+const KIND_ICONS: Record<string, typeof IconBox> = {
+  machine: IconSitemap,
+  concurrency: IconArrowsSplit2,
+  behavior: IconFileImport,
+}
+
+export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps<StepNode>) {
+  const live = useLive((s) => s.nodes[id])
+  const status = statusOf(live?.status ?? 'idle')
+  return (
+    <div className={`step leaf is-${status}${selected ? ' is-selected' : ''}`} data-status={status}>
+      <Ports />
+      {data.isInitial && <span className="initial-mark" title="The first state" />}
+      {/* A new key starts the animation again, so that a visit shorter than a frame is seen. */}
+      <span key={live?.visits ?? 0} className={live && live.visits > 0 ? 'blink' : undefined} />
+      <div className="leaf-head">
+        <StatusIcon status={status} />
+        <span className="step-name">{data.node.name}</span>
+        {live && live.visits > 1 && <span className="visits">×{live.visits}</span>}
+      </div>
+      <div className="step-title">{data.node.title || kindLabel(data.node.kind)}</div>
+      <div className="step-foot">
+        <LiveText live={live} />
+      </div>
+      <Exits data={data} />
+    </div>
+  )
+})
+
+export const ContainerNode = memo(function ContainerNode({ id, data, selected }: NodeProps<StepNode>) {
+  const live = useLive((s) => s.nodes[id])
+  const status = statusOf(live?.status ?? 'idle')
+  const { node } = data
+  const Icon = KIND_ICONS[node.kind] ?? IconBox
+  return (
+    <div
+      className={`step container kind-${node.kind} is-${status}${selected ? ' is-selected' : ''}`}
+      data-status={status}
+    >
+      <Ports />
+      {data.isInitial && <span className="initial-mark" title="The first state" />}
+      <div className="container-head">
+        <Icon size={16} className="kind-icon" aria-hidden />
+        <span className="step-name">{node.name}</span>
+        <span className="kind-name">{kindLabel(node.kind)}</span>
+        <span className="spacer" />
+        {status !== 'idle' && <StatusIcon status={status} size={14} />}
+        <span className="container-live">
+          <LiveText live={live} />
+        </span>
+      </div>
+      <div className="container-foot">
+        {node.conditions.length > 0 && (
+          <div className="conditions" title={node.conditions.join('\n')}>
+            {node.conditions.join(' · ')}
+          </div>
+        )}
+        <Exits data={data} />
+      </div>
+    </div>
+  )
+})
+
+/** The ways out that are written here instead of drawn; the one that was taken is lit. */
+function Exits({ data }: { data: StepNode['data'] }) {
+  const followed = useLive((s) => (data.exits.length > 0 ? s.nodes[data.machine]?.followed : undefined))
+  if (data.exits.length === 0) return null
+  return (
+    <div className="exits">
+      {data.exits.map(({ outcome, target }) => (
+        <span
+          key={outcome}
+          className={`exit${followed === `${data.node.name}|${outcome}` ? ' is-taken' : ''}`}
+          title={`${outcome} ends the machine with ${target}`}
+        >
+          <IconLogout size={11} aria-hidden />
+          {outcome === target ? outcome : `${outcome} → ${target}`}
+        </span>
+      ))}
+    </div>
+  )
+}
+
+function LiveText({ live }: { live: NodeLive | undefined }) {
+  if (!live || live.status === 'idle') return <span className="quiet">{live && live.visits > 0 ? 'waiting again' : ''}</span>
+  if (live.status === 'active') {
+    return <Elapsed sinceS={live.entered_s} />
+  }
+  return (
+    <>
+      <span className="outcome-text">{live.status === 'stopped' ? 'stopped' : live.outcome}</span>
+      <span className="quiet">{duration(live.duration_s)}</span>
+    </>
+  )
+}
+
+export const OutcomeNodeShell = memo(function OutcomeNodeShell({ data }: NodeProps<OutcomeNode>) {
+  const reached = useLive((s) => {
+    const machine = s.nodes[data.machine]
+    return machine !== undefined && machine.status !== 'active' && machine.outcome === data.outcome
+      ? machine.status
+      : 'idle'
+  })
+  return (
+    <div className={`outcome is-${statusOf(reached)}`}>
+      <Ports />
+      {data.outcome}
+    </div>
+  )
+})
+
+/** The canvas wants ends for its arrows; ours come with their courses, so these are never seen. */
+function Ports() {
+  return (
+    <>
+      <Handle type="target" position={Position.Left} className="port" isConnectable={false} />
+      <Handle type="source" position={Position.Right} className="port" isConnectable={false} />
+    </>
+  )
+}

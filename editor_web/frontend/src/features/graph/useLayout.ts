@@ -1,0 +1,59 @@
+/** Lays a behavior out in the direction that fills the pane best. */
+import { useEffect, useState } from 'react'
+import type { GraphNodeBody } from '../../api/types'
+import { zoom, type Size } from '../../document/geometry'
+import { layOut, type Direction, type Layout, type Style } from '../../document/layout'
+import { loadElk } from './elk'
+
+export interface LaidOut {
+  readonly root: GraphNodeBody
+  readonly layout: Layout
+  readonly direction: Direction
+}
+
+export type Flow = Direction | 'AUTO'
+
+export function useLayout(root: GraphNodeBody, flow: Flow, pane: Size | undefined) {
+  const [laidOut, setLaidOut] = useState<LaidOut>()
+  const [problem, setProblem] = useState<string>()
+  const measured = pane !== undefined
+  // Only a real change of size is worth another layout; dragging a border a little is not.
+  const step = (length: number) => Math.round(2 * Math.log2(Math.max(1, length)))
+  const size = pane ? `${step(pane.width)} ${step(pane.height)}` : ''
+
+  useEffect(() => {
+    let current = true
+    async function run(): Promise<void> {
+      const call = await loadElk()
+      const area = pane ?? { width: 1, height: 1 }
+      const all = await Promise.all(
+        stylesOf(flow, area).map(async (style) => ({
+          root,
+          direction: style.direction,
+          layout: await layOut(root, style, call),
+        })),
+      )
+      const best = all.reduce((a, b) => (zoom(b.layout.size, area) > zoom(a.layout.size, area) * 1.05 ? b : a))
+      if (current) setLaidOut(best)
+    }
+    if (measured) {
+      run().catch((error: unknown) => current && setProblem(error instanceof Error ? error.message : String(error)))
+    }
+    return () => {
+      current = false
+    }
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- the pane counts by its rough size only
+  }, [root, flow, measured, size])
+
+  return { laidOut: laidOut?.root === root ? laidOut : undefined, problem }
+}
+
+/** Row lengths that are tried, in widths of the pane; a longer row wins where shorter ones gain little. */
+const ROWS = [Infinity, 1, 1.3, 1.6, 2, 2.5, 3.2]
+
+/** What is tried: chains in rows of several lengths, and downwards where the reader has not chosen. */
+function stylesOf(flow: Flow, pane: Size): readonly Style[] {
+  if (flow === 'RIGHT') return ROWS.map((widths) => ({ direction: 'RIGHT', rowLimit: widths * pane.width }))
+  if (flow === 'DOWN') return [{ direction: 'DOWN', rowLimit: Infinity }]
+  return [...stylesOf('RIGHT', pane), ...stylesOf('DOWN', pane)]
+}

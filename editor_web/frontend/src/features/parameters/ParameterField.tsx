@@ -1,0 +1,85 @@
+/** One parameter as the input that fits its kind. */
+import { NumberInput, Select, Switch, Textarea, TextInput } from '@mantine/core'
+import { rangeText, type Field } from '../../document/schema'
+
+export interface ParameterFieldProps {
+  readonly field: Field
+  readonly value: unknown
+  readonly problem: string | undefined
+  readonly onChange: (value: unknown) => void
+}
+
+export function ParameterField({ field, value, problem, onChange }: ParameterFieldProps) {
+  const range = rangeText(field)
+  const common = {
+    size: 'sm' as const,
+    name: field.name,
+    label: (
+      <>
+        {field.label}
+        {(range || field.unit) && <span className="field-range">{[range, field.unit].filter(Boolean).join(' ')}</span>}
+      </>
+    ),
+    description: field.description || undefined,
+    withAsterisk: field.required,
+    error: problem,
+  }
+  switch (field.kind) {
+    case 'number':
+    case 'integer':
+      return (
+        <NumberInput
+          {...common}
+          value={value as string | number}
+          onChange={onChange}
+          allowDecimal={field.kind === 'number'}
+          clampBehavior="none"
+          step={stepOf(field)}
+          rightSection={field.unit ? <span className="field-unit">{field.unit}</span> : undefined}
+          rightSectionWidth={field.unit ? 44 : undefined}
+        />
+      )
+    case 'boolean':
+      return (
+        <Switch
+          size="sm"
+          name={field.name}
+          label={field.label}
+          description={field.description || undefined}
+          error={problem}
+          checked={value === true}
+          onChange={(event) => onChange(event.currentTarget.checked)}
+        />
+      )
+    case 'choice':
+      return (
+        <Select
+          {...common}
+          data={field.choices}
+          value={value === '' ? null : String(value)}
+          onChange={(chosen) => onChange(chosen ?? '')}
+          allowDeselect={!field.required}
+        />
+      )
+    case 'json':
+      return (
+        <Textarea
+          {...common}
+          className="mono"
+          autosize
+          minRows={2}
+          value={String(value)}
+          onChange={(event) => onChange(event.currentTarget.value)}
+        />
+      )
+    case 'text':
+      return <TextInput {...common} value={String(value)} onChange={(event) => onChange(event.currentTarget.value)} />
+  }
+}
+
+/** A step that suits the range: a twentieth of it, rounded to one digit. */
+function stepOf(field: Field): number {
+  if (field.kind === 'integer') return 1
+  if (field.minimum === undefined || field.maximum === undefined) return 0.1
+  return Number(((field.maximum - field.minimum) / 20).toPrecision(1))
+}

@@ -1,0 +1,69 @@
+/** The runs of this server, newest first. */
+import { useLive } from '../../api/live'
+import type { RunLine } from '../../api/types'
+import { Elapsed } from '../../components/Elapsed'
+import { Empty } from '../../components/Empty'
+import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { isActive } from '../../document/live'
+import { duration, wallTime } from '../../document/time'
+
+export interface RunListProps {
+  readonly current: string | undefined
+  readonly href: (run: string) => string
+  readonly onOpen: (run: string) => void
+  readonly limit: number
+}
+
+export function RunList({ current, href, onOpen, limit }: RunListProps) {
+  const runs = useLive((s) => s.runs)
+  return (
+    <nav className="run-list" aria-label="Runs">
+      <h2 className="side-title">Runs</h2>
+      {runs.length === 0 && <Empty title="No runs yet">Choose a behavior and start it.</Empty>}
+      <ul className="plain-list">
+        {runs.slice(0, limit).map((run) => (
+          <li key={run.id}>
+            <a
+              href={href(run.id)}
+              className={`side-item run-item${run.id === current ? ' is-current' : ''}`}
+              aria-current={run.id === current ? 'page' : undefined}
+              onClick={(event) => {
+                if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+                event.preventDefault()
+                onOpen(run.id)
+              }}
+            >
+              <StatusIcon status={statusOf(isFailure(run) ? 'failed' : run.status)} size={15} />
+              <span className="side-item-name">{nameOf(run.behavior)}</span>
+              <span className="side-item-text">
+                {wallTime(run.started_at_s)} · {runText(run)}
+              </span>
+            </a>
+          </li>
+        ))}
+      </ul>
+    </nav>
+  )
+}
+
+function runText(run: RunLine): string {
+  if (isActive(run)) return run.status
+  return `${run.outcome ?? run.status}, ${duration(run.duration_s)}`
+}
+
+/** Did it end badly? */
+export function isFailure(run: RunLine): boolean {
+  return run.status === 'errored' || (run.status === 'finished' && !run.success)
+}
+
+/** The file name without its ending. */
+export function nameOf(behavior: string): string {
+  return (behavior.split('/').pop() ?? behavior).replace(/\.(ya?ml|json)$/, '')
+}
+
+/** How long a run takes or took. */
+export function RunTime({ run }: { run: RunLine }) {
+  const watched = useLive((s) => s.run)
+  if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <span className="elapsed">{run.status}</span>
+  return <span className="elapsed">{duration(run.duration_s)}</span>
+}

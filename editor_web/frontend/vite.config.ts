@@ -1,0 +1,18 @@
+/** How the page is built: into the Python package, in files whose names carry their content's hash. */
+import react from '@vitejs/plugin-react'
+import { defineConfig } from 'vite'
+
+/** Where `flexcell serve` listens, for `npm run dev`. */
+const server = 'http://127.0.0.1:8642'
+
+export default defineConfig({
+  plugins: [react()],
+  build: { outDir: '../static', emptyOutDir: true, target: 'es2023', chunkSizeWarningLimit: 1600, manifest: true },
+  worker: { format: 'es' },
+  server: {
+    proxy: {
+      '/api': { target: server, ws: true },
+      '/cell': { target: server, ws: true },
+    },
+  },
+})

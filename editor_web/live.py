@@ -1,0 +1,299 @@
+"""The live stream: one hub folds the engine's events, each client gets a snapshot and then deltas.
+
+State is last-value-wins per node and coalesced per client, log lines are a bounded ring with a
+count of what fell out; a client asks anew when `after` does not fit what it has. The engine's
+side only marks what is dirty and never waits for anybody.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import time
+from collections import deque
+from collections.abc import Callable
+
+import msgspec
+
+from editor_web.backend import Backend, RunSummary, Unsubscribe
+from editor_web.live_run import LOG_LINES, Change, LiveRun, LogLine, NodeLive
+from engine.errors import FlexcellError
+from engine.event import Event
+
+PROTOCOL_VERSION = 1
+KEPT_RUNS = 50
+
+
+class RunLine(msgspec.Struct, frozen=True, kw_only=True):
+    """One run in the list of runs; the same fields as the HTTP interface has."""
+
+    id: str
+    behavior: str
+    status: str
+    outcome: str | None
+    success: bool
+    cause: str
+    started_at_s: float
+    duration_s: float
+
+
+class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k"):
+    """First frame; another `epoch` than before means that the server was restarted."""
+
+    version: int
+    epoch: str
+    role: str
+    server_time_s: float
+
+
+class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
+    """Everything of the watched run (empty when none is) and all runs, newest first.
+
+    `now_s` is the run's clock at sending; it goes on with wall time while `ticking`.
+    """
+
+    run: str
+    seq: int
+    now_s: float
+    ticking: bool
+    runs: tuple[RunLine, ...]
+    nodes: dict[str, NodeLive]
+    log: tuple[LogLine, ...]
+
+
+class Delta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_field="k"):
+    """What changed in the watched run since `after`, and the runs that changed; `dropped` log lines are missing."""
+
+    run: str
+    after: int
+    seq: int
+    now_s: float
+    ticking: bool
+    runs: tuple[RunLine, ...]
+    nodes: dict[str, NodeLive]
+    log: tuple[LogLine, ...]
+    dropped: int
+
+
+class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
+    """Nothing happened; the connection lives."""
+
+    server_time_s: float
+
+
+class Watch(msgspec.Struct, frozen=True, kw_only=True, tag="watch", tag_field="k"):
+    """From the client: show this run from now on (empty: the list of runs only); answered by a snapshot."""
+
+    run: str = ""
+
+
+class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k"):
+    """From the client: answer to a ping."""
+
+
+Frame = Hello | Snapshot | Delta | Ping
+Request = Watch | Pong
+
+
+class LiveClient:
+    """What one page still has to be told; `frame` takes it."""
+
+    def __init__(self, hub: LiveHub) -> None:
+        self._hub = hub
+        self._watched: LiveRun | None = None
+        self._sent_seq = 0
+        self._snapshot_due = True
+        self._nodes: dict[str, NodeLive] = {}
+        self._log: deque[LogLine] = deque()
+        self._dropped = 0
+        self._runs: dict[str, None] = {}
+        self.dirty = asyncio.Event()
+        self.dirty.set()
+
+    def watch(self, run_id: str) -> None:
+        """Follow another run, or none (empty id); an unknown one shows as empty."""
+        self._watched = self._hub.live_run(run_id) if run_id else None
+        self._snapshot_due = True
+        self.dirty.set()
+
+    def note(self, live: LiveRun, change: Change) -> None:
+        """Mark what changed; called by the hub for every event, never blocks."""
+        if change.run_changed:
+            self._runs[live.run_id] = None
+            self.dirty.set()
+        if self._watched is None or live.run_id != self._watched.run_id:
+            return
+        if live is not self._watched:
+            # It was watched before it was known.
+            self.watch(live.run_id)
+            return
+        self._nodes.update(change.nodes)
+        self._log.append(change.line)
+        if len(self._log) > LOG_LINES:
+            self._log.popleft()
+            self._dropped += 1
+        self.dirty.set()
+
+    def refresh(self, live: LiveRun) -> None:
+        """Mark a run that was rebuilt as a whole."""
+        self._runs[live.run_id] = None
+        self.dirty.set()
+        if self._watched is not None and live.run_id == self._watched.run_id:
+            self.watch(live.run_id)
+
+    def frame(self) -> Snapshot | Delta | None:
+        """Take what is due as one frame; None when nothing is."""
+        self.dirty.clear()
+        if self._snapshot_due:
+            made: Snapshot | Delta | None = self._snapshot()
+        elif self._nodes or self._log or self._runs:
+            made = self._delta()
+        else:
+            made = None
+        self._snapshot_due = False
+        self._nodes, self._log, self._dropped = {}, deque(), 0
+        # The engine tells the end of a run before it has filed it; such a run is looked at again.
+        self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
+        if self._runs:
+            self.dirty.set()
+        self._sent_seq = self._watched.seq if self._watched else 0
+        return made
+
+    def _snapshot(self) -> Snapshot:
+        live = self._watched
+        return Snapshot(
+            run=live.run_id if live else "",
+            seq=live.seq if live else 0,
+            now_s=self._hub.now_s(live),
+            ticking=_ticking(live),
+            runs=tuple(map(_run_line, self._hub.backend.runs())),
+            nodes=dict(live.nodes) if live else {},
+            log=tuple(live.log) if live else (),
+        )
+
+    def _delta(self) -> Delta:
+        live = self._watched
+        return Delta(
+            run=live.run_id if live else "",
+            after=self._sent_seq,
+            seq=live.seq if live else 0,
+            now_s=self._hub.now_s(live),
+            ticking=_ticking(live),
+            runs=tuple(_run_line(self._hub.backend.run(run_id)) for run_id in self._runs),
+            nodes=self._nodes,
+            log=tuple(self._log),
+            dropped=self._dropped,
+        )
+
+
+class LiveHub:
+    """Folds every run's events once and tells all clients.
+
+    Args:
+        backend: The engine.
+        wall_s: A steady clock, seconds.
+    """
+
+    def __init__(self, backend: Backend, *, wall_s: Callable[[], float] = time.monotonic) -> None:
+        self.backend = backend
+        self.epoch = secrets.token_hex(8)
+        self._wall_s = wall_s
+        self._runs: dict[str, LiveRun] = {}
+        self._seen_at_s: dict[str, float] = {}
+        self._clients: set[LiveClient] = set()
+        self._unsubscribe: Unsubscribe | None = None
+
+    @property
+    def clients(self) -> tuple[LiveClient, ...]:
+        """Who is told."""
+        return tuple(self._clients)
+
+    def open(self) -> None:
+        """Begin to follow the engine's events."""
+        self._unsubscribe = self.backend.subscribe(self._on_event)
+
+    def close(self) -> None:
+        """Stop following."""
+        if self._unsubscribe is not None:
+            self._unsubscribe()
+            self._unsubscribe = None
+
+    def join(self) -> LiveClient:
+        """Return a new client; `leave` ends it."""
+        client = LiveClient(self)
+        self._clients.add(client)
+        return client
+
+    def leave(self, client: LiveClient) -> None:
+        """Forget a client."""
+        self._clients.discard(client)
+
+    def live_run(self, run_id: str) -> LiveRun:
+        """Return the folded run, rebuilt from the journal where it is not at hand."""
+        if run_id not in self._runs:
+            live = LiveRun(run_id)
+            for event in self._recorded(run_id):
+                live.apply(event)
+            if live.seq == 0:
+                return live
+            self._keep(live)
+        return self._runs[run_id]
+
+    def now_s(self, live: LiveRun | None) -> float:
+        """Return the run's clock now, carried on by wall time since its last event while it ticks."""
+        if live is None:
+            return 0.0
+        if not _ticking(live):
+            return live.time_s
+        return live.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
+
+    def is_settled(self, run_id: str) -> bool:
+        """Say whether the backend's word on a run agrees with the run's events."""
+        live = self._runs.get(run_id)
+        return live is None or not live.ended or self.backend.run(run_id).status not in ("running", "stopping")
+
+    def _on_event(self, run_id: str, event: Event) -> None:
+        # A run that was under way before the hub opened is rebuilt first, this event included or not.
+        live = self.live_run(run_id)
+        if live.seq == 0:
+            self._keep(live)
+        change = live.apply(event)
+        self._seen_at_s[run_id] = self._wall_s()
+        if change is None:
+            for client in self._clients:
+                client.refresh(live)
+            return
+        for client in self._clients:
+            client.note(live, change)
+
+    def _recorded(self, run_id: str) -> list[Event]:
+        try:
+            return self.backend.events(run_id)
+        except FlexcellError:
+            # A page may ask for a run that is gone; it gets an empty one.
+            return []
+
+    def _keep(self, live: LiveRun) -> None:
+        self._runs[live.run_id] = live
+        over = [run_id for run_id, kept in self._runs.items() if kept.ended]
+        for run_id in over[: max(0, len(self._runs) - KEPT_RUNS)]:
+            if run_id != live.run_id:
+                del self._runs[run_id]
+                self._seen_at_s.pop(run_id, None)
+
+
+def _ticking(live: LiveRun | None) -> bool:
+    return live is not None and live.real_time and not live.ended
+
+
+def _run_line(run: RunSummary) -> RunLine:
+    return RunLine(
+        id=run.id,
+        behavior=run.behavior,
+        status=run.status,
+        outcome=run.outcome,
+        success=run.success,
+        cause=run.cause,
+        started_at_s=run.started_at_s,
+        duration_s=run.duration_s,
+    )

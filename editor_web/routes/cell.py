@@ -1,0 +1,93 @@
+"""`/cell/`: viser's page and websocket on our own origin, behind our own gate."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+
+import websockets.asyncio.client
+from fastapi import APIRouter, HTTPException, WebSocket
+from fastapi.responses import HTMLResponse, Response
+from starlette.concurrency import run_in_threadpool
+from starlette.websockets import WebSocketDisconnect
+from websockets.exceptions import ConnectionClosed
+from websockets.typing import Subprotocol
+
+from editor_web.cell_view import KEY_HEADER, CellView, page
+from editor_web.routes.services import ServicesOf, services_of
+
+router = APIRouter(include_in_schema=False)
+# As viser's own limit: its render answers are large.
+MAX_MESSAGE_BYTES = 50 * 1024 * 1024
+UNAVAILABLE = 1013
+
+
+class _Closed(Exception):
+    """One of the two sides has gone."""
+
+
+@router.get("/cell/")
+async def cell_page(services: ServicesOf) -> Response:
+    """Serve the one-file page of the 3D view."""
+    if services.cell_view is None:
+        raise HTTPException(404, "this server has no cell view")
+    return HTMLResponse(await run_in_threadpool(page))
+
+
+@router.websocket("/cell/")
+@router.websocket("/cell")
+async def cell_socket(socket: WebSocket) -> None:
+    """Pass the 3D view's websocket through to viser and back."""
+    view = services_of(socket).cell_view
+    if view is None:
+        await socket.close(UNAVAILABLE, "this server has no cell view")
+        return
+    try:
+        async with _viser(view, socket.scope.get("subprotocols", [])) as inner:
+            await socket.accept(subprotocol=inner.subprotocol)
+            async with asyncio.TaskGroup() as tasks:
+                tasks.create_task(_inwards(socket, inner), name="cell-inwards")
+                tasks.create_task(_outwards(socket, inner), name="cell-outwards")
+    except* _Closed:
+        pass
+
+
+@asynccontextmanager
+async def _viser(view: CellView, offered: list[str]) -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
+    connection = await websockets.asyncio.client.connect(
+        f"ws://127.0.0.1:{view.port}/",
+        subprotocols=[Subprotocol(p) for p in offered if p.startswith("viser-v")],
+        additional_headers={KEY_HEADER: view.key},
+        max_size=MAX_MESSAGE_BYTES,
+        compression=None,
+        proxy=None,
+    )
+    async with connection:
+        yield connection
+
+
+async def _inwards(socket: WebSocket, inner: websockets.asyncio.client.ClientConnection) -> None:
+    while True:
+        message = await socket.receive()
+        if message["type"] == "websocket.disconnect":
+            raise _Closed
+        data = message.get("bytes")
+        try:
+            await inner.send(data if data is not None else message.get("text", ""))
+        except ConnectionClosed as error:
+            raise _Closed from error
+
+
+async def _outwards(socket: WebSocket, inner: websockets.asyncio.client.ClientConnection) -> None:
+    try:
+        async for message in inner:
+            if isinstance(message, bytes):
+                await socket.send_bytes(message)
+            else:
+                await socket.send_text(message)
+        await socket.close(UNAVAILABLE, "the cell view has ended")
+    except (ConnectionClosed, WebSocketDisconnect, RuntimeError) as error:
+        # Starlette raises RuntimeError for a send after the close.
+        raise _Closed from error
+    raise _Closed

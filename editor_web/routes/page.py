@@ -1,0 +1,43 @@
+"""The built page: its files, and `index.html` for every address that the page itself routes."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, HTTPException
+from fastapi.responses import FileResponse, HTMLResponse, Response
+
+from editor_web.routes.services import ServicesOf
+
+router = APIRouter(include_in_schema=False)
+NOT_BUILT = (
+    "<!doctype html><html lang=en><title>flexcell</title><h1>The page is not built</h1>"
+    "<p>Run <code>pip install -e .</code> in the project, then reload.</p></html>"
+)
+
+
+@router.get("/assets/{name:path}")
+def asset(name: str, services: ServicesOf) -> Response:
+    """Serve one built file; names carry a hash of the content, so browsers may keep them for ever."""
+    folder = (services.static / "assets").resolve()
+    file = (folder / name).resolve()
+    if not file.is_relative_to(folder) or not file.is_file():
+        raise HTTPException(404, "no such file")
+    return FileResponse(file, headers={"cache-control": "public, max-age=31536000, immutable"})
+
+
+@router.get("/favicon.svg")
+def icon(services: ServicesOf) -> Response:
+    """Serve the icon."""
+    file = services.static / "favicon.svg"
+    if not file.is_file():
+        raise HTTPException(404, "no such file")
+    return FileResponse(file)
+
+
+@router.get("/")
+@router.get("/behaviors/{rest:path}")
+@router.get("/runs/{rest:path}")
+def index(services: ServicesOf, rest: str = "") -> Response:
+    """Serve the page; what `rest` means is the page's business."""
+    del rest
+    file = services.static / "index.html"
+    return FileResponse(file, media_type="text/html") if file.is_file() else HTMLResponse(NOT_BUILT, status_code=503)

@@ -1,0 +1,75 @@
+"""Runs: start, stop, list, and the recorded events of one."""
+
+from __future__ import annotations
+
+import secrets
+from collections import OrderedDict
+from typing import Annotated
+
+import msgspec
+from fastapi import APIRouter, Header, HTTPException, Query, Request, Response
+
+from editor_web.routes.services import ServicesOf
+from editor_web.wire import ErrorBody, EventsBody, RunBody, StartBody, StartedBody, StopBody
+from engine.errors import FlexcellError
+
+router = APIRouter(prefix="/api/v1/runs", tags=["runs"])
+KEPT_KEYS = 200
+
+
+@router.get("")
+def list_runs(services: ServicesOf) -> list[RunBody]:
+    """List the known runs, newest first."""
+    return [RunBody.model_validate(run) for run in services.backend.runs()]
+
+
+@router.get("/{run_id}", responses={404: {"model": ErrorBody}})
+def get_run(run_id: str, services: ServicesOf) -> RunBody:
+    """Return one run."""
+    try:
+        return RunBody.model_validate(services.backend.run(run_id))
+    except FlexcellError as error:
+        raise HTTPException(404, error.message) from error
+
+
+@router.post("", status_code=201, responses={422: {"model": ErrorBody}})
+async def start_run(
+    body: StartBody,
+    services: ServicesOf,
+    request: Request,
+    response: Response,
+    idempotency_key: Annotated[str | None, Header(max_length=100)] = None,
+) -> StartedBody:
+    """Start a run; the same Idempotency-Key again returns the run it started and starts nothing."""
+    started: OrderedDict[str, str] = request.app.state.started
+    if idempotency_key is not None and idempotency_key in started:
+        response.status_code = 200
+        return StartedBody(run=started[idempotency_key])
+    seed = secrets.randbelow(2**31) if body.seed is None else body.seed
+    run_id = await services.backend.start(body.behavior, parameters=body.parameters, seed=seed)
+    if idempotency_key is not None:
+        started[idempotency_key] = run_id
+        while len(started) > KEPT_KEYS:
+            started.popitem(last=False)
+    return StartedBody(run=run_id)
+
+
+@router.post("/{run_id}/stop", status_code=202, responses={422: {"model": ErrorBody}})
+async def stop_run(run_id: str, body: StopBody, services: ServicesOf) -> None:
+    """Ask a run to stop; the robots decelerate and the run ends as `stopped`."""
+    await services.backend.stop(run_id, reason=body.reason)
+
+
+@router.get("/{run_id}/events", responses={404: {"model": ErrorBody}})
+def list_events(
+    run_id: str,
+    services: ServicesOf,
+    after: Annotated[int, Query(ge=0)] = 0,
+    limit: Annotated[int, Query(ge=1, le=5000)] = 1000,
+) -> EventsBody:
+    """Return a page of the recorded events with `seq` > `after`."""
+    try:
+        events = services.backend.events(run_id, after=after)[:limit]
+    except FlexcellError as error:
+        raise HTTPException(404, error.message) from error
+    return EventsBody(events=tuple(msgspec.to_builtins(e) for e in events), last=events[-1].seq if events else after)

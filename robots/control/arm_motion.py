@@ -1,0 +1,196 @@
+"""One arm's motions over time: follow a trajectory, hold, resume, cancel, and judge how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.control.playback import Playback
+from robots.port import Array, JointTrajectory, MotionEnd, Tolerance
+
+_REST_RAD_S = 0.01
+_REST_S = 0.02
+# An arm that failed gives way to where it is, within this time, so that it presses on nothing.
+_GIVE_WAY_S = 0.1
+_STILL_MOVING_AFTER_S = 3.0
+
+
+@dataclass(kw_only=True)
+class _Following:
+    """The motion under way."""
+
+    number: int
+    playback: Playback
+    tolerance: Tolerance
+    ending: MotionEnd | None = None
+    reason: str = ""
+    hold: bool = False
+    told_held: bool = False
+    tell_resumed: bool = False
+    waited_s: float = 0.0
+
+
+class ArmMotion:
+    """The set point of one arm; without a motion it stays where it is.
+
+    `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
+    control period with the measured joints.
+    """
+
+    def __init__(self, *, joints: tuple[str, ...], acceleration_rad_s2: Array, touching: Callable[[], str]) -> None:
+        self._joints = joints
+        self._acceleration_limit = acceleration_rad_s2
+        self._touching = touching
+        self._following: _Following | None = None
+        self._rest_s = 0.0
+        self._give_way: tuple[Array, Array, float] | None = None
+        self.position = np.zeros(len(joints))
+        self.velocity = np.zeros(len(joints))
+        self.acceleration = np.zeros(len(joints))
+
+    def initialize(self, position: Array) -> None:
+        """Hold `position` from now on."""
+        self.position[:] = position
+        self._stand_still()
+
+    @property
+    def number(self) -> int:
+        """The motion under way, 0 when there is none."""
+        return self._following.number if self._following else 0
+
+    @property
+    def progress(self) -> float:
+        """Share of the present trajectory's time passed; 1 when there is none."""
+        return self._following.playback.progress if self._following else 1.0
+
+    def follow(self, number: int, trajectory: JointTrajectory, tolerance: Tolerance) -> None:
+        """Start a motion; the trajectory starts at the set point and no other motion is under way."""
+        playback = Playback(trajectory, acceleration_rad_s2=self._acceleration_limit)
+        self._following = _Following(number=number, playback=playback, tolerance=tolerance)
+
+    def hold(self, number: int) -> None:
+        """Decelerate on the path."""
+        if self._following and self._following.number == number:
+            self._following.hold, self._following.told_held, self._following.tell_resumed = True, False, False
+
+    def resume(self, number: int) -> None:
+        """Go on along the path."""
+        if self._following and self._following.number == number:
+            self._following.hold, self._following.tell_resumed = False, True
+
+    def cancel(self, number: int) -> None:
+        """Decelerate on the path, then end as canceled."""
+        if self._following and self._following.number == number and self._following.ending is None:
+            self._following.ending = MotionEnd.CANCELED
+
+    def stop(self) -> None:
+        """Cancel whatever runs."""
+        self.cancel(self.number)
+
+    def step(self, step_s: float, *, position: Array, velocity: Array) -> tuple[AnyMotionEvent, ...]:
+        """Move the set point on by one period and return what happened."""
+        at_rest = self._measure_rest(step_s, velocity)
+        following = self._following
+        if following is None:
+            return ()
+        if self._give_way is not None:
+            self._yield(step_s)
+        else:
+            target = 0.0 if following.hold or following.ending is not None else 1.0
+            following.playback.step(step_s, target_pace=target)
+            self._take(following.playback)
+            self._check_path(following, position)
+        return self._judge(following, step_s, position, at_rest)
+
+    def _measure_rest(self, step_s: float, velocity: Array) -> bool:
+        self._rest_s = self._rest_s + step_s if np.abs(velocity).max() < _REST_RAD_S else 0.0
+        return self._rest_s >= _REST_S
+
+    def _take(self, playback: Playback) -> None:
+        self.position[:] = playback.position
+        self.velocity[:] = playback.velocity
+        self.acceleration[:] = playback.acceleration
+
+    def _stand_still(self) -> None:
+        self.velocity[:] = 0.0
+        self.acceleration[:] = 0.0
+
+    def _check_path(self, following: _Following, position: Array) -> None:
+        if following.ending is MotionEnd.FAILED:
+            return
+        error = np.abs(self.position - position)
+        worst = int(np.argmax(error))
+        if error[worst] > following.tolerance.path_rad:
+            following.ending = MotionEnd.FAILED
+            following.reason = self._reason(worst, float(error[worst]), "behind its set point")
+
+    def _reason(self, joint: int, error_rad: float, what: str) -> str:
+        contact = self._touching()
+        return f"{self._joints[joint]} is {error_rad:.3f} rad {what}" + (f"; {contact}" if contact else "")
+
+    def _judge(
+        self, following: _Following, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        playback = following.playback
+        if following.tell_resumed and (playback.pace > 0.0 or playback.at_end):
+            following.tell_resumed = False
+            return (MotionResumed(motion=following.number),)
+        if not playback.stopped:
+            return ()
+        if following.ending is not None:
+            return self._end_when_at_rest(following, step_s, position, at_rest)
+        if following.hold:
+            if not at_rest or following.told_held:
+                return ()
+            following.told_held = True
+            return (MotionHeld(motion=following.number),)
+        return self._settle(following, step_s, position, at_rest)
+
+    def _settle(
+        self, following: _Following, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        error = np.abs(following.playback.goal - position)
+        worst = int(np.argmax(error))
+        if at_rest and error[worst] <= following.tolerance.goal_rad:
+            return self._finish(following, MotionEnd.REACHED, "")
+        following.waited_s += step_s
+        if following.waited_s >= following.tolerance.settle_s:
+            following.ending, following.waited_s = MotionEnd.FAILED, 0.0
+            moving = "" if at_rest else " and still moving"
+            settle = f"away from the goal{moving} after {following.tolerance.settle_s:g} s"
+            following.reason = self._reason(worst, float(error[worst]), settle)
+        return ()
+
+    def _end_when_at_rest(
+        self, following: _Following, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        ending = following.ending or MotionEnd.CANCELED
+        if ending is MotionEnd.FAILED and self._give_way is None:
+            self._give_way = (self.position.copy(), position.copy(), 0.0)
+            return ()
+        following.waited_s += step_s
+        if self._give_way is not None and self._give_way[2] < 1.0:
+            return ()
+        if at_rest:
+            return self._finish(following, ending, following.reason)
+        if following.waited_s >= _STILL_MOVING_AFTER_S:
+            reason = (following.reason + "; " if following.reason else "") + "the arm does not come to rest"
+            return self._finish(following, MotionEnd.FAILED, reason)
+        return ()
+
+    def _yield(self, step_s: float) -> None:
+        assert self._give_way is not None
+        start, target, share = self._give_way
+        share = min(1.0, share + step_s / _GIVE_WAY_S)
+        self._give_way = (start, target, share)
+        self.position[:] = start + share * (target - start)
+        self._stand_still()
+
+    def _finish(self, following: _Following, end: MotionEnd, reason: str) -> tuple[AnyMotionEvent, ...]:
+        self._following, self._give_way = None, None
+        self._stand_still()
+        progress = following.playback.progress
+        return (MotionFinished(motion=following.number, end=end.value, progress=progress, reason=reason),)

@@ -1,0 +1,33 @@
+"""What a control loop tells about the motions it carries out, as plain messages."""
+
+from __future__ import annotations
+
+import msgspec
+
+
+class MotionEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
+    """Something happened to the motion with this number."""
+
+    motion: int
+
+
+class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
+    """It ended (`end` is the value of a `MotionEnd`) and the device is at rest; `reason` if it failed.
+
+    `progress` is the share of its way that it made.
+    """
+
+    end: str
+    progress: float
+    reason: str = ""
+
+
+class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):
+    """It stands still on its path."""
+
+
+class MotionResumed(MotionEvent, frozen=True, kw_only=True, tag="resumed"):
+    """It is moving along its path again."""
+
+
+AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed

@@ -1,0 +1,138 @@
+"""One two-finger gripper on the bus: answers the gripper skills over a `GripperPort`, simulated or real."""
+
+from __future__ import annotations
+
+import asyncio
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import GoalRejected, RobotError, SkillFailed
+from engine.messages import GripperState
+from engine.skills.gripper import (
+    GraspResult,
+    GripperFeedback,
+    GripperGrasp,
+    GripperMove,
+    GripperOpen,
+    ReadGripper,
+)
+from robots.gripper.grip_judgement import Grip, judge
+from robots.port import GripperPort, GripperSample, Motion, MotionEnd
+
+FEEDBACK_S = 0.05
+_MOVE_FORCE_N = 30.0
+_AT_WIDTH_M = 0.002
+
+
+class GripperServer:
+    """Serves a gripper under `name`, usually `<arm>/gripper`; it belongs to its arm's `ArmServer`."""
+
+    def __init__(self, *, name: str, port: GripperPort) -> None:
+        self.name = name
+        self._port = port
+        self._motion: Motion | None = None
+        self._grip: Grip | None = None
+
+    @property
+    def moving(self) -> bool:
+        """True while a goal is carried out."""
+        return self._motion is not None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the gripper skills."""
+        bus.advertise_action(GripperOpen, self._open, namespace=self.name, exclusive=self.name)
+        bus.advertise_action(GripperMove, self._move, namespace=self.name, exclusive=self.name)
+        bus.advertise_action(GripperGrasp, self._grasp, namespace=self.name, exclusive=self.name)
+        bus.advertise_service(ReadGripper, self._read, namespace=self.name)
+
+    async def stop(self) -> None:
+        """Stop the fingers where they are; what is held stays held."""
+        if self._motion is not None:
+            self._motion.cancel()
+            await self._motion.report()
+
+    async def _open(self, goal: GripperOpen, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        handle.accept()
+        return await self._move_to(self._port.max_width_m, goal.speed_m_s, handle)
+
+    async def _move(self, goal: GripperMove, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        self._refuse_beyond(goal.width_m, handle)
+        handle.accept()
+        return await self._move_to(goal.width_m, goal.speed_m_s, handle)
+
+    async def _grasp(self, goal: GripperGrasp, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        self._refuse_beyond(goal.width_m, handle)
+        handle.accept()
+        self._grip = Grip(
+            least_m=goal.width_m - goal.tolerance_inner_m,
+            most_m=goal.width_m + goal.tolerance_outer_m,
+            force_n=goal.force_n,
+        )
+        await self._carry_out(0.0, goal.speed_m_s, goal.force_n, handle)
+        sample = self._port.sample()
+        reason = judge(sample, self._grip)
+        return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason)
+
+    async def _read(self, request: ReadGripper) -> GripperState:
+        sample = self._port.sample()
+        return GripperState(
+            time_s=sample.time_s,
+            width_m=sample.width_m,
+            force_n=sample.force_n,
+            held=self._grip is not None and not judge(sample, self._grip),
+        )
+
+    async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        self._grip = None
+        await self._carry_out(width_m, speed_m_s, _MOVE_FORCE_N, handle)
+        sample = self._port.sample()
+        if abs(sample.width_m - width_m) > _AT_WIDTH_M and not handle.cancel_requested:
+            raise SkillFailed(
+                f"the fingers stopped at {sample.width_m * 1e3:.1f} mm{_touching(sample)},"
+                f" wanted {width_m * 1e3:.1f} mm",
+                where=handle.address,
+                hint="clear what is between or beside the fingers",
+            )
+        reason = f"fingers moved to {sample.width_m * 1e3:.1f} mm"
+        return GraspResult(held=False, width_m=sample.width_m, force_n=sample.force_n, reason=reason)
+
+    def _refuse_beyond(self, width_m: float, handle: ActiveGoal[GripperFeedback]) -> None:
+        if width_m > self._port.max_width_m:
+            raise GoalRejected(
+                f"an opening of {width_m * 1e3:.1f} mm is not possible",
+                where=handle.address,
+                hint=f"this gripper opens to {self._port.max_width_m * 1e3:.1f} mm",
+            )
+
+    async def _carry_out(
+        self, width_m: float, speed_m_s: float, force_n: float, handle: ActiveGoal[GripperFeedback]
+    ) -> None:
+        """Move the fingers and return when they have come to rest, also when cancelled."""
+        try:
+            motion = self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n)
+        except RobotError as error:
+            raise SkillFailed("the fingers were not started", where=handle.address) from error
+        self._motion = motion
+        handle.on_cancel(motion.cancel)
+        handle.on_hold(motion.hold)
+        handle.on_resume(motion.resume)
+        report = asyncio.ensure_future(motion.report())
+        try:
+            while not (await asyncio.wait((report,), timeout=FEEDBACK_S))[0]:
+                handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))
+        finally:
+            # Also when this task is cancelled, the goal ends with the fingers at rest.
+            if not report.done():
+                motion.cancel()
+                await asyncio.wait((report,))
+            self._motion = None
+        end = report.result()
+        if end.end is MotionEnd.FAILED:
+            cause = RobotError(end.reason or "the port gives no reason", where=self.name)
+            raise SkillFailed("the gripper did not finish", where=handle.address) from cause
+        if end.end is MotionEnd.CANCELED and not handle.cancel_requested:
+            raise SkillFailed("the gripper was told to stop", where=handle.address)
+
+
+def _touching(sample: GripperSample) -> str:
+    bodies = [body for body in dict.fromkeys(sample.contacts) if body]
+    return f" against {' and '.join(bodies)}" if bodies else ""

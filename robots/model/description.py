@@ -1,0 +1,54 @@
+"""Where installed robot descriptions lie: packages, `package://` URIs, and the SRDF's collision pairs."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+
+from engine.errors import CellError
+
+_SCHEME = "package://"
+
+
+def installed_share_dir(*, package: str, marker: str) -> Path:
+    """Return the folder of an installed distribution that `marker` (a relative path) lies in.
+
+    Raises:
+        CellError: the distribution is not installed, or installed without that file.
+    """
+    advice = f"pip install {package}"
+    try:
+        files = distribution(package).files or []
+    except PackageNotFoundError as error:
+        raise CellError(f"the Python package {package} is not installed", where=package, hint=advice) from error
+    suffix = "/" + marker
+    for file in files:
+        if str(file).endswith(suffix):
+            path = Path(str(file.locate()))
+            if path.is_file():
+                return Path(str(path.resolve()).removesuffix(suffix))
+    raise CellError(f"the package {package} has no file {marker}", where=package, hint=f"{advice} --force-reinstall")
+
+
+def resolve_uri(uri: str, *, package_dir: Path, relative_to: Path) -> Path:
+    """Return the file that a URDF's mesh `filename` means.
+
+    `package://<path>` lies below `package_dir`; anything else is relative to the folder `relative_to`.
+
+    Raises:
+        CellError: there is no such file.
+    """
+    if uri.startswith(_SCHEME):
+        path = package_dir / uri.removeprefix(_SCHEME)
+    else:
+        path = relative_to / uri.removeprefix("file://")
+    if not path.is_file():
+        raise CellError(f"no mesh file {path}", where=uri, hint="check the package folder of the robot model")
+    return path
+
+
+def disabled_collisions(srdf: Path) -> tuple[tuple[str, str], ...]:
+    """Return the link pairs of an SRDF's `disable_collisions`, in file order."""
+    root = ET.parse(srdf).getroot()
+    return tuple((pair.attrib["link1"], pair.attrib["link2"]) for pair in root.iter("disable_collisions"))

@@ -1,0 +1,95 @@
+"""Point to point in joint space: all joints in phase, trapezoidal or jerk-limited velocity."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import ruckig
+
+from engine.errors import RobotError
+from robots.model.robot_model import JointLimits
+from robots.port import Array, JointTrajectory
+
+# ruckig has no stubs: it stays behind this file, which hands out numpy arrays.
+profiles: Any = ruckig
+
+ACCELERATION_SHARE = 0.5
+"""Share of the joints' acceleration used at speed 1; the rest is left to holding, stopping and tracking."""
+
+_SAMPLE_S = 0.002
+# The interpolation between two samples may overshoot the velocity at a corner of the trapezoid.
+_VELOCITY_SHARE = 0.995
+_NO_WAY_RAD = 1e-9
+_NO_SHARE = 1e-12
+
+
+def plan_joints(
+    start: Array,
+    goal: Array,
+    *,
+    speed: float,
+    limits: JointLimits,
+    joint_names: tuple[str, ...],
+    jerk_limited: bool = False,
+) -> JointTrajectory:
+    """Return the way from `start` to `goal` (radians, shape (n,)), at rest at both ends.
+
+    `speed` in (0, 1] is the share of the joint velocity limits; accelerations shrink with it. With
+    `jerk_limited` the acceleration is ramped within the joint jerk limits.
+
+    Raises:
+        RobotError: the goal has another number of joints, or one beyond its limit.
+    """
+    _check_goal(goal, limits, joint_names)
+    farthest = float(np.abs(goal - start).max())
+    if farthest < _NO_WAY_RAD:
+        return _standing(start, goal)
+    shares = np.abs(goal - start) / farthest
+    request = profiles.InputParameter(1)
+    request.current_position, request.target_position = [0.0], [farthest]
+    request.max_velocity = [_slowest(limits.velocity_rad_s, shares) * speed * _VELOCITY_SHARE]
+    request.max_acceleration = [_slowest(limits.acceleration_rad_s2, shares) * speed * ACCELERATION_SHARE]
+    request.max_jerk = [_slowest(limits.jerk_rad_s3, shares) if jerk_limited else math.inf]
+    profile = profiles.Trajectory(1)
+    outcome = profiles.Ruckig(1).calculate(request, profile)
+    if outcome not in (profiles.Result.Working, profiles.Result.Finished):
+        raise RobotError(f"no velocity profile reaches the goal ({outcome})", hint="check the limits of the model")
+    return _sampled(profile, start, goal, farthest)
+
+
+def _slowest(limits: tuple[float, ...], shares: Array) -> float:
+    """Return what the joint with the farthest to go may do so that no joint exceeds its limit.
+
+    All joints follow one profile, as ruckig's own phase synchronisation gives up where the slowest
+    joint's profile is too hard for another one.
+    """
+    moving = shares > _NO_SHARE
+    return float(np.min(np.array(limits)[moving] / shares[moving]))
+
+
+def _standing(start: Array, goal: Array) -> JointTrajectory:
+    return JointTrajectory(
+        dt_s=_SAMPLE_S, position_rad=np.array([start, goal]), velocity_rad_s=np.zeros((2, len(start)))
+    )
+
+
+def _check_goal(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> None:
+    if len(goal) != len(joint_names):
+        raise RobotError(f"the goal has {len(goal)} joints", hint=f"this arm has {len(joint_names)}")
+    for name, angle, lower, upper in zip(joint_names, goal.tolist(), limits.lower_rad, limits.upper_rad, strict=True):
+        if not math.isfinite(angle) or not lower <= angle <= upper:
+            raise RobotError(f"{name} cannot go to {angle:.4f} rad", hint=f"its range is {lower} to {upper} rad")
+
+
+def _sampled(profile: Any, start: Array, goal: Array, farthest: float) -> JointTrajectory:
+    duration_s = float(profile.duration)
+    intervals = max(1, math.ceil(duration_s / _SAMPLE_S))
+    dt_s = duration_s / intervals
+    states = [profile.at_time(i * dt_s) for i in range(intervals + 1)]
+    share = np.array([state[0] for state in states], dtype=np.float64) / farthest
+    rate = np.array([state[1] for state in states], dtype=np.float64) / farthest
+    position, velocity = start + share * (goal - start), rate * (goal - start)
+    position[-1], velocity[0], velocity[-1] = goal, 0.0, 0.0
+    return JointTrajectory(dt_s=dt_s, position_rad=position, velocity_rad_s=velocity)

@@ -1,0 +1,16 @@
+"""Minimum jerk: the smoothest way from 0 to 1 at rest at both ends (quintic)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.port import Array
+
+PEAK_SPEED = 1.875
+"""Greatest speed of the profile, as a multiple of the mean speed."""
+
+
+def min_jerk(share: Array) -> Array:
+    """Return how much of the way is done when `share` (0 to 1, any shape) of the time has passed."""
+    t = np.clip(share, 0.0, 1.0)
+    return t**3 * (10.0 - 15.0 * t + 6.0 * t**2)

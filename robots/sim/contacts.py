@@ -1,0 +1,74 @@
+"""Who touches whom in a world, and how hard."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robots.sim.cell_model import ArmIndices, CellModel
+from robots.sim.physics import Physics
+
+_NOTHING = -1
+
+
+@dataclass(frozen=True, kw_only=True)
+class PadContact:
+    """What one pad touches: the body pressed hardest (-1 for none), and the force along the closing direction."""
+
+    body: int = _NOTHING
+    force_n: float = 0.0
+
+
+class ContactReader:
+    """Reads the contacts of the step just done."""
+
+    def __init__(self, cell: CellModel, physics: Physics) -> None:
+        self._physics = physics
+        self._names = cell.body_names
+        self._parts = frozenset(cell.parts)
+        self._geom_body = physics.geom_body
+
+    def pads(self, pad_geoms: tuple[int, int]) -> tuple[PadContact, PadContact]:
+        """Return what the two pads touch; the fingers of the same hand do not count."""
+        left, right = pad_geoms
+        pairs = self._physics.contact_pairs()
+        if not pairs:
+            return PadContact(), PadContact()
+        own = (self._geom_body[left], self._geom_body[right])
+        return self._pad(left, own, pairs), self._pad(right, own, pairs)
+
+    def _pad(self, pad: int, own: tuple[int, int], pairs: list[tuple[int, int]]) -> PadContact:
+        forces: dict[int, float] = {}
+        # Pads face along y. A part held askew presses by normal and friction force together.
+        closing = self._physics.geom_y_axis(pad)
+        for index, (a, b) in enumerate(pairs):
+            if pad not in (a, b):
+                continue
+            other = self._geom_body[b if a == pad else a]
+            if other not in own:
+                forces[other] = forces.get(other, 0.0) + self._physics.pressing_force_n(index, closing)
+        if not forces:
+            return PadContact()
+        return PadContact(body=max(forces, key=lambda body: forces[body]), force_n=sum(forces.values()))
+
+    def describe(self, arm: ArmIndices) -> str:
+        """Say in words what the arm touches, empty for nothing: `left hand touches part hca_north`."""
+        touched: dict[str, float] = {}
+        for index, (a, b) in enumerate(self._physics.contact_pairs()):
+            body_a, body_b = self._geom_body[a], self._geom_body[b]
+            if (body_a in arm.bodies) == (body_b in arm.bodies):
+                continue
+            mine, other = (body_a, body_b) if body_a in arm.bodies else (body_b, body_a)
+            words = f"{self._member(arm, mine)} touches {self._other(other)}"
+            touched[words] = touched.get(words, 0.0) + self._physics.normal_force_n(index)
+        hardest = sorted(touched, key=lambda words: -touched[words])
+        return " and ".join(hardest[:3])
+
+    def _member(self, arm: ArmIndices, body: int) -> str:
+        link = self._names[body].removeprefix(f"{arm.name}/")
+        return f"{arm.name} {link.removeprefix(f'{arm.model.name}_')}"
+
+    def _other(self, body: int) -> str:
+        name = self._names[body]
+        if name in self._parts:
+            return f"part {name}"
+        return name.replace("/", " ") if "/" in name else f"fixture {name}"

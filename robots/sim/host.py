@@ -1,0 +1,60 @@
+"""Where a simulated world runs: in this process in lockstep, or in a process of its own in real time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from robots.control.motion_event import AnyMotionEvent
+from robots.sim.commands import AnyCommand
+from robots.sim.snapshot import CellSummary, Snapshot
+
+
+class HostListener(Protocol):
+    """Who hears, on the event loop thread, what happens in the world."""
+
+    def happened(self, event: AnyMotionEvent) -> None:
+        """A motion ended, was held or goes on."""
+        ...
+
+    def lost(self, reason: str) -> None:
+        """The world is gone; nothing more will happen."""
+        ...
+
+
+class Host(Protocol):
+    """A running world."""
+
+    @property
+    def summary(self) -> CellSummary:
+        """What the world consists of."""
+        ...
+
+    def snapshot(self) -> Snapshot:
+        """Its newest state."""
+        ...
+
+    def send(self, command: AnyCommand) -> None:
+        """Give a command, which acts from one of the next steps on.
+
+        Raises:
+            RobotError: the world is gone.
+        """
+        ...
+
+    async def open(self, listener: HostListener) -> None:
+        """Build the world and begin to tell `listener`.
+
+        Raises:
+            CellError: it cannot be built.
+            RobotError: its process does not start.
+        """
+        ...
+
+    async def close(self) -> None:
+        """End it; everything in it has come to rest before."""
+        ...
+
+
+StepHook = Callable[[], bool]
+"""Called after every step in lockstep; true when it called back into the event loop."""

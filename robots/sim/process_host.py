@@ -1,0 +1,207 @@
+"""A world in a process of its own, in real time: control keeps its deadlines while this process plans and serves."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+from engine.errors import CellError, RobotError
+from robots.sim.commands import AnyCommand, Shutdown
+from robots.sim.framing import FrameReader, framed
+from robots.sim.host import HostListener
+from robots.sim.scene import Scene
+from robots.sim.shared_state import SharedNumbers, new_shared_file
+from robots.sim.snapshot import CellSummary, Snapshot, SnapshotLayout
+from robots.sim.timing import SIZE, Timing, timing_of
+from robots.sim.world_report import AnyReport, WorldReady, WorldRefused
+
+_START = "from robots.sim.process_main import main; main()"
+_ROOT = str(Path(__file__).resolve().parents[2])
+_START_S = 30.0
+_END_S = 6.0
+
+
+class ProcessHost:
+    """Starts the process, sends it commands, hears its events, reads its state from shared memory."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._process: subprocess.Popen[bytes] | None = None
+        self._wire: _Wire | None = None
+        self._layout: SnapshotLayout | None = None
+        self._state: SharedNumbers | None = None
+        self._timing: SharedNumbers | None = None
+        self.fifo = False
+
+    @property
+    def summary(self) -> CellSummary:
+        """What the world consists of."""
+        return self._opened()[0].summary
+
+    @property
+    def pid(self) -> int:
+        """The process id of the world."""
+        return self._process.pid if self._process is not None else 0
+
+    def timing(self) -> Timing:
+        """How punctual the world has been since it was opened."""
+        if self._timing is None:
+            raise _not_open()
+        return timing_of(self._timing.read())
+
+    def snapshot(self) -> Snapshot:
+        """The newest state, at most a few steps old; the last one when the process is gone."""
+        layout, state = self._opened()
+        return Snapshot(layout, state.read())
+
+    def send(self, command: AnyCommand) -> None:
+        """Give a command; raises RobotError when the process is gone."""
+        if self._wire is None or self._wire.lost_reason:
+            raise RobotError(
+                self._wire.lost_reason if self._wire else "the world's process was ended", hint="connect the cell again"
+            )
+        self._wire.send(msgspec.msgpack.encode(command))
+
+    async def open(self, listener: HostListener) -> None:
+        """Start the process and wait until its world stands."""
+        ours, theirs = socket.socketpair()
+        state_fd, timing_fd = new_shared_file(), new_shared_file()
+        descriptors = (theirs.fileno(), state_fd, timing_fd)
+        try:
+            self._process = _started(descriptors)
+            theirs.close()
+            loop = asyncio.get_running_loop()
+            _, wire = await loop.create_connection(lambda: _Wire(listener, self._how_it_ended), sock=ours)
+            self._wire = wire
+            wire.send(msgspec.msgpack.encode(self._scene))
+            ready = await self._answer(wire)
+            self._layout = SnapshotLayout(ready.summary)
+            self._state = SharedNumbers(state_fd, self._layout.size)
+            self._timing = SharedNumbers(timing_fd, SIZE)
+            self.fifo = ready.fifo
+        except BaseException:
+            # Whatever went wrong, cancellation included, no process may be left behind.
+            self._kill()
+            raise
+        finally:
+            os.close(state_fd)
+            os.close(timing_fd)
+
+    async def _answer(self, wire: _Wire) -> WorldReady:
+        try:
+            answer = await asyncio.wait_for(asyncio.shield(wire.first), _START_S)
+        except TimeoutError as error:
+            raise RobotError(f"the world's process did not answer within {_START_S:g} s") from error
+        if isinstance(answer, WorldRefused):
+            raise CellError(answer.message, where=answer.where or None, hint=answer.hint or None)
+        return answer
+
+    async def close(self) -> None:
+        """Let everything come to rest and end the process; kill it when it does not end."""
+        wire, self._wire = self._wire, None
+        if wire is not None:
+            wire.closing = True
+            if not wire.lost_reason:
+                wire.send(msgspec.msgpack.encode(Shutdown()))
+                await asyncio.wait((wire.gone,), timeout=_END_S)
+            wire.close()
+        self._kill()
+
+    def _kill(self) -> None:
+        if self._process is not None and self._process.poll() is None:
+            if self._wire is not None:
+                self._wire.close()
+            try:
+                self._process.wait(timeout=0.2)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+
+    def _how_it_ended(self) -> str:
+        """Say why the process is gone, once its socket has closed."""
+        assert self._process is not None
+        try:
+            code = self._process.wait(timeout=1.0)
+        except subprocess.TimeoutExpired:
+            return "the world's process closed its connection"
+        if code < 0:
+            return f"the world's process was ended by {signal.Signals(-code).name}"
+        return f"the world's process ended with exit code {code}"
+
+    def _opened(self) -> tuple[SnapshotLayout, SharedNumbers]:
+        if self._layout is None or self._state is None:
+            raise _not_open()
+        return self._layout, self._state
+
+
+class _Wire(asyncio.Protocol):
+    """The parent's end of the socket."""
+
+    def __init__(self, listener: HostListener, how_it_ended: Callable[[], str]) -> None:
+        loop = asyncio.get_running_loop()
+        self._listener = listener
+        self._how_it_ended = how_it_ended
+        self._reader = FrameReader()
+        self._decode = msgspec.msgpack.Decoder(AnyReport).decode
+        self._transport: asyncio.Transport | None = None
+        self.first: asyncio.Future[WorldReady | WorldRefused] = loop.create_future()
+        self.gone: asyncio.Future[None] = loop.create_future()
+        self.lost_reason = ""
+        self.closing = False
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+
+    def data_received(self, data: bytes) -> None:
+        for message in self._reader.feed(data):
+            report = self._decode(message)
+            if isinstance(report, WorldReady | WorldRefused):
+                self.first.set_result(report)
+            else:
+                self._listener.happened(report)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        if not self.gone.done():
+            self.gone.set_result(None)
+        reason = "the world was closed" if self.closing else self._how_it_ended()
+        self.lost_reason = reason
+        if not self.first.done():
+            self.first.set_exception(RobotError(f"{reason} before it was ready"))
+        self._listener.lost(reason)
+
+    def send(self, payload: bytes) -> None:
+        assert self._transport is not None
+        self._transport.write(framed(payload))
+
+    def close(self) -> None:
+        if self._transport is not None:
+            self._transport.close()
+
+
+def _started(descriptors: tuple[int, int, int]) -> subprocess.Popen[bytes]:
+    environment = {
+        **os.environ,
+        # The process must import this very package, wherever this one found it.
+        "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
+        # A thread pool for 7 x 7 matrices only takes time from the loop.
+        "OPENBLAS_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+    }
+    command = [sys.executable, "-P", "-c", _START, *(str(d) for d in descriptors)]
+    try:
+        return subprocess.Popen(command, pass_fds=descriptors, env=environment, stdin=subprocess.DEVNULL)
+    except OSError as error:
+        raise RobotError(f"the world's process does not start: {error}", where=sys.executable) from error
+
+
+def _not_open() -> RobotError:
+    return RobotError("the simulated world is not open", hint="enter it with `async with` first")

@@ -1,0 +1,187 @@
+"""The world's own process: steps in real time, takes commands from a socket, writes its state to shared memory."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import socket
+import sys
+import time
+from types import FrameType
+
+import msgspec
+
+from engine.errors import CellError
+from robots.sim.cell_model import build_cell
+from robots.sim.commands import AnyCommand, Shutdown, StopAll
+from robots.sim.framing import FrameReader, framed
+from robots.sim.scene import Scene
+from robots.sim.shared_state import SharedNumbers
+from robots.sim.simulation import Simulation
+from robots.sim.timing import SIZE, TimingCounter
+from robots.sim.world_report import AnyReport, WorldReady, WorldRefused
+
+_FIFO_PRIORITY = 20
+_READ_BYTES = 65536
+_SNAPSHOT_EVERY = 2
+_TIMING_EVERY = 50
+# A loop this far behind gives the lost time up instead of racing after it.
+_LONGEST_LAG_S = 0.05
+_SHUTDOWN_S = 4.0
+
+
+class ParentGone(Exception):
+    """The other end of the socket was closed."""
+
+
+class CommandChannel:
+    """The child's end of the socket, never waiting."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._reader = FrameReader()
+        self._unsent = bytearray()
+        self._decode = msgspec.msgpack.Decoder(AnyCommand).decode
+        self._encode = msgspec.msgpack.Encoder().encode
+
+    def receive_scene(self) -> Scene:
+        """Wait for the first message, the scene."""
+        while True:
+            data = self._connection.recv(_READ_BYTES)
+            if not data:
+                raise ParentGone
+            for message in self._reader.feed(data):
+                self._connection.setblocking(False)
+                return msgspec.msgpack.decode(message, type=Scene)
+
+    def commands(self) -> list[AnyCommand]:
+        """Return the commands that have arrived."""
+        try:
+            data = self._connection.recv(_READ_BYTES)
+        except BlockingIOError:
+            return []
+        if not data:
+            raise ParentGone
+        return [self._decode(message) for message in self._reader.feed(data)]
+
+    def report(self, message: AnyReport) -> None:
+        """Send a message, or keep it until the socket takes it."""
+        self._unsent += framed(self._encode(message))
+        self.flush()
+
+    def flush(self) -> None:
+        """Send what waits, as far as the socket takes it."""
+        if not self._unsent:
+            return
+        try:
+            sent = self._connection.send(self._unsent)
+        except BlockingIOError:
+            return
+        except (BrokenPipeError, ConnectionResetError) as error:
+            raise ParentGone from error
+        del self._unsent[:sent]
+
+
+class WorldLoop:
+    """Steps a simulation at its own pace against the monotonic clock until told to stop."""
+
+    def __init__(self, simulation: Simulation, channel: CommandChannel, *, state_fd: int, timing_fd: int) -> None:
+        self._simulation = simulation
+        self._channel = channel
+        self._shared = SharedNumbers(state_fd, simulation.layout.size)
+        self._shared_timing = SharedNumbers(timing_fd, SIZE)
+        self._values = simulation.layout.new_array()
+        self._timing = TimingCounter()
+        self._ending_at: float | None = None
+        self.publish()
+
+    def request_end(self, _signal: int = 0, _frame: FrameType | None = None) -> None:
+        """Bring everything to rest, then end; also a signal handler."""
+        if self._ending_at is None:
+            self._ending_at = time.monotonic() + _SHUTDOWN_S
+
+    def publish(self) -> None:
+        """Write the present state where the parent reads it."""
+        self._simulation.write_snapshot(self._values)
+        self._shared.write(self._values)
+
+    def run(self) -> None:
+        """Step until told to end and everything is at rest; raises ParentGone when nobody listens any more."""
+        step_s = self._simulation.step_s
+        due = time.monotonic() + step_s
+        while not self._over():
+            wait = due - time.monotonic()
+            if wait > 0.0:
+                time.sleep(wait)
+            late = time.monotonic() - due
+            self._tick()
+            due = self._next_due(due, step_s, late)
+
+    def _over(self) -> bool:
+        if self._ending_at is None:
+            return False
+        self._simulation.apply(StopAll())
+        return not self._simulation.busy or time.monotonic() > self._ending_at
+
+    def _tick(self) -> None:
+        for command in self._channel.commands():
+            if isinstance(command, Shutdown):
+                self.request_end()
+            else:
+                self._simulation.apply(command)
+        events = self._simulation.step()
+        if events or self._simulation.steps % _SNAPSHOT_EVERY == 0:
+            # The state is written before the event is told, so who hears of an end reads its state.
+            self.publish()
+        for event in events:
+            self._channel.report(event)
+        self._channel.flush()
+        if self._simulation.steps % _TIMING_EVERY == 0:
+            self._shared_timing.write(self._timing.values)
+
+    def _next_due(self, due: float, step_s: float, late_s: float) -> float:
+        now = time.monotonic()
+        self._timing.count(late_s=late_s, overrun=now > due + step_s)
+        if now - due > _LONGEST_LAG_S:
+            self._timing.slip(now - due)
+            return now + step_s
+        return due + step_s
+
+
+def take_real_time_schedule() -> bool:
+    """Ask for SCHED_FIFO; false, and the ordinary schedule, where the system does not permit it."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_FIFO_PRIORITY))
+    except (AttributeError, OSError):
+        return False
+    return True
+
+
+def main() -> None:
+    """Run the world; the arguments are the descriptors of the socket, the state and the timing."""
+    connection_fd, state_fd, timing_fd = (int(argument) for argument in sys.argv[1:4])
+    # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    channel = CommandChannel(socket.socket(fileno=connection_fd))
+    try:
+        scene = channel.receive_scene()
+        try:
+            simulation = Simulation(build_cell(scene))
+        except CellError as error:
+            refusal = WorldRefused(
+                message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
+            )
+            channel.report(refusal)
+            return
+        loop = WorldLoop(simulation, channel, state_fd=state_fd, timing_fd=timing_fd)
+        signal.signal(signal.SIGTERM, loop.request_end)
+        fifo = take_real_time_schedule()
+        gc.collect()
+        gc.freeze()
+        # A collection in mid-step would be late by milliseconds; the loop makes no cycles.
+        gc.disable()
+        channel.report(WorldReady(summary=simulation.summary, fifo=fifo))
+        loop.run()
+    except ParentGone:
+        return

@@ -1,0 +1,88 @@
+"""What a cell looks like: the drawable bodies of its arms, fixtures and parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from scipy.spatial.transform import Rotation
+
+from engine.messages import Pose, SceneDescription, Vector3, VisualGeometry
+from robots.model.registry import model_by_name
+from robots.model.visual_mesh import LinkVisual, link_visuals
+from robots.sim.cell_model import tray_boxes
+from robots.sim.scene import FixtureBody, PartBody, Scene
+
+
+def describe_scene(scene: Scene, *, cache: Path | None = None) -> SceneDescription:
+    """Return everything that can be drawn; meshes come from `cache` (the user's folder by default) when there.
+
+    Frames are those of `FramePoses`: `<arm>/<link>` and part names; fixtures are fixed to `world`.
+    """
+    visuals = {name: link_visuals(model_by_name(name), cache=cache) for name in {arm.model for arm in scene.arms}}
+    geometries = [
+        _mesh(arm.name, index, visual) for arm in scene.arms for index, visual in enumerate(visuals[arm.model])
+    ]
+    for fixture in scene.fixtures:
+        geometries += _fixture(fixture)
+    geometries += [_part(part) for part in scene.parts]
+    return SceneDescription(geometries=tuple(geometries))
+
+
+def _mesh(arm: str, index: int, visual: LinkVisual) -> VisualGeometry:
+    return VisualGeometry(
+        name=f"{arm}/{visual.link}/{index}",
+        frame=f"{arm}/{visual.link}",
+        kind="mesh",
+        vertices=visual.mesh.vertices,
+        faces=visual.mesh.faces,
+        rgba=visual.mesh.rgba,
+        xyz=visual.xyz,
+        xyzw=visual.xyzw,
+    )
+
+
+def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
+    pose = fixture.pose
+    if fixture.shape != "tray":
+        kind, size = _shape(fixture.shape, fixture.size_m)
+        return [
+            VisualGeometry(
+                name=fixture.name,
+                frame="world",
+                kind=kind,
+                size_m=size,
+                rgba=fixture.rgba,
+                xyz=pose.xyz,
+                xyzw=pose.xyzw,
+            )
+        ]
+    return [
+        VisualGeometry(
+            name=f"{fixture.name}/{index}",
+            frame="world",
+            kind="box",
+            size_m=size,
+            rgba=fixture.rgba,
+            xyz=_placed(pose, centre),
+            xyzw=pose.xyzw,
+        )
+        for index, (centre, size) in enumerate(tray_boxes(fixture))
+    ]
+
+
+def _part(part: PartBody) -> VisualGeometry:
+    kind, size = _shape(part.shape, part.size_m)
+    return VisualGeometry(name=part.name, frame=part.name, kind=kind, size_m=size, rgba=part.rgba)
+
+
+def _placed(pose: Pose, point: Vector3) -> Vector3:
+    """Return `point`, given in the frame of `pose`, in the frame that `pose` is given in."""
+    x, y, z = (float(v) for v in pose.xyz + Rotation.from_quat(pose.xyzw).apply(point))
+    return x, y, z
+
+
+def _shape(shape: str, size_m: tuple[float, ...]) -> tuple[str, tuple[float, ...]]:
+    if shape == "cylinder":
+        diameter, length = size_m
+        return "cylinder", (diameter / 2, length)
+    return shape, size_m

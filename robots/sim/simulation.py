@@ -1,0 +1,210 @@
+"""A world that steps: physics, the controllers of its arms and fingers, and what they report."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_motion import ArmMotion
+from robots.control.finger_servo import FingerServo
+from robots.control.joint_impedance import ImpedanceGains, JointImpedance
+from robots.control.motion_event import AnyMotionEvent
+from robots.port import Array
+from robots.sim.cell_model import ArmIndices, CellModel, GripperIndices
+from robots.sim.commands import AnyCommand, Cancel, CloseTo, Follow, Hold, Resume, Shutdown, StopAll
+from robots.sim.contacts import ContactReader
+from robots.sim.physics import Physics
+from robots.sim.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
+
+
+class _Arm:
+    """One arm in the loop: its indices, set point and control law."""
+
+    def __init__(self, indices: ArmIndices, contacts: ContactReader, inertia: Array, qpos: Array) -> None:
+        limits = indices.model.limits
+        self.indices = indices
+        self.qpos, self.dof, self.motor = indices.qpos, indices.dof, indices.motor
+        self.motion = ArmMotion(
+            joints=indices.model.arm_joints,
+            acceleration_rad_s2=np.array(limits.acceleration_rad_s2),
+            touching=lambda: contacts.describe(indices),
+        )
+        self.control = JointImpedance(gains=ImpedanceGains.for_limits(limits), effort_nm=np.array(limits.effort_nm))
+        self.motion.initialize(qpos[indices.qpos])
+        self.control.initialize(inertia_kg_m2=inertia[indices.dof])
+
+
+class _Fingers:
+    """One gripper in the loop."""
+
+    def __init__(self, indices: GripperIndices, qpos: Array) -> None:
+        self.indices = indices
+        self.qpos, self.dof, self.motor = indices.qpos, indices.dof, indices.motor
+        self.servo = FingerServo(indices.model)
+        self.servo.initialize(float(qpos[indices.qpos].sum()))
+
+
+class Simulation:
+    """The one place where a simulated world changes.
+
+    A step reads the state (mj_step1), moves the set points on, computes torques from quantities of
+    this very state, and integrates (mj_step2): equal commands at equal steps give equal bits.
+    """
+
+    def __init__(self, cell: CellModel) -> None:
+        self._cell = cell
+        self._physics = physics = Physics(cell.model)
+        self.step_s = physics.step_s
+        self.steps = 0
+        self._qpos, self._qvel = physics.positions, physics.velocities
+        self._ctrl, self._bias = physics.motors, physics.bias
+        self._wanted_acceleration = np.zeros(physics.dof_count)
+        self._inertia_torque = np.zeros(physics.dof_count)
+        self._set_home()
+        self._contacts = ContactReader(cell, physics)
+        inertia = physics.inertia_diagonal()
+        self._arms = {arm.name: _Arm(arm, self._contacts, inertia, self._qpos) for arm in cell.arms}
+        self._fingers = {a.name: _Fingers(a.gripper, self._qpos) for a in cell.arms if a.gripper is not None}
+        self.summary = _summary(cell)
+        self.layout = SnapshotLayout(self.summary)
+
+    @property
+    def time_s(self) -> float:
+        """Time of the world: steps done times step."""
+        return self.steps * self.step_s
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way."""
+        return any(a.motion.number for a in self._arms.values()) or any(f.servo.number for f in self._fingers.values())
+
+    def apply(self, command: AnyCommand) -> None:
+        """Take a command; it acts from the next step on. Unknown motion numbers are ignored."""
+        match command:
+            case Follow():
+                self._arms[command.arm].motion.follow(command.motion, command.trajectory(), command.tolerance())
+            case CloseTo():
+                fingers = self._fingers[command.arm]
+                fingers.servo.close_to(
+                    command.motion,
+                    width_m=command.width_m,
+                    speed_m_s=command.speed_m_s,
+                    force_n=command.force_n,
+                    now_m=float(self._qpos[fingers.qpos].sum()),
+                )
+            case Hold():
+                for device in self._devices():
+                    device.hold(command.motion)
+            case Resume():
+                for device in self._devices():
+                    device.resume(command.motion)
+            case Cancel():
+                for device in self._devices():
+                    device.cancel(command.motion)
+            case StopAll() | Shutdown():
+                for device in self._devices():
+                    device.stop()
+
+    def step(self) -> list[AnyMotionEvent]:
+        """Let one step pass and return what happened to the motions."""
+        events: list[AnyMotionEvent] = []
+        self._physics.start_step()
+        for fingers in self._fingers.values():
+            self._move_fingers(fingers, events)
+        accelerated = False
+        for arm in self._arms.values():
+            accelerated |= self._move_set_point(arm, events)
+        if accelerated:
+            self._physics.inertia_times(self._wanted_acceleration, out=self._inertia_torque)
+        else:
+            self._inertia_torque[:] = 0.0
+        for arm in self._arms.values():
+            self._control(arm)
+        self._physics.finish_step()
+        self.steps += 1
+        return events
+
+    def write_snapshot(self, values: Array) -> None:
+        """Write the present state into an array made for `layout`."""
+        layout = self.layout
+        values[layout.time] = self.time_s
+        for name, arm in self._arms.items():
+            self._write_arm(values, layout.arms[name], arm)
+            if name in self._fingers:
+                values[layout.arms[name].gripper] = self._gripper_fields(self._fingers[name])
+        xyz, wxyz = self._physics.body_poses(self._cell.frame_bodies)
+        values[layout.positions] = xyz.reshape(-1)
+        values[layout.quaternions] = wxyz.reshape(-1)
+
+    def state_hash(self) -> str:
+        """Return the SHA-256 of everything that the future of the physics depends on."""
+        return self._physics.state_hash()
+
+    def _set_home(self) -> None:
+        for arm in self._cell.arms:
+            self._qpos[arm.qpos] = arm.model.home_rad
+            if arm.gripper is not None:
+                self._qpos[arm.gripper.qpos] = arm.gripper.model.max_width_m / 2
+        self._physics.refresh()
+
+    def _devices(self) -> tuple[ArmMotion | FingerServo, ...]:
+        return (*(a.motion for a in self._arms.values()), *(f.servo for f in self._fingers.values()))
+
+    def _move_fingers(self, fingers: _Fingers, events: list[AnyMotionEvent]) -> None:
+        width = float(self._qpos[fingers.qpos].sum())
+        velocity = float(self._qvel[fingers.dof].sum())
+        events.extend(fingers.servo.step(self.step_s, width_m=width, velocity_m_s=velocity))
+        self._ctrl[fingers.motor] = self._bias[fingers.dof] + fingers.servo.force_n
+
+    def _move_set_point(self, arm: _Arm, events: list[AnyMotionEvent]) -> bool:
+        motion = arm.motion
+        events.extend(motion.step(self.step_s, position=self._qpos[arm.qpos], velocity=self._qvel[arm.dof]))
+        self._wanted_acceleration[arm.dof] = motion.acceleration
+        return motion.number != 0
+
+    def _control(self, arm: _Arm) -> None:
+        self._ctrl[arm.motor] = arm.control.step(
+            position=self._qpos[arm.qpos],
+            velocity=self._qvel[arm.dof],
+            desired=arm.motion.position,
+            desired_velocity=arm.motion.velocity,
+            feedforward_nm=self._bias[arm.dof] + self._inertia_torque[arm.dof],
+        )
+
+    def _write_arm(self, values: Array, fields: ArmFields, arm: _Arm) -> None:
+        values[fields.number] = arm.motion.number
+        values[fields.progress] = arm.motion.progress
+        block = values[fields.joints].reshape(4, fields.dof)
+        block[0] = self._qpos[arm.qpos]
+        block[1] = self._qvel[arm.dof]
+        block[2] = self._ctrl[arm.motor]
+        block[3] = arm.motion.position
+
+    def _gripper_fields(self, fingers: _Fingers) -> tuple[float, ...]:
+        left, right = self._contacts.pads(fingers.indices.pad_geoms)
+        width = float(self._qpos[fingers.qpos].sum())
+        return (
+            fingers.servo.number,
+            fingers.servo.progress(width),
+            max(width, 0.0),
+            float(self._qvel[fingers.dof].sum()),
+            (left.force_n + right.force_n) / 2.0,
+            left.body,
+            right.body,
+        )
+
+
+def _summary(cell: CellModel) -> CellSummary:
+    return CellSummary(
+        step_s=cell.scene.step_s,
+        arms=tuple(
+            ArmSummary(
+                name=arm.name,
+                joints=arm.model.arm_joints,
+                gripper_width_m=arm.gripper.model.max_width_m if arm.gripper is not None else 0.0,
+            )
+            for arm in cell.arms
+        ),
+        frames=cell.frames,
+        parts=cell.parts,
+        bodies=cell.body_names,
+    )

@@ -1,0 +1,130 @@
+"""The newest state of a world as one flat array of numbers, the same in process and in shared memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+
+from engine.messages import Quaternion, Vector3
+from robots.port import ArmSample, Array, GripperSample
+
+_GRIPPER_FIELDS = 7
+
+
+class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """What one needs to know of an arm to command it; `gripper_width_m` is 0 without a gripper."""
+
+    name: str
+    joints: tuple[str, ...]
+    gripper_width_m: float = 0.0
+
+
+class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """What a built world consists of, as far as the outside needs it.
+
+    `bodies` are all names that a contact can have; `parts` are the last of `frames`.
+    """
+
+    step_s: float
+    arms: tuple[ArmSummary, ...]
+    frames: tuple[str, ...]
+    parts: tuple[str, ...]
+    bodies: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmFields:
+    """Where one arm's numbers lie: `joints` is a block of 4 x n, rows as in `ArmSample`."""
+
+    number: int
+    progress: int
+    joints: slice
+    dof: int
+    gripper: slice
+
+
+class SnapshotLayout:
+    """Where each quantity lies in the array; made alike on both sides from the summary.
+
+    A gripper has motion number, progress, width, velocity, force, and the body numbers that its
+    pads touch (-1 for none). Frames have x y z and quaternion w x y z as MuJoCo keeps them.
+    """
+
+    def __init__(self, summary: CellSummary) -> None:
+        self.summary = summary
+        self.time = 0
+        at = 1
+        arms: dict[str, ArmFields] = {}
+        for arm in summary.arms:
+            n = len(arm.joints)
+            joints = slice(at + 2, at + 2 + 4 * n)
+            gripper = slice(joints.stop, joints.stop + _GRIPPER_FIELDS)
+            arms[arm.name] = ArmFields(number=at, progress=at + 1, joints=joints, dof=n, gripper=gripper)
+            at = gripper.stop
+        self.arms = arms
+        frames = len(summary.frames)
+        self.positions = slice(at, at + 3 * frames)
+        self.quaternions = slice(at + 3 * frames, at + 7 * frames)
+        self.size = at + 7 * frames
+
+    def new_array(self) -> Array:
+        """Return an array of the right size, zero."""
+        return np.zeros(self.size)
+
+
+class Snapshot:
+    """One consistent state of the world, read-only."""
+
+    def __init__(self, layout: SnapshotLayout, values: Array) -> None:
+        self._layout = layout
+        self._values = values
+
+    @property
+    def time_s(self) -> float:
+        """Time of the world."""
+        return float(self._values[0])
+
+    def arm(self, name: str) -> ArmSample:
+        """The measurement of one arm."""
+        fields = self._layout.arms[name]
+        block = self._values[fields.joints].reshape(4, fields.dof)
+        return ArmSample(
+            time_s=self.time_s,
+            position_rad=block[0],
+            velocity_rad_s=block[1],
+            effort_nm=block[2],
+            desired_rad=block[3],
+        )
+
+    def arm_progress(self, name: str, motion: int) -> float | None:
+        """The progress of an arm's motion, None when the arm does not carry out this one."""
+        fields = self._layout.arms[name]
+        return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
+
+    def gripper(self, name: str) -> GripperSample:
+        """The measurement of one gripper."""
+        _, _, width, velocity, force, left, right = self._values[self._layout.arms[name].gripper].tolist()
+        return GripperSample(
+            time_s=self.time_s,
+            width_m=width,
+            velocity_m_s=velocity,
+            force_n=force,
+            contacts=(self._body(left), self._body(right)),
+        )
+
+    def gripper_progress(self, name: str, motion: int) -> float | None:
+        """The progress of a gripper's motion, None when the gripper does not carry out this one."""
+        fields = self._values[self._layout.arms[name].gripper]
+        return float(fields[1]) if fields[0] == motion else None
+
+    def frames(self) -> tuple[tuple[Vector3, ...], tuple[Quaternion, ...]]:
+        """Positions and quaternions x y z w of all frames of the summary, in its order."""
+        xyz = self._values[self._layout.positions].reshape(-1, 3).tolist()
+        wxyz = self._values[self._layout.quaternions].reshape(-1, 4)
+        xyzw = np.roll(wxyz, -1, axis=1).tolist()
+        return tuple((x, y, z) for x, y, z in xyz), tuple((x, y, z, w) for x, y, z, w in xyzw)
+
+    def _body(self, number: float) -> str:
+        return self._layout.summary.bodies[int(number)] if number >= 0 else ""

@@ -1,0 +1,71 @@
+"""How punctual a real-time loop is: lateness in a histogram, overruns, time given up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.port import Array
+
+_BUCKET_S = 5e-6
+_BUCKETS = 4000
+_FIELDS = 4
+SIZE = _FIELDS + _BUCKETS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """Late is the wake-up after its due time; an overrun is a step that ended after the next was due.
+
+    `slipped_s` is world time given up because the machine stood still for too long.
+    """
+
+    steps: int
+    overruns: int
+    slipped_s: float
+    late_p50_s: float
+    late_p99_s: float
+    late_max_s: float
+
+
+class TimingCounter:
+    """Counts in the loop's own process; `values` is what `timing_of` understands."""
+
+    def __init__(self) -> None:
+        self.values = np.zeros(SIZE)
+
+    def count(self, *, late_s: float, overrun: bool) -> None:
+        """Count one step."""
+        values = self.values
+        late_s = max(late_s, 0.0)
+        values[0] += 1.0
+        values[1] += overrun
+        if late_s > values[3]:
+            values[3] = late_s
+        values[_FIELDS + min(int(late_s / _BUCKET_S), _BUCKETS - 1)] += 1.0
+
+    def slip(self, duration_s: float) -> None:
+        """Count world time given up."""
+        self.values[2] += duration_s
+
+
+def timing_of(values: Array) -> Timing:
+    """Return the figures behind a counter's values."""
+    histogram: Array = np.cumsum(values[_FIELDS:])
+    return Timing(
+        steps=int(values[0]),
+        overruns=int(values[1]),
+        slipped_s=float(values[2]),
+        late_p50_s=_share(histogram, 0.50),
+        late_p99_s=_share(histogram, 0.99),
+        late_max_s=float(values[3]),
+    )
+
+
+def _share(cumulated: Array, share: float) -> float:
+    """Return the upper edge of the bucket that `share` of the counts lie in or below."""
+    if cumulated[-1] == 0.0:
+        return 0.0
+    bucket = int(np.searchsorted(cumulated, share * float(cumulated[-1])))
+    return (bucket + 1) * _BUCKET_S

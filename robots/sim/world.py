@@ -1,0 +1,199 @@
+"""The simulated world of a cell as a device: opens its host, gives ports to its robots, publishes on the bus."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from engine.bus import SkillBus
+from engine.clock import VirtualLoop
+from engine.errors import RobotError
+from engine.robot import DeviceStatus, Robot
+from robots.model.registry import model_by_name
+from robots.port import ArmPort, GripperPort, MotionEnd
+from robots.sim.commands import StopAll
+from robots.sim.host import Host
+from robots.sim.lockstep_host import LockstepHost
+from robots.sim.motion_board import MotionBoard
+from robots.sim.process_host import ProcessHost
+from robots.sim.publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
+from robots.sim.scene import Scene
+from robots.sim.scene_description import describe_scene
+from robots.sim.sim_ports import SimArmPort, SimGripperPort
+from robots.sim.snapshot import ArmSummary, Snapshot
+
+RobotMaker = Callable[["SimWorld"], tuple[Robot, ...]]
+
+
+def no_robots(_world: SimWorld) -> tuple[Robot, ...]:
+    """Make no skill servers: for who uses the ports directly."""
+    return ()
+
+
+class SimWorld:
+    """Implements `engine.robot.World`; with a lockstep host also `engine.clock.Lockstep`:
+    it attaches itself to a `VirtualLoop` while it is open.
+
+    `make_robots` puts the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
+    before the world is opened and work while it is open.
+    """
+
+    def __init__(
+        self, scene: Scene, *, host: Host, make_robots: RobotMaker = no_robots, cache: Path | None = None
+    ) -> None:
+        self._scene = scene
+        self._host = host
+        self._cache = cache
+        self._board = MotionBoard(on_lost=self._lost)
+        self._arms = {placement.name: _summary(placement.name, placement.model) for placement in scene.arms}
+        self._arm_ports = {name: SimArmPort(host, self._board, arm) for name, arm in self._arms.items()}
+        self._gripper_ports = {
+            name: SimGripperPort(host, self._board, arm) for name, arm in self._arms.items() if arm.gripper_width_m
+        }
+        self._status = DeviceStatus.DISCONNECTED
+        self._publisher: WorldPublisher | None = None
+        self._timer: asyncio.Task[None] | None = None
+        self._joint_steps = max(1, round(1.0 / (JOINT_RATE_HZ * scene.step_s)))
+        self._frame_steps = max(1, round(1.0 / (FRAME_RATE_HZ * scene.step_s)))
+        self._hooked_steps = 0
+        self._robots = make_robots(self)
+
+    @property
+    def name(self) -> str:
+        """Its namespace on the bus."""
+        return "cell"
+
+    @property
+    def status(self) -> DeviceStatus:
+        """FAULT once the world's process is lost."""
+        if self._status is DeviceStatus.READY and self._board.under_way():
+            return DeviceStatus.MOVING
+        return self._status
+
+    @property
+    def host(self) -> Host:
+        """Where it runs."""
+        return self._host
+
+    def robots(self) -> tuple[Robot, ...]:
+        """The simulated robots and grippers, not yet connected."""
+        return self._robots
+
+    def arm_names(self) -> tuple[str, ...]:
+        """The arms of this world, in document order."""
+        return tuple(self._arm_ports)
+
+    def arm(self, name: str) -> ArmPort:
+        """The port of one arm."""
+        return self._arm_ports[name]
+
+    def gripper(self, name: str) -> GripperPort:
+        """The port of the gripper on one arm."""
+        return self._gripper_ports[name]
+
+    def snapshot(self) -> Snapshot:
+        """The newest state of everything."""
+        return self._host.snapshot()
+
+    def register(self, bus: SkillBus) -> None:
+        """Publish scene, frames, parts, joints and grippers; the world is open."""
+        self._publisher = WorldPublisher(bus, self._host, lambda: describe_scene(self._scene, cache=self._cache))
+        if not isinstance(self._host, LockstepHost):
+            self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
+
+    async def stop(self) -> None:
+        """Cancel every motion and return when all have ended at rest.
+
+        Raises:
+            RobotError: an arm did not come to rest, or the world is gone.
+        """
+        motions = self._board.under_way()
+        self._host.send(StopAll())
+        reports = await asyncio.gather(*(motion.report() for motion in motions))
+        moving = [report.reason for report in reports if report.end is MotionEnd.FAILED and "rest" in report.reason]
+        if moving or self._board.lost_reason:
+            raise RobotError("; ".join(moving) or self._board.lost_reason, where=self.name)
+
+    async def __aenter__(self) -> Self:
+        await self._host.open(self._board)
+        self._status = DeviceStatus.READY
+        loop = asyncio.get_running_loop()
+        if isinstance(self._host, LockstepHost):
+            self._host.begin(loop.time())
+            if isinstance(loop, VirtualLoop):
+                loop.attach(self)
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            await asyncio.wait((self._timer,))
+            self._timer = None
+        try:
+            if self._status is DeviceStatus.READY:
+                await self.stop()
+        finally:
+            loop = asyncio.get_running_loop()
+            if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
+                loop.detach(self)
+            await self._host.close()
+            self._status = DeviceStatus.DISCONNECTED
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way or a topic is read (lockstep)."""
+        return self._lockstep().busy or (self._publisher is not None and self._publisher.read)
+
+    def advance(self, until_s: float) -> float:
+        """Step towards `until_s`; returns early, with the time reached, once somebody was told something."""
+        return self._lockstep().advance(until_s, after_step=self._after_step)
+
+    def _lockstep(self) -> LockstepHost:
+        if not isinstance(self._host, LockstepHost):
+            raise RobotError("a world in real time cannot be stepped", hint="open the cell with the virtual clock")
+        return self._host
+
+    def _after_step(self) -> bool:
+        self._hooked_steps += 1
+        publisher, told = self._publisher, False
+        if publisher is not None:
+            if self._hooked_steps % self._joint_steps == 0:
+                told = publisher.publish_joints()
+            if self._hooked_steps % self._frame_steps == 0:
+                told = publisher.publish_frames() or told
+        return told
+
+    async def _publish_in_real_time(self) -> None:
+        assert self._publisher is not None
+        loop = asyncio.get_running_loop()
+        every = max(1, round(JOINT_RATE_HZ / FRAME_RATE_HZ))
+        start, tick = loop.time(), 0
+        while not self._board.lost_reason:
+            tick = max(tick + 1, int((loop.time() - start) * JOINT_RATE_HZ))
+            await asyncio.sleep(max(0.0, start + tick / JOINT_RATE_HZ - loop.time()))
+            self._publisher.publish_joints()
+            if tick % every == 0:
+                self._publisher.publish_frames()
+
+    def _lost(self, _reason: str) -> None:
+        if self._status is DeviceStatus.READY:
+            self._status = DeviceStatus.FAULT
+
+
+def new_world(
+    scene: Scene, *, virtual: bool, make_robots: RobotMaker = no_robots, cache: Path | None = None
+) -> SimWorld:
+    """Return a world for virtual time (in this process, in lockstep) or real time (in its own process)."""
+    host = LockstepHost(scene) if virtual else ProcessHost(scene)
+    return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
+
+
+def _summary(name: str, model: str) -> ArmSummary:
+    robot = model_by_name(model)
+    width = robot.gripper.max_width_m if robot.gripper is not None else 0.0
+    return ArmSummary(name=name, joints=robot.arm_joints, gripper_width_m=width)

@@ -1,0 +1,1 @@
+"""States that look at the cell as a whole."""

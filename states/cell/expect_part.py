@@ -1,0 +1,94 @@
+"""cell.ExpectPart: checks where a part lies."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, ClassVar
+
+import msgspec
+from msgspec import Meta
+
+from engine.cause import under
+from engine.errors import StateError
+from engine.event import Cause
+from engine.messages import FramePoses, PartPoses, Vector3
+from engine.nearness import near_names
+from engine.state import Context, Outcome, State
+
+PARTS_TOPIC = "cell/parts"
+FRAMES_TOPIC = "cell/frames"
+
+Pair = tuple[float, float]
+Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
+
+
+class Region(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A rectangle along the world's axes: centre and full edge lengths, and heights where they matter."""
+
+    center_m: Pair
+    size_m: tuple[Metres, Metres]
+    height_m: Pair | None = None
+
+    def contains(self, xyz: Vector3) -> bool:
+        """Tell whether a point lies inside, edges included."""
+        inside = all(abs(xyz[axis] - self.center_m[axis]) <= self.size_m[axis] / 2 for axis in (0, 1))
+        low, high = self.height_m or (-math.inf, math.inf)
+        return inside and low <= xyz[2] <= high
+
+    def __str__(self) -> str:
+        heights = f", heights {self.height_m[0]:.3f} to {self.height_m[1]:.3f} m" if self.height_m else ""
+        width, length = self.size_m
+        return f"within {width:.3f} x {length:.3f} m around ({self.center_m[0]:.3f}, {self.center_m[1]:.3f}){heights}"
+
+
+class ExpectPart(State, frozen=True, kw_only=True):
+    """Check that the centre of a part lies in a region, or within `tolerance_m` of a frame of the cell."""
+
+    state_name: ClassVar[str] = "cell.ExpectPart"
+    outcomes: ClassVar[tuple[str, ...]] = ("there", "elsewhere")
+    success: ClassVar[tuple[str, ...]] = ("there",)
+
+    part: Annotated[str, Meta(min_length=1, description="Name of the part in the cell")]
+    region: Annotated[Region | None, Meta(description="Where its centre shall lie, in the world frame")] = None
+    frame: Annotated[str, Meta(description="Frame of the cell that it shall lie at")] = ""
+    tolerance_m: Annotated[
+        float, Meta(gt=0, description="Greatest distance from the frame", extra_json_schema={"unit": "m"})
+    ] = 0.05
+
+    def __post_init__(self) -> None:
+        if (self.region is None) == (not self.frame):
+            raise ValueError("give either `region` or `frame`")
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Read the newest measured poses of the parts."""
+        poses = (await ctx.latest(PARTS_TOPIC, PartPoses)).poses
+        if self.part not in poses:
+            because = Cause(message=f"no such part is in the cell; {near_names(self.part, poses)}", where=PARTS_TOPIC)
+            return self._elsewhere(ctx, because)
+        xyz = poses[self.part].xyz
+        fault = _outside(self.region, xyz) if self.region else await self._away(ctx, xyz)
+        return self._elsewhere(ctx, Cause(message=fault, where=PARTS_TOPIC)) if fault else Outcome("there")
+
+    async def _away(self, ctx: Context, xyz: Vector3) -> str:
+        frames = await ctx.latest(FRAMES_TOPIC, FramePoses)
+        if self.frame not in frames.names:
+            raise StateError(
+                f"the cell shows no frame {self.frame}", where=ctx.path, hint=near_names(self.frame, frames.names)
+            )
+        distance_m = math.dist(xyz, frames.xyz[frames.names.index(self.frame)])
+        if distance_m <= self.tolerance_m:
+            return ""
+        return f"it lies at {_written(xyz)}, {distance_m:.3f} m from {self.frame}, {self.tolerance_m:.3f} m allowed"
+
+    def _elsewhere(self, ctx: Context, because: Cause) -> Outcome:
+        place = self.frame or "its region"
+        message = f"part {self.part} does not lie at {place}"
+        return Outcome("elsewhere", cause=under(message, because, where=ctx.path, kind=self.state_name))
+
+
+def _outside(region: Region, xyz: Vector3) -> str:
+    return "" if region.contains(xyz) else f"it lies at {_written(xyz)}, not {region}"
+
+
+def _written(xyz: Vector3) -> str:
+    return f"({', '.join(f'{value:.3f}' for value in xyz)}) m"

@@ -1,0 +1,1 @@
+"""States that need no robot: waiting, logging, deciding, setting values."""

@@ -1,0 +1,26 @@
+"""flow.Decide: branches on a condition."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.event import Cause
+from engine.state import Context, Outcome, State
+
+
+class Decide(State, frozen=True, kw_only=True):
+    """Branch on a condition, usually an expression: `when: ${width > 0.04}`."""
+
+    state_name: ClassVar[str] = "flow.Decide"
+    outcomes: ClassVar[tuple[str, ...]] = ("true", "false")
+    success: ClassVar[tuple[str, ...]] = ("true",)
+
+    when: Annotated[bool, Meta(description="The condition")]
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Give the outcome that the condition names."""
+        if self.when:
+            return Outcome("true")
+        return Outcome("false", cause=Cause(message="the condition is false", where=ctx.path, kind=self.state_name))

@@ -1,0 +1,25 @@
+"""flow.Log: writes a line into the event log."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from msgspec import Meta
+
+from engine.state import Context, Outcome, State
+
+
+class Log(State, frozen=True, kw_only=True):
+    """Write a line into the event log of the run."""
+
+    state_name: ClassVar[str] = "flow.Log"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+    success: ClassVar[tuple[str, ...]] = ("done",)
+
+    message: Annotated[str, Meta(description="What to say")]
+    level: Annotated[Literal["debug", "info", "warning", "error"], Meta(description="How serious it is")] = "info"
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Write the line."""
+        ctx.log(self.message, level=self.level)
+        return Outcome("done")

@@ -1,0 +1,25 @@
+"""flow.SetValue: puts a value into userdata."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.state import Context, Outcome, State
+
+
+class SetValue(State, frozen=True, kw_only=True):
+    """Put a value into userdata under the key that `out: {value: key}` names."""
+
+    state_name: ClassVar[str] = "flow.SetValue"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+    success: ClassVar[tuple[str, ...]] = ("done",)
+    outputs: ClassVar[Mapping[str, Any]] = {"value": object}
+
+    value: Annotated[object, Meta(description="Any value, or an expression that gives one")]
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Write the value."""
+        return Outcome("done", {"value": self.value})

@@ -1,0 +1,24 @@
+"""flow.Wait: lets time pass."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.state import Context, Outcome, State
+
+
+class Wait(State, frozen=True, kw_only=True):
+    """Let time pass on the run's clock."""
+
+    state_name: ClassVar[str] = "flow.Wait"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+    success: ClassVar[tuple[str, ...]] = ("done",)
+
+    duration_s: Annotated[float, Meta(ge=0, description="How long to wait", extra_json_schema={"unit": "s"})]
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Sleep for the duration."""
+        await ctx.clock.sleep(self.duration_s)
+        return Outcome("done")

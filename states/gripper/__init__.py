@@ -1,0 +1,1 @@
+"""States that open, close and question a two-finger gripper."""

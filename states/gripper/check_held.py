@@ -1,0 +1,36 @@
+"""gripper.CheckHeld: asks whether a part is still held."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.gripper import ReadGripper
+from engine.state import Context, Outcome, State
+from states.gripper.naming import GripperName, PartLabel, gripper_address, part_label
+
+
+class CheckHeld(State, frozen=True, kw_only=True):
+    """Ask the gripper whether it still holds what it grasped."""
+
+    state_name: ClassVar[str] = "gripper.CheckHeld"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+
+    gripper: GripperName
+    part: PartLabel = ""
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Read the measured state of the gripper."""
+        address = gripper_address(self.gripper)
+        request = ReadGripper()
+        measured = await ctx.call(request, to=address)
+        if measured.held:
+            return Outcome("held")
+        because = Cause(
+            message=f"the fingers are {measured.width_m * 1e3:.1f} mm apart and press with {measured.force_n:.1f} N",
+            where=f"{address}/{request.skill_name()}",
+        )
+        message = f"{self.gripper} lost {part_label(self.part)}"
+        return Outcome("lost", cause=under(message, because, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,75 @@
+"""gripper.Grasp: closes a gripper on a part and tells whether it holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.gripper.naming import GripperName, PartLabel, gripper_address, part_label
+
+Force = Annotated[float, Meta(gt=0, le=140, description="Grasp force", extra_json_schema={"unit": "N"})]
+Margin = Annotated[
+    float, Meta(ge=0, description="How far the opening may end off `width_m`", extra_json_schema={"unit": "m"})
+]
+
+
+class Grasp(State, frozen=True, kw_only=True):
+    """Close on a part of `width_m`: `held` when both pads press on it, `missed` when not.
+
+    Writes `held` always and the final opening `width_m` where the gripper measured it.
+    """
+
+    state_name: ClassVar[str] = "gripper.Grasp"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+    outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "width_m": float}
+
+    gripper: GripperName
+    width_m: Width
+    force_n: Force = 20.0
+    speed_m_s: FingerSpeed = 0.05
+    tolerance_inner_m: Margin = 0.01
+    tolerance_outer_m: Margin = 0.01
+    part: PartLabel = ""
+
+    def resources(self) -> tuple[str, ...]:
+        """The gripper."""
+        return (gripper_address(self.gripper),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge what the fingers hold."""
+        address = gripper_address(self.gripper)
+        goal = GripperGrasp(
+            width_m=self.width_m,
+            force_n=self.force_n,
+            speed_m_s=self.speed_m_s,
+            tolerance_inner_m=self.tolerance_inner_m,
+            tolerance_outer_m=self.tolerance_outer_m,
+        )
+        end = await ctx.perform(goal, to=address)
+        if end.status != "succeeded" or end.result is None:
+            cause = goal_cause(self._missed(), goal, end, to=address, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", {"held": False}, cause)
+        outputs = {"held": end.result.held, "width_m": end.result.width_m}
+        if end.result.held:
+            return Outcome("held", outputs)
+        because = self._closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
+        return Outcome("missed", outputs, under(self._missed(), because, where=ctx.path, kind=self.state_name))
+
+    def _missed(self) -> str:
+        return f"{self.gripper} did not grasp {part_label(self.part)}"
+
+    def _closed_on_nothing(self, result: GraspResult, address: str) -> Cause:
+        ended = f"the fingers ended {result.width_m * 1e3:.1f} mm apart, {self.width_m * 1e3:.1f} mm expected"
+        return Cause(
+            message=f"{ended}, pressing with {result.force_n:.1f} N",
+            where=address,
+            because=Cause(message=result.reason or "nothing is held and the gripper gave no reason", where=address),
+        )

@@ -1,0 +1,36 @@
+"""gripper.Move: moves the fingers to an opening."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.skills.gripper import FingerSpeed, GripperMove, Width
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.gripper.naming import GripperName, gripper_address
+
+
+class Move(State, frozen=True, kw_only=True):
+    """Move the fingers of a gripper to an opening, holding nothing."""
+
+    state_name: ClassVar[str] = "gripper.Move"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+
+    gripper: GripperName
+    width_m: Width
+    speed_m_s: FingerSpeed = 0.1
+
+    def resources(self) -> tuple[str, ...]:
+        """The gripper."""
+        return (gripper_address(self.gripper),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        address = gripper_address(self.gripper)
+        goal = GripperMove(width_m=self.width_m, speed_m_s=self.speed_m_s)
+        end = await ctx.perform(goal, to=address)
+        if end.status == "succeeded":
+            return Outcome("reached")
+        what = f"the gripper of {self.gripper} did not reach an opening of {self.width_m * 1e3:.1f} mm"
+        return Outcome("failed", cause=goal_cause(what, goal, end, to=address, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,36 @@
+"""gripper.Open: opens a gripper fully."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.skills.gripper import FingerSpeed, GripperOpen
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.gripper.naming import GripperName, PartLabel, gripper_address
+
+
+class Open(State, frozen=True, kw_only=True):
+    """Open a gripper fully."""
+
+    state_name: ClassVar[str] = "gripper.Open"
+    outcomes: ClassVar[tuple[str, ...]] = ("opened", "failed")
+    success: ClassVar[tuple[str, ...]] = ("opened",)
+
+    gripper: GripperName
+    speed_m_s: FingerSpeed = 0.1
+    part: PartLabel = ""
+
+    def resources(self) -> tuple[str, ...]:
+        """The gripper."""
+        return (gripper_address(self.gripper),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        address = gripper_address(self.gripper)
+        goal = GripperOpen(speed_m_s=self.speed_m_s)
+        end = await ctx.perform(goal, to=address)
+        if end.status == "succeeded":
+            return Outcome("opened")
+        what = f"the gripper of {self.gripper} did not open" + (f" to release part {self.part}" if self.part else "")
+        return Outcome("failed", cause=goal_cause(what, goal, end, to=address, where=ctx.path, kind=self.state_name))

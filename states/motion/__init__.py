@@ -1,0 +1,1 @@
+"""States that move an arm: in joint space, to a pose, along a straight line."""

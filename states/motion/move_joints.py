@@ -1,0 +1,38 @@
+"""motion.MoveJoints: moves an arm to a joint configuration."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.skills.motion import JointTrapVel, Speed
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
+
+
+class MoveJoints(State, frozen=True, kw_only=True):
+    """Move an arm in joint space, all joints in phase, with a trapezoidal velocity profile."""
+
+    state_name: ClassVar[str] = "motion.MoveJoints"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+
+    robot: RobotName
+    target: Annotated[JointTarget, Meta(description="Joint angles in radians, or `{entry: name}`")]
+    speed: Speed = 0.5
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        goal = JointTrapVel(joints=await resolve_joints(ctx, self.target), speed=self.speed)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded":
+            return Outcome("reached")
+        what = f"{self.robot} did not reach {joints_label(self.target)}"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        return Outcome("failed", cause=cause)

@@ -1,0 +1,39 @@
+"""motion.MovePose: moves the tool of an arm to a pose by a joint-space profile."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.skills.motion import CartTrapVel, Speed
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
+
+
+class MovePose(State, frozen=True, kw_only=True):
+    """Move the tool centre point to a pose; the path is straight in joint space, not in the cell."""
+
+    state_name: ClassVar[str] = "motion.MovePose"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+
+    robot: RobotName
+    target: Annotated[PoseTarget, Meta(description="`{xyz, xyzw, frame}`, or `{entry: name}`")]
+    offset_m: Offset = NO_OFFSET
+    speed: Speed = 0.5
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        goal = CartTrapVel(pose=await resolve_pose(ctx, self.target, self.offset_m), speed=self.speed)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded":
+            return Outcome("reached")
+        what = f"{self.robot} did not reach {pose_label(self.target, self.offset_m)}"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        return Outcome("failed", cause=cause)

@@ -1,0 +1,1 @@
+"""States that read and write the named entries of the store."""

@@ -1,0 +1,34 @@
+"""store.ReadEntry: reads a named entry into userdata."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.cause import cause_of, under
+from engine.errors import EntryNotFound
+from engine.skills import entries
+from engine.state import Context, Outcome, State
+
+
+class ReadEntry(State, frozen=True, kw_only=True):
+    """Read a named entry: its fields into `value`, its revision into `revision`."""
+
+    state_name: ClassVar[str] = "store.ReadEntry"
+    outcomes: ClassVar[tuple[str, ...]] = ("found", "missing")
+    success: ClassVar[tuple[str, ...]] = ("found",)
+    outputs: ClassVar[Mapping[str, Any]] = {"value": dict[str, object], "revision": int}
+
+    kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
+    name: Annotated[str, Meta(description="Name of the entry")]
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the store; a missing entry is an outcome, a failing store an error."""
+        try:
+            record = await ctx.call(entries.ReadEntry(kind=self.kind, name=self.name), to="store")
+        except EntryNotFound as error:
+            message = f"{self.kind} entry {self.name} cannot be read"
+            return Outcome("missing", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+        return Outcome("found", {"value": record.value, "revision": record.revision})

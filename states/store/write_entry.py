@@ -1,0 +1,39 @@
+"""store.WriteEntry: writes a value from userdata as a named entry."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.cause import cause_of, under
+from engine.errors import EntryConflict
+from engine.skills import entries
+from engine.state import Context, Outcome, State
+
+
+class WriteEntry(State, frozen=True, kw_only=True):
+    """Write `value` as a named entry.
+
+    With `expected_revision` (as `store.ReadEntry` gave it; 0 for "there is none yet") the entry is
+    written only when nobody else changed it in between, else the outcome is `conflict`.
+    """
+
+    state_name: ClassVar[str] = "store.WriteEntry"
+    outcomes: ClassVar[tuple[str, ...]] = ("written", "conflict")
+    success: ClassVar[tuple[str, ...]] = ("written",)
+    outputs: ClassVar[Mapping[str, Any]] = {"revision": int}
+
+    kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
+    name: Annotated[str, Meta(description="Name of the entry")]
+
+    async def run(self, ctx: Context, *, value: dict[str, object], expected_revision: int | None = None) -> Outcome:
+        """Write; a value the store refuses is an error."""
+        request = entries.WriteEntry(kind=self.kind, name=self.name, value=value, expected_revision=expected_revision)
+        try:
+            record = await ctx.call(request, to="store")
+        except EntryConflict as error:
+            message = f"{self.kind} entry {self.name} was changed by somebody else"
+            return Outcome("conflict", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+        return Outcome("written", {"revision": record.revision})

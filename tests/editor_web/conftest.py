@@ -1,0 +1,49 @@
+"""Servers with a fake engine, on an address of their own for each test process."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import AsyncGenerator, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from pathlib import Path
+
+import httpx
+import pytest
+
+from editor_web.access import load_access
+from editor_web.server import Dashboard, dashboard
+from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.served import Served
+
+Serve = Callable[..., AbstractAsyncContextManager[Served]]
+
+
+@pytest.fixture(scope="session")
+def loopback() -> str:
+    """A loopback address that no other test process uses."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
+    return f"127.0.0.{20 + int(worker)}"
+
+
+@pytest.fixture
+def serve(tmp_path: Path, loopback: str) -> Serve:
+    """Open a real server around a fake backend: `async with serve() as served`."""
+
+    @asynccontextmanager
+    async def opened(backend: FakeBackend | None = None, *, cell_view: bool = False) -> AsyncGenerator[Served]:
+        behind = backend or FakeBackend(step_s=0.02)
+        token_file = tmp_path / "tokens"
+        async with (
+            dashboard(behind, token_file=token_file, host=loopback, cell_view=cell_view, shadows=False) as running,
+            _client(running, load_access(token_file).operator) as http,
+        ):
+            try:
+                yield Served(backend=behind, running=running, access=load_access(token_file), http=http)
+            finally:
+                await behind.close()
+
+    return opened
+
+
+def _client(running: Dashboard, token: str) -> httpx.AsyncClient:
+    return httpx.AsyncClient(base_url=running.url, headers={"Authorization": f"Bearer {token}"}, trust_env=False)

@@ -1,0 +1,139 @@
+"""The 3D view: locked, drawn once, then moved; through our own server only."""
+
+from __future__ import annotations
+
+import asyncio
+import urllib.error
+import urllib.request
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+
+import httpx
+import msgspec
+import pytest
+import websockets.asyncio.client
+import zstandard
+from websockets.exceptions import InvalidStatus
+from websockets.typing import Subprotocol
+
+from editor_web.cell_view import KEY_HEADER, CellView
+from engine.errors import FlexcellError
+from engine.messages import SceneDescription
+from tests.editor_web.conftest import Serve
+from tests.editor_web.fake_backend import FakeBackend, frames_at, new_scene
+
+VISER = Subprotocol("viser-v1.1.1")
+
+
+@asynccontextmanager
+async def opened(backend: FakeBackend) -> AsyncGenerator[CellView]:
+    """An open view of a backend's cell."""
+    view = CellView(backend, shadows=False)
+    await asyncio.to_thread(view.open)
+    view.subscribe()
+    try:
+        yield view
+    finally:
+        view.unsubscribe()
+        await asyncio.to_thread(view.close)
+
+
+async def read(socket: websockets.asyncio.client.ClientConnection, *wanted: str) -> None:
+    """Read what viser sends until every wanted text has come."""
+    missing = set(wanted)
+    async with asyncio.timeout(20):
+        while missing:
+            data = unpacked(await socket.recv())
+            missing -= {text for text in missing if text.encode() in data}
+
+
+def unpacked(message: bytes | str) -> bytes:
+    """The message with its compressed part opened."""
+    data = message if isinstance(message, bytes) else message.encode()
+    begin = data.find(b"\x28\xb5\x2f\xfd")
+    return zstandard.ZstdDecompressor().decompressobj().decompress(data[begin:]) if begin >= 0 else data
+
+
+async def test_the_port_of_the_view_refuses_everybody_without_the_key() -> None:
+    """Page 403, websocket 403, wrong key 403; with the key both open."""
+    async with opened(FakeBackend()) as view:
+        page, socket = f"http://127.0.0.1:{view.port}/", f"ws://127.0.0.1:{view.port}/"
+        async with httpx.AsyncClient(trust_env=False) as http:
+            assert (await http.get(page)).status_code == 403
+            assert (await http.get(page, headers={KEY_HEADER: "wrong"})).status_code == 403
+            assert (await http.get(page, headers={KEY_HEADER: view.key})).status_code == 200
+        with pytest.raises(InvalidStatus) as refused:
+            await websockets.asyncio.client.connect(socket, subprotocols=[VISER], proxy=None)
+        assert refused.value.response.status_code == 403
+        headers = {KEY_HEADER: view.key}
+        async with websockets.asyncio.client.connect(
+            socket, subprotocols=[VISER], additional_headers=headers, proxy=None
+        ) as inside:
+            assert inside.subprotocol == VISER
+
+
+async def test_scene_and_motion_reach_the_page_through_our_server(serve: Serve) -> None:
+    """Shapes by name first, then the poses of what moves."""
+    async with serve(cell_view=True) as served:
+        assert (await served.http.get("/cell/")).text.count("data-dock-root") >= 1
+        async with websockets.asyncio.client.connect(
+            f"{served.origin.replace('http', 'ws', 1)}/cell/",
+            subprotocols=[VISER],
+            additional_headers=served.cookie,
+            origin=websockets.Origin(served.origin),
+            max_size=None,
+            proxy=None,
+        ) as socket:
+            await read(socket, "/cell/world/0", "/cell/left.fore/", "/cell/right.base/")
+            served.backend.publish("cell/frames", frames_at(3.0))
+            await read(socket, "/cell/left.fore")
+
+
+async def test_a_cell_without_a_world_has_an_empty_view() -> None:
+    """Topics that nobody publishes are no error."""
+    backend = FakeBackend()
+
+    def refuse(topic: str, callback: object) -> None:
+        raise FlexcellError("no such topic", where=topic)
+
+    backend.subscribe_topic = refuse  # pyright: ignore[reportAttributeAccessIssue] # a cell without these topics
+    async with opened(backend) as view:
+        assert view.port > 0
+
+
+async def test_a_shape_that_cannot_be_drawn_leaves_the_others(caplog: pytest.LogCaptureFixture) -> None:
+    """It is named in the log, and the view lives on."""
+    backend = FakeBackend()
+    scene = new_scene()
+    odd = msgspec.structs.replace(scene.geometries[0], name="odd_one", kind="torus")
+    backend.publish("cell/scene", SceneDescription(geometries=(odd, *scene.geometries)))
+    async with (
+        opened(backend) as view,
+        websockets.asyncio.client.connect(
+            f"ws://127.0.0.1:{view.port}/",
+            subprotocols=[VISER],
+            additional_headers={KEY_HEADER: view.key},
+            max_size=None,
+            proxy=None,
+        ) as socket,
+    ):
+        await read(socket, "/cell/left.fore/")
+    assert "odd_one" in caplog.text
+
+
+def test_a_view_that_is_not_open_says_so() -> None:
+    """No port yet."""
+    with pytest.raises(FlexcellError, match="not open"):
+        assert CellView(FakeBackend()).port
+
+
+def test_no_public_tunnel_can_be_asked_for() -> None:
+    """Whatever a connected page requests."""
+    view = CellView(FakeBackend(), shadows=False)
+    view.open()
+    try:
+        assert view.request_tunnel() is None
+    finally:
+        view.close()
+    with pytest.raises((urllib.error.URLError, FlexcellError)):
+        urllib.request.urlopen(f"http://127.0.0.1:{view.port}/", timeout=1)

@@ -1,0 +1,97 @@
+"""The front end: its own unit tests, its layers, what is built of it, and what the first page weighs."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import hatch_build
+
+SOURCES = hatch_build.SOURCE / "src"
+FILES = sorted(p for p in SOURCES.rglob("*.ts*") if not p.name.endswith((".test.ts", ".d.ts")))
+IMPORT = re.compile(r"""(?:from|import\()\s*['"](\.[^'"]+)['"]""")
+INITIAL_LIMIT_BYTES = 350_000
+# What each floor may stand on, besides itself.
+FLOORS = {
+    "document": {"document", "api/types"},
+    "api": {"api", "document"},
+    "components": {"components", "api", "document"},
+    "features": {"components", "api", "document"},
+    "app": {"app", "features", "components", "api", "document"},
+}
+
+
+def imports(file: Path) -> list[str]:
+    """The modules of ours that a file imports, relative to the sources, without their ending."""
+    found: list[str] = IMPORT.findall(file.read_text(encoding="utf-8"))
+    return [(file.parent / name).resolve().relative_to(SOURCES).as_posix() for name in found]
+
+
+def test_its_unit_tests_pass() -> None:
+    """Everything under `*.test.ts`."""
+    hatch_build.install()
+    hatch_build.npm("test")
+
+
+def test_the_built_page_is_current() -> None:
+    """Else run `python hatch_build.py`."""
+    assert hatch_build.DIGEST.read_text(encoding="ascii") == hatch_build.source_digest()
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: f.relative_to(SOURCES).as_posix())
+def test_imports_go_downwards_and_features_never_import_one_another(file: Path) -> None:
+    """app over features over components over api over document."""
+    place = file.relative_to(SOURCES).parts
+    allowed = FLOORS.get(place[0], set())
+    for target in imports(file):
+        own_feature = place[0] == "features" and target.startswith(f"features/{place[1]}/")
+        fits = own_feature or any(target == floor or target.startswith(f"{floor}/") for floor in allowed)
+        assert fits, f"{file.name} may not import {target}"
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda f: f.relative_to(SOURCES).as_posix())
+def test_exports_are_named_and_types_are_known(file: Path) -> None:
+    """No default exports, no `any`, and a first line that says what the file is for."""
+    text = file.read_text(encoding="utf-8")
+    assert "export default" not in text
+    assert not re.search(r"\bany\b[,;>)\]]|: any\b|as any\b", text)
+    assert text.startswith(("/**", "// Made by", "/// <reference"))
+
+
+def test_the_first_page_is_light() -> None:
+    """All scripts that it loads at once, compressed."""
+    manifest = json.loads((hatch_build.STATIC / ".vite" / "manifest.json").read_text(encoding="utf-8"))
+    wanted, needed = ["index.html"], set[str]()
+    while wanted:
+        name = wanted.pop()
+        if name not in needed:
+            needed.add(name)
+            wanted += manifest[name].get("imports", [])
+    sizes = [len(gzip.compress((hatch_build.STATIC / manifest[name]["file"]).read_bytes())) for name in needed]
+    assert 50_000 < sum(sizes) <= INITIAL_LIMIT_BYTES
+
+
+def test_the_page_loads_nothing_from_elsewhere() -> None:
+    """It works without any network."""
+    page = (hatch_build.STATIC / "index.html").read_text(encoding="utf-8")
+    assert re.findall(r"""(?:src|href)=["'](?!/)""", page) == []
+    for sheet in (hatch_build.STATIC / "assets").glob("*.css"):
+        assert re.findall(r"url\(['\"]?(?:https?:)?//", sheet.read_text(encoding="utf-8")) == []
+
+
+def test_the_lock_file_names_no_download_host() -> None:
+    """So it installs from whatever mirror is configured."""
+    lock = json.loads((hatch_build.SOURCE / "package-lock.json").read_text(encoding="utf-8"))
+    assert [name for name, package in lock["packages"].items() if "resolved" in package] == []
+    assert all("integrity" in package for name, package in lock["packages"].items() if name)
+
+
+def test_versions_are_exact() -> None:
+    """An install today and one in a year are the same."""
+    package = json.loads((hatch_build.SOURCE / "package.json").read_text(encoding="utf-8"))
+    versions = {**package["dependencies"], **package["devDependencies"]}
+    assert [name for name, version in versions.items() if not re.fullmatch(r"\d+\.\d+\.\d+", version)] == []

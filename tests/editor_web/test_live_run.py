@@ -1,0 +1,147 @@
+"""The fold from events to what the page shows."""
+
+from __future__ import annotations
+
+import msgspec
+
+from editor_web.live_run import LOG_LINES, CauseLine, LiveRun, NodeLive, log_line
+from engine.event import Cause, Entered, Event, Exited, Logged, RunEnded, RunStarted, Transitioned
+
+
+def entered(seq: int, path: str, visit: int = 1, time_s: float = 0.0) -> Event:
+    return Entered(seq=seq, time_s=time_s, path=path, visit=visit, kind="state", inputs={})
+
+
+def exited(seq: int, path: str, outcome: str = "done", *, time_s: float = 0.0, cause: Cause | None = None) -> Event:
+    return Exited(seq=seq, time_s=time_s, path=path, visit=1, outcome=outcome, cause=cause)
+
+
+def folded(*events: Event) -> LiveRun:
+    live = LiveRun("r")
+    for event in events:
+        live.apply(event)
+    return live
+
+
+def test_two_branches_are_active_at_the_same_time() -> None:
+    """Concurrency shown truthfully."""
+    live = folded(entered(1, "root"), entered(2, "root/left"), entered(3, "root/right"))
+    assert {path for path, node in live.nodes.items() if node.status == "active"} == {"root", "root/left", "root/right"}
+
+
+def test_a_visit_shorter_than_a_frame_is_counted() -> None:
+    """The counter is what the page lights a blink by."""
+    live = folded(entered(1, "root/a", time_s=1.0), exited(2, "root/a", time_s=1.001))
+    assert live.nodes["root/a"] == NodeLive(
+        status="done", visits=1, outcome="done", entered_s=1.0, duration_s=1.001 - 1.0
+    )
+
+
+def test_a_failure_is_told_apart_from_another_outcome() -> None:
+    """By its cause, or by the name of its outcome."""
+    live = folded(
+        exited(1, "root/a", "empty", cause=Cause(message="nothing held")),
+        exited(2, "root/b", "failed"),
+        exited(3, "root/c", "empty"),
+        Exited(seq=4, time_s=0.0, path="root/d", visit=1, outcome="preempted", preempted=True),
+    )
+    assert {path: node.status for path, node in live.nodes.items()} == {
+        "root/a": "failed",
+        "root/b": "failed",
+        "root/c": "done",
+        "root/d": "stopped",
+    }
+    assert live.nodes["root/a"].cause == "nothing held"
+
+
+def test_what_lies_inside_a_container_starts_afresh_with_it() -> None:
+    """Counters go on, old outcomes do not look new; a neighbour with the same beginning stays."""
+    live = folded(
+        entered(1, "root/a"),
+        entered(2, "root/a/x"),
+        exited(3, "root/a/x"),
+        entered(4, "root/ab"),
+        entered(5, "root/a", visit=2),
+    )
+    assert live.nodes["root/a/x"] == NodeLive(visits=1)
+    assert live.nodes["root/ab"].status == "active"
+
+
+def test_the_arrow_taken_last_is_known_until_the_machine_starts_anew() -> None:
+    """Highlighted in the graph."""
+    arrow = Transitioned(seq=2, time_s=0.0, path="root", source="a", outcome="done", target="b")
+    live = folded(entered(1, "root"), arrow)
+    assert live.nodes["root"].followed == "a|done"
+    live.apply(entered(3, "root", visit=2))
+    assert live.nodes["root"].followed == ""
+
+
+def test_nothing_is_left_active_after_the_end() -> None:
+    """Also when the end came without exits."""
+    live = folded(entered(1, "root"), entered(2, "root/a"), RunEnded(seq=3, time_s=2.0, status="errored"))
+    assert {node.status for node in live.nodes.values()} == {"stopped"}
+    assert live.ended
+
+
+def test_an_event_that_was_folded_already_changes_nothing() -> None:
+    """A journal and the stream may overlap."""
+    live = folded(entered(1, "root"), exited(2, "root"))
+    assert live.apply(entered(1, "root")) is None
+    assert live.nodes["root"].status == "done"
+
+
+def test_the_log_is_bounded() -> None:
+    """Old lines go."""
+    live = LiveRun("r")
+    for seq in range(1, LOG_LINES + 11):
+        live.apply(Logged(seq=seq, time_s=0.0, path="root", level="info", message=str(seq)))
+    assert (len(live.log), live.log[0].seq) == (LOG_LINES, 11)
+
+
+def test_a_cause_chain_is_told_from_the_outside_in() -> None:
+    """All links, in order."""
+    cause = Cause(message="outer", where="root/a", kind="A", because=Cause(message="inner", where="arm", kind="B"))
+    line = log_line(exited(1, "root/a", "failed", cause=cause), duration_s=1.5)
+    assert (line.level, line.text) == ("error", "ended with failed after 1.50 s")
+    assert line.causes == (
+        CauseLine(message="outer", where="root/a", kind="A"),
+        CauseLine(message="inner", where="arm", kind="B"),
+    )
+
+
+def test_every_kind_of_event_can_be_told() -> None:
+    """A new event kind is not forgotten here."""
+    sample: dict[str, object] = {
+        "seq": 1,
+        "time_s": 0.0,
+        "behavior": "b",
+        "document": "d",
+        "parameters": {},
+        "seed": 1,
+        "clock": "real",
+        "path": "root",
+        "visit": 2,
+        "kind": "state",
+        "inputs": {},
+        "outcome": "done",
+        "scope": "root",
+        "key": "part",
+        "value": "x" * 500,
+        "source": "a",
+        "target": "b",
+        "goal": "g",
+        "address": "left/move",
+        "request": {},
+        "status": "finished",
+        "level": "info",
+        "message": "hello",
+        "attempt": 2,
+        "wait_s": 0.5,
+        "reason": "why",
+    }
+    for kind in Event.__subclasses__():
+        names = {f.name for f in msgspec.structs.fields(kind)}
+        line = log_line(msgspec.convert({k: v for k, v in sample.items() if k in names}, kind, strict=False))
+        assert line.text != kind.__name__, kind
+        assert len(line.text) < 200
+    assert RunStarted in Event.__subclasses__()

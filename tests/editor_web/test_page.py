@@ -1,0 +1,276 @@
+"""The page in a real browser: what an operator does, reads and hears."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Generator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Any, Literal
+
+import pytest
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect, sync_playwright
+
+import hatch_build
+from tests.editor_web.fake_backend import BROKEN, SINGLE, TRANSFER
+from tests.editor_web.site import Site
+
+AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+Scheme = Literal["light", "dark"]
+Visit = Callable[..., AbstractContextManager[Page]]
+
+
+def browser_program() -> str:
+    """The browser to drive: FLEXCELL_CHROMIUM, else the first one installed."""
+    named = os.environ.get("FLEXCELL_CHROMIUM")
+    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    assert found, "no Chromium: install the package `chromium`, or set FLEXCELL_CHROMIUM to its program"
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser() -> Generator[Browser]:
+    """One browser for the module."""
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def site(tmp_path: Path, loopback: str) -> Generator[Site]:
+    """A server without a 3D view: software rendering takes seconds, and has its own test."""
+    with Site(host=loopback, folder=tmp_path) as running:
+        yield running
+
+
+@pytest.fixture
+def visit(browser: Browser, site: Site) -> Visit:
+    """Log in and open an address: `with visit("/") as page`; console errors fail the test."""
+
+    @contextmanager
+    def opened(
+        path: str = "/", *, quiet: bool = True, size: tuple[int, int] = (1366, 768), scheme: Scheme = "light"
+    ) -> Generator[Page]:
+        context = browser.new_context(
+            locale="en-US", viewport={"width": size[0], "height": size[1]}, color_scheme=scheme
+        )
+        page = context.new_page()
+        said: list[str] = []
+
+        def listen(message: ConsoleMessage) -> None:
+            if message.type == "error":
+                said.append(message.text)
+
+        page.on("console", listen)
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.goto(site.running.login_url)
+        page.goto(site.running.url.rstrip("/") + path)
+        expect(page.get_by_role("link", name="two_arm_transfer").first).to_be_visible()
+        yield page
+        context.close()
+        assert not (said and quiet), said
+
+    return opened
+
+
+def address(behavior: str) -> str:
+    """Path of a behavior's page."""
+    return f"/behaviors/{behavior}"
+
+
+def node(page: Page, path: str) -> Locator:
+    """A node of the graph."""
+    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+
+
+def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, site: Site) -> None:
+    """Log in, pick, fill the form, start, two branches lit at once, stop."""
+    with visit() as page:
+        page.get_by_role("link", name="two_arm_transfer").click()
+        page.get_by_label("Speed").fill("0.3")
+        page.get_by_role("button", name="Start").click()
+        for arm in ("left", "right"):
+            expect(node(page, f"root/approach/{arm}")).to_have_attribute("data-status", "active")
+        lit = "() => document.querySelectorAll('.leaf.is-active').length"
+        assert page.evaluate(lit) == 2
+        expect(page.get_by_role("button", name="Start")).to_be_disabled()
+        for arm in ("left", "right"):
+            expect(node(page, f"root/pick/{arm}/descend")).to_have_attribute("data-status", "active")
+        expect(node(page, "root/approach/left")).to_contain_text("reached")
+        expect(page.locator(".course.is-taken")).to_have_count(1)
+        page.get_by_role("button", name="Stop").click()
+        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(page.get_by_role("log")).to_contain_text("stop requested: stopped in the dashboard")
+        expect(page.locator(".leaf.is-active")).to_have_count(0)
+    started = site.backend.events("run-001")[0]
+    assert getattr(started, "parameters", None) == {
+        "speed": 0.3,
+        "lift_m": 0.12,
+        "cycles": 1,
+        "order": "together",
+        "verify": True,
+    }
+
+
+def test_a_reload_in_mid_run_shows_what_is_running(visit: Visit, site: Site) -> None:
+    """Nodes, times and log come back at once."""
+    site.backend.step_s = 30.0
+    site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
+    with visit(address(TRANSFER.id)) as page:
+        for _ in range(2):
+            expect(page.locator(".leaf.is-active")).to_have_count(2)
+            expect(page.locator(".page-head .badge")).to_have_text("running")
+            expect(page.get_by_role("log")).to_contain_text("run started")
+            page.reload()
+
+
+def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
+    """The page says so meanwhile, and goes on by itself."""
+    with visit(address(TRANSFER.id), quiet=False) as page:
+        page.get_by_label("Speed").fill("0.7")
+        expect(page.locator(".connection")).to_have_text("Live")
+        site.down()
+        expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
+        site.up()
+        expect(page.locator(".connection")).to_have_text("Live", timeout=10_000)
+        expect(page.get_by_role("alert")).to_have_count(0)
+        expect(page.get_by_label("Speed")).to_have_value("0.7")
+        page.get_by_role("button", name="Start").click()
+        expect(page.locator(".leaf.is-active")).to_have_count(2)
+
+
+def test_new_keys_of_the_server_ask_for_a_new_log_in(visit: Visit, site: Site) -> None:
+    """Instead of trying for ever."""
+    with visit(quiet=False) as page:
+        expect(page.locator(".connection")).to_have_text("Live")
+        site.down(forget=True)
+        site.up()
+        expect(page.get_by_role("alert")).to_contain_text("You are logged out", timeout=10_000)
+        page.get_by_role("link", name="log in").click()
+        page.get_by_label("Token").fill("wrong")
+        page.get_by_role("button", name="Log in").click()
+        expect(page.get_by_role("alert")).to_have_text("That token is not valid for this server.")
+        page.get_by_label("Token").fill(site.running.login_url.partition("t=")[2])
+        page.get_by_role("button", name="Log in").click()
+        expect(page.locator(".connection")).to_have_text("Live")
+
+
+def test_what_is_wrong_with_a_parameter_stands_at_its_field(visit: Visit, site: Site) -> None:
+    """First by the page itself, then in the engine's words."""
+    with visit(address(SINGLE.id), quiet=False) as page:
+        page.get_by_role("button", name="Start").click()
+        expect(page.get_by_text("A value is required")).to_be_visible()
+        part = page.get_by_label("Part")
+        part.fill("ghost")
+        page.get_by_role("button", name="Start").click()
+        expect(page.get_by_text("no entry is named 'ghost' (see the store)")).to_be_visible()
+        expect(part).to_have_attribute("aria-invalid", "true")
+    assert site.backend.runs() == ()
+
+
+def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> None:
+    """Down to the root cause."""
+    site.backend.step_s = 0.05
+    with visit(address(SINGLE.id)) as page:
+        page.get_by_label("Part").fill("hca_1")
+        page.get_by_role("button", name="Start").click()
+        expect(node(page, "root/grasp")).to_have_attribute("data-status", "failed")
+        expect(node(page, "root/grasp").locator(".exit.is-taken")).to_have_text("failed")
+        expect(page.locator(".page-head .badge")).to_have_text("finished: failed")
+        page.get_by_role("log").get_by_role("button", name="3 causes").last.click()
+        expect(page.locator(".causes li").last).to_contain_text("no contact on either pad")
+
+
+def test_a_broken_document_shows_where_and_cannot_be_started(visit: Visit) -> None:
+    """File, line, column and advice."""
+    with visit(address(BROKEN.id)) as page:
+        expect(page.locator(".finding")).to_contain_text("palletise.yaml:14:21")
+        expect(page.locator(".finding")).to_contain_text("did you mean motion.MoveJoints?")
+        expect(page.get_by_role("button", name="Start")).to_be_disabled()
+
+
+def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: Site) -> None:
+    """The way in for keyboard and screen reader."""
+    site.backend.step_s = 30.0
+    site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
+    with visit(address(TRANSFER.id)) as page:
+        page.get_by_role("tab", name="Outline").click()
+        tree = page.get_by_role("tree")
+        tree.get_by_role("treeitem").first.focus()
+        for key in ("ArrowRight", "ArrowRight", "Enter"):
+            page.keyboard.press(key)
+        expect(tree.get_by_role("treeitem", selected=True)).to_have_accessible_name("left motion.MoveJoints active")
+        expect(page.get_by_label("Path of the selection")).to_have_text("rootapproachleft")
+        expect(page.locator(".step.is-selected")).to_contain_text("motion.MoveJoints")
+        page.keyboard.press("ArrowLeft")
+        page.keyboard.press("ArrowLeft")
+        expect(tree.get_by_role("treeitem", name="approach")).to_have_attribute("aria-expanded", "false")
+
+
+def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> None:
+    """axe-core finds nothing on any page, idle, running, failed, and while logging in."""
+    site.backend.step_s = 30.0
+    script = AXE.read_text(encoding="utf-8")
+
+    def check(page: Page, what: str) -> None:
+        # Colours fade for a moment when something changes.
+        page.evaluate("() => Promise.all(document.getAnimations().map((a) => a.finished.catch(() => null)))")
+        page.evaluate(f"() => {{ {script} }}")
+        result: dict[str, Any] = page.evaluate("() => axe.run(document)")
+        found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
+        assert found == [], f"{what}: {found}"
+
+    with visit("/", scheme="dark") as page:
+        check(page, "home without runs")
+    site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
+    schemes: tuple[Scheme, ...] = ("light", "dark")
+    for scheme in schemes:
+        with visit("/", scheme=scheme) as page:
+            check(page, f"home, {scheme}")
+            page.get_by_role("link", name="two_arm_transfer").first.click()
+            expect(page.locator(".leaf.is-active")).to_have_count(2)
+            check(page, f"running, {scheme}")
+            page.get_by_role("tab", name="Outline").click()
+            page.get_by_role("treeitem").nth(2).click()
+            check(page, f"outline, {scheme}")
+            page.get_by_role("link", name="palletise").click()
+            expect(page.locator(".finding")).to_be_visible()
+            check(page, f"broken, {scheme}")
+            page.set_viewport_size({"width": 390, "height": 844})
+            check(page, f"small, {scheme}")
+        # The browser itself reports the refusal.
+        with visit("/", scheme=scheme, quiet=False) as page:
+            page.goto(f"{site.running.url}login?t=wrong")
+            check(page, f"login, {scheme}")
+
+
+@pytest.mark.parametrize(("width", "height"), [(390, 844), (820, 1180), (1366, 768), (3840, 2160)])
+def test_it_fits_every_screen(visit: Visit, width: int, height: int) -> None:
+    """Nothing to scroll sideways, the start button in view, the graph drawn large enough to see."""
+    with visit(address(TRANSFER.id), size=(width, height)) as page:
+        expect(page.get_by_role("button", name="Start")).to_be_in_viewport()
+        assert page.evaluate("() => document.documentElement.scrollWidth") <= width
+        assert page.evaluate("() => document.documentElement.scrollHeight") <= height
+        if width < 992:
+            page.get_by_role("tab", name="Graph").click()
+        expect(page.locator(".leaf").first).to_be_visible()
+
+
+def test_the_cell_is_drawn_in_three_dimensions(visit: Visit, tmp_path: Path, loopback: str, browser: Browser) -> None:
+    """Through our own server; viser's own panel is out of sight."""
+    folder = tmp_path / "cell"
+    folder.mkdir()
+    with Site(host=loopback, folder=folder, cell_view=True) as site:
+        context = browser.new_context(locale="en-US", viewport={"width": 900, "height": 600})
+        page = context.new_page()
+        page.goto(site.running.login_url)
+        cell = page.frame_locator("iframe[title='3D view of the cell']")
+        drawn = cell.locator("canvas[data-engine]")
+        expect(drawn).to_be_visible(timeout=20_000)
+        expect(drawn).not_to_have_attribute("width", "0")
+        for hidden in cell.locator("[data-testid=floating-panel], .mantine-Paper-root").all():
+            expect(hidden).to_be_hidden()
+        context.close()

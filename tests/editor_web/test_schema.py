@@ -1,0 +1,25 @@
+"""What crosses the border to the browser is described, committed and current."""
+
+from __future__ import annotations
+
+from editor_web.schema import OPENAPI, TYPES, openapi, typescript
+
+
+def test_the_committed_description_of_the_http_interface_is_current() -> None:
+    """Else run `python -m editor_web.schema`."""
+    assert OPENAPI.read_text(encoding="utf-8") == openapi()
+
+
+def test_the_committed_typescript_types_are_current() -> None:
+    """Else run `python -m editor_web.schema`."""
+    assert TYPES.read_text(encoding="utf-8") == typescript()
+
+
+def test_every_field_has_a_type() -> None:
+    """`unknown` only where the value is anything by its nature."""
+    unknown = [line.strip() for line in typescript().splitlines() if "unknown" in line]
+    assert sorted(unknown) == [
+        "readonly events: readonly (Readonly<Record<string, unknown>>)[]",
+        "readonly parameters?: Readonly<Record<string, unknown>>",
+        "readonly schema: Readonly<Record<string, unknown>>",
+    ]

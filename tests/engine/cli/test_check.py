@@ -1,0 +1,71 @@
+"""`flexcell check`: broken documents give one clear line with a position, exit 2, in under a second."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.engine.cli.command import flexcell
+
+GOOD = """\
+flexcell: 1
+name: good
+outcomes: [finished]
+success: [finished]
+root:
+  machine:
+    initial: wait
+    states:
+      wait: {state: flow.Wait, with: {duration_s: 1}, transitions: {done: finished}}
+"""
+BROKEN = {
+    "unknown state": (GOOD.replace("flow.Wait", "flow.Wiat"), "9:21", "no state `flow.Wiat` (did you mean flow.Wait"),
+    "bad type": (GOOD.replace("duration_s: 1", "duration_s: soon"), "9:51", "duration_s"),
+    "self reference": (GOOD.replace("state: flow.Wait, with: {duration_s: 1}", "behavior: x.yaml"), "9:2", "circular"),
+    "alias bomb": ("a: &a [1]\nb: [*a, *a]\n", "1:4", "anchor"),
+    "duplicate keys": (GOOD + "name: twice\n", "10:1", "name"),
+    "deep nesting": ("a: " + "[" * 5_000_000 + "]" * 5_000_000, "1:", ""),
+    "deep nesting, small": ("a: " + "[" * 50_000 + "]" * 50_000, "1:", "64"),
+    "garbage bytes": ("\x00\x01\x02", "1:1", ""),
+    "empty": ("", "1:1", ""),
+    "a list": ("- 1\n", "1:1", ""),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_document_is_one_clear_line(tmp_path: Path, name: str) -> None:
+    """Position, reason, exit code 2, and no traceback; no hostile text takes long."""
+    text, position, reason = BROKEN[name]
+    file = tmp_path / "x.yaml"
+    file.write_text(text, encoding="utf-8")
+    began = time.process_time()
+    said = flexcell("check", "x.yaml", cwd=tmp_path)
+    errors = [line for line in said.out.splitlines() if ": error: " in line]
+    assert (said.code, len(errors)) == (2, 1), said
+    assert errors[0].startswith(f"x.yaml:{position}"), errors[0]
+    assert reason in errors[0]
+    assert "Traceback" not in said.err
+    assert time.process_time() - began < 1.0
+
+
+def test_a_good_document_is_exit_code_0(tmp_path: Path) -> None:
+    """Nothing on stdout, a summary on stderr."""
+    (tmp_path / "good.yaml").write_text(GOOD, encoding="utf-8")
+    said = flexcell("check", "good.yaml", cwd=tmp_path)
+    assert (said.code, said.out, said.err) == (0, "", "1 checked: 0 errors, 0 warnings\n")
+
+
+def test_machines_read_json_github_and_sarif(tmp_path: Path) -> None:
+    """The same finding in three forms."""
+    (tmp_path / "bad.yaml").write_text(GOOD.replace("done: finished", "done: nowhere"), encoding="utf-8")
+    (finding,) = [f for f in json.loads(flexcell("check", "bad.yaml", "--json", cwd=tmp_path).out) if f["severity"] == "error"]  # fmt: skip
+    github = flexcell("check", "bad.yaml", "--format", "github", cwd=tmp_path).out
+    sarif = json.loads(flexcell("check", "bad.yaml", "--format", "sarif", cwd=tmp_path).out)
+    assert (finding["file"], finding["line"], finding["code"]) == ("bad.yaml", 9, "unknown-target")
+    assert f"::error file=bad.yaml,line=9,col={finding['column']},title=unknown-target::" in github
+    results = {result["ruleId"]: result for result in sarif["runs"][0]["results"]}
+    region = results["unknown-target"]["locations"][0]["physicalLocation"]["region"]
+    assert region == {"startLine": 9, "startColumn": finding["column"]}

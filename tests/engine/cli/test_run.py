@@ -1,0 +1,133 @@
+"""`flexcell run`: outcome as exit code, JSON for machines, a clean stop on signals."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from engine.event import RunEnded, StopRequested
+from engine.journal import list_runs, read_events
+from tests.engine.cli.command import FLEXCELL, flexcell
+
+COUNT = """
+flexcell: 1
+name: wait
+parameters: {pause: {type: number, default: 1.0, minimum: 0, maximum: 3600, unit: s}}
+userdata: {flag: true}
+outcomes: [finished, failed]
+success: [finished]
+root:
+  machine:
+    initial: wait
+    states:
+      wait: {state: flow.Wait, with: {duration_s: "${pause}"}, transitions: {done: choose}}
+      choose: {state: flow.Decide, with: {when: "${flag}"}, transitions: {"true": finished, "false": failed}}
+"""
+
+
+@pytest.fixture
+def behavior(tmp_path: Path) -> Path:
+    """A behavior that waits and then decides by its userdata."""
+    file = tmp_path / "wait.yaml"
+    file.write_text(COUNT, encoding="utf-8")
+    return file
+
+
+def test_a_success_is_exit_code_0_and_one_json_object(behavior: Path) -> None:
+    """An hour passes in a moment; the object tells the whole result."""
+    said = flexcell("run", behavior, "--clock", "virtual", "--json", "-p", "pause=3600", cwd=behavior.parent)
+    result = json.loads(said.out)
+    assert (said.code, said.err) == (0, "")
+    assert (result["outcome"], result["success"], result["duration_s"], result["cause"]) == (
+        "finished", True, 3600.0, [],
+    )  # fmt: skip
+
+
+def test_another_outcome_is_exit_code_1_with_its_cause(behavior: Path) -> None:
+    """Inputs change the way the behavior takes."""
+    said = flexcell("run", behavior, "--clock", "virtual", "--json", "--input", "flag=false", cwd=behavior.parent)
+    assert (said.code, json.loads(said.out)["outcome"]) == (1, "failed")
+
+
+def test_twice_the_same_seed_writes_the_same_event_log(behavior: Path) -> None:
+    """Byte for byte, in two processes."""
+    logs = [behavior.with_name(f"{n}.jsonl") for n in (1, 2)]
+    for log in logs:
+        flexcell("run", behavior, "--clock", "virtual", "--seed", "7", "--events", log, "-q", cwd=behavior.parent)
+    first, second = (log.read_bytes() for log in logs)
+    assert first == second
+    assert first.count(b"\n") > 5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("-p", "puase=1"), "there is no parameter `puase` (did you mean pause?)"),
+        (("-p", "pause=-1"), "-1 is below the minimum 0 s"),
+        (("-p", "pause=soon"), "parameter `pause`: 'soon' is not a number"),
+        (("-p", "pause"), "'pause' is not name=value"),
+        (("--input", "flag=no"), "'no' is not JSON"),
+        (("--input", "flg=1"), "there is no userdata key 'flg' (did you mean flag?)"),
+        (("--cell", "nowhere.yaml"), "nowhere.yaml:1:1: cannot read this file"),
+    ],
+)
+def test_bad_usage_is_exit_code_2_and_one_line(behavior: Path, arguments: tuple[str, ...], message: str) -> None:
+    """Nothing is started and the line says what to do."""
+    said = flexcell("run", behavior, "--clock", "virtual", *arguments, cwd=behavior.parent)
+    assert (said.code, said.out, said.err.count("\n")) == (2, "", 1)
+    assert message in said.err
+
+
+def test_an_error_in_a_state_is_exit_code_3_with_its_cause(tmp_path: Path) -> None:
+    """A state that asks for a store that is not there ends the run with the reason."""
+    file = tmp_path / "read.yaml"
+    file.write_text(
+        COUNT.replace("choose: {state: flow.Decide, with: {when: \"${flag}\"}, transitions: {\"true\": finished, \"false\": failed}}",
+                      "choose: {state: store.ReadEntry, with: {kind: pose, name: home}, transitions: {found: finished, missing: failed}}"),
+        encoding="utf-8",
+    )  # fmt: skip
+    said = flexcell("run", file, "--clock", "virtual", "--json", cwd=tmp_path)
+    result = json.loads(said.out)
+    assert (said.code, result["status"]) == (3, "errored")
+    assert "nobody answers at this address" in str(result["cause"])
+
+
+def test_a_timeout_stops_the_run(behavior: Path) -> None:
+    """`--timeout` is on the run's own clock."""
+    said = flexcell(
+        "run", behavior, "--clock", "virtual", "--json", "-p", "pause=100", "--timeout", "5", cwd=behavior.parent
+    )
+    result = json.loads(said.out)
+    assert (said.code, result["status"], result["duration_s"]) == (1, "stopped", 5.0)
+    assert "it took longer than 5 s" in result["cause"][0]["message"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_the_run_and_closes_the_journal(behavior: Path, number: signal.Signals) -> None:
+    """Exit code 130, and the journal tells who asked."""
+    command = [FLEXCELL, "run", behavior, "-p", "pause=3000", "--journal", "journal"]
+    with subprocess.Popen(command, cwd=behavior.parent, stderr=subprocess.PIPE, text=True) as process:
+        journal = behavior.parent / "journal" / "journal.db"
+        while not journal.exists() or not _running(journal):
+            assert process.poll() is None
+        process.send_signal(number)
+        _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    (run,) = list_runs(journal)
+    events = read_events(journal, run.id)
+    stops = [event.reason for event in events if isinstance(event, StopRequested)]
+    assert (run.status, stops, isinstance(events[-1], RunEnded)) == (
+        "stopped", [f"interrupted by {number.name}"], True,
+    )  # fmt: skip
+    assert "preempted" in errors
+
+
+def _running(journal: Path) -> bool:
+    try:
+        return bool(list_runs(journal))
+    except Exception:  # the file is being made
+        return False

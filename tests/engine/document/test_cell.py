@@ -1,0 +1,114 @@
+"""Cell documents: the demo cell, resolved paths, and mistakes with their positions."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from engine.document import Placement, load_cell
+from engine.errors import DocumentError, Position
+
+DEMO = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
+
+SMALL = """flexcell: 1
+cell: small
+store: {kind: sqlite, path: data/cell.db, seed: ../entries/small.yaml}
+world: {kind: mujoco}
+robots:
+  left: {model: panda, base: {xyz: [0, 0.5, 0], rpy: [0, 0, 1.5]}, gripper: {model: panda_hand}}
+fixtures:
+  table: {shape: box, size_m: [1, 1, 0.1], color: "#aabbcc"}
+parts:
+  can: {shape: cylinder, size_m: [0.05, 0.1], mass_kg: 0.2, jitter: {xy_m: 0.01}}
+"""
+
+WRONG: dict[str, tuple[str, str, str, str]] = {
+    "mistyped key": ("model: panda,", "modl: panda,", "modl", "did you mean model?"),
+    "no mass": ("mass_kg: 0.2", "mass_kg: 0", "0,", "Mass in kilograms"),
+    "unknown shape": ("shape: box", "shape: sphere", "sphere", "there is no choice 'sphere'"),
+    "cylinder with three lengths": (
+        "[0.05, 0.1]",
+        "[0.05, 0.1, 0.1]",
+        "[0.05",
+        "has 2 lengths, not 3 (diameter, length)",
+    ),
+    "box with two lengths": ("[1, 1, 0.1]", "[1, 1]", "[1, 1]", "has 3 lengths, not 2"),
+    "unknown world": ("kind: mujoco", "kind: gazebo", "gazebo", "'gazebo'"),
+    "unknown store": ("kind: sqlite", "kind: mongodb", "mongodb", "'mongodb'"),
+    "no world": ("world: {kind: mujoco}\n", "", "left", "robot `left` is simulated, and the cell has no world"),
+    "capital in a name": ("left:", "Left:", "Left", "Lower-case letters"),
+    "unknown driver word": ("model: panda,", "model: panda, driver: real,", "real", "known: sim"),
+    "driver without kind": ("model: panda,", "model: panda, driver: {host: x},", "{host", "has no `kind`"),
+    "color word": ('"#aabbcc"', "red", "red", "#rrggbb"),
+    "same name twice": ("can:", "table:", "table", "`table` is a fixture and a part"),
+    "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not run `modules`"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_cell_is_refused_where_the_mistake_stands(tmp_path: Path, name: str) -> None:
+    """One line with file, line and column of the offending text."""
+    old, new, at, says = WRONG[name]
+    assert old in SMALL
+    file = tmp_path / "cell.yaml"
+    file.write_text(SMALL.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(DocumentError) as refusal:
+        load_cell(file)
+    assert says in str(refusal.value)
+    where = refusal.value.where
+    assert isinstance(where, Position)
+    assert file.read_text(encoding="utf-8").splitlines()[where.line - 1][where.column - 1 :].startswith(at)
+
+
+def test_the_demo_cell_is_valid() -> None:
+    """Two simulated arms, parts to carry, and a seed file beside the cells."""
+    cell = load_cell(DEMO)
+    assert set(cell.document.robots) == {"left", "right"}
+    assert all(robot.simulated for robot in cell.document.robots.values())
+    assert cell.seed_file == DEMO.parents[1] / "entries" / "dual_panda.yaml"
+
+
+def test_paths_are_relative_to_the_document_except_the_database(tmp_path: Path) -> None:
+    """The store is written where the program runs, everything else lies beside the cell."""
+    file = tmp_path / "cells" / "cell.yaml"
+    file.parent.mkdir()
+    file.write_text(SMALL, encoding="utf-8")
+    cell = load_cell(file)
+    assert cell.seed_file == tmp_path / "entries" / "small.yaml"
+    assert cell.document.store is not None
+    assert cell.document.store.path == "data/cell.db"
+
+
+def test_a_driver_of_its_own_keeps_its_options(tmp_path: Path) -> None:
+    """The table's other keys belong to the driver."""
+    file = tmp_path / "cell.yaml"
+    file.write_text(
+        SMALL.replace("model: panda,", "model: ur10, driver: {kind: ur_rtde, host: 127.0.0.5},"), encoding="utf-8"
+    )
+    robot = load_cell(file).document.robots["left"]
+    assert (robot.driver_kind, robot.driver, robot.simulated) == (
+        "ur_rtde",
+        {"kind": "ur_rtde", "host": "127.0.0.5"},
+        False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("rpy", "xyzw"),
+    [
+        ((0.0, 0.0, math.pi / 2), (0.0, 0.0, math.sqrt(0.5), math.sqrt(0.5))),
+        ((math.pi, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+        ((0.0, math.pi / 2, math.pi / 2), (-0.5, 0.5, 0.5, 0.5)),
+        # About fixed axes: first x, then z; a turn of x stays, and the result is not that of z then x.
+        ((math.pi / 2, 0.0, math.pi / 2), (0.5, 0.5, 0.5, 0.5)),
+    ],
+)
+def test_a_placement_turns_about_fixed_axes_in_turn(
+    rpy: tuple[float, float, float], xyzw: tuple[float, float, float, float]
+) -> None:
+    """Roll about x, then pitch about y, then yaw about z, all axes of the world."""
+    pose = Placement(xyz=(1.0, 2.0, 3.0), rpy=rpy).pose()
+    assert (pose.xyz, pose.frame) == ((1.0, 2.0, 3.0), "world")
+    assert pose.xyzw == pytest.approx(xyzw)

@@ -1,0 +1,98 @@
+"""How an arm's motion is judged, on an arm that is made to lag, to be stuck, or to follow perfectly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from robots.control.arm_motion import ArmMotion
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld
+from robots.port import Array, JointTrajectory, Tolerance
+
+START = np.zeros(2)
+
+
+def ramp(goal: Array) -> JointTrajectory:
+    """Return a minimum-jerk motion of half a second from zero."""
+    u = np.linspace(0.0, 1.0, 501)[:, None]
+    return JointTrajectory(
+        dt_s=0.001,
+        position_rad=goal * (10 * u**3 - 15 * u**4 + 6 * u**5),
+        velocity_rad_s=goal * (30 * u**2 - 60 * u**3 + 30 * u**4) / 0.5,
+    )
+
+
+def run(
+    motion: ArmMotion, measure: Callable[[Array], Array], *, limit: int = 6000, moving: bool = False
+) -> tuple[list[AnyMotionEvent], int]:
+    """Step until something happens; `measure` makes the measured joints of the set point."""
+    position = measure(motion.position)
+    for step in range(limit):
+        before, position = position, measure(motion.position)
+        velocity = np.full(2, 0.5) if moving else (position - before) / 0.001
+        events = list(motion.step(0.001, position=position.copy(), velocity=velocity))
+        position = measure(motion.position)
+        if events:
+            return events, step
+    return [], limit
+
+
+def new_motion(goal: Array, tolerance: Tolerance, *, contact: str = "") -> ArmMotion:
+    """Return an arm's motions with number 7 under way."""
+    motion = ArmMotion(joints=("shoulder", "elbow"), acceleration_rad_s2=np.full(2, 10.0), touching=lambda: contact)
+    motion.initialize(START)
+    motion.follow(7, ramp(goal), tolerance)
+    return motion
+
+
+def test_an_arm_that_follows_reaches_its_goal() -> None:
+    events, steps = run(new_motion(np.array([0.2, 0.1]), Tolerance()), lambda desired: desired.copy())
+    assert events == [MotionFinished(motion=7, end="reached", progress=1.0)]
+    assert 490 <= steps < 560
+
+
+def test_a_stuck_arm_fails_naming_the_worst_joint_and_the_contact() -> None:
+    motion = new_motion(np.array([0.3, 0.9]), Tolerance(path_rad=0.1), contact="left hand touches part box")
+    events, _ = run(motion, lambda _: START)
+    (end,) = events
+    assert isinstance(end, MotionFinished)
+    assert end.end == "failed"
+    assert end.reason.startswith("elbow is 0.10")
+    assert end.reason.endswith("rad behind its set point; left hand touches part box")
+    assert motion.position.tolist() == START.tolist()
+    assert motion.number == 0
+
+
+def test_an_arm_that_stays_off_its_goal_fails_after_the_settling_time() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance(goal_rad=0.01, settle_s=0.5))
+    events, steps = run(motion, lambda desired: desired * 0.9)
+    (end,) = events
+    assert isinstance(end, MotionFinished)
+    assert end.reason == "shoulder is 0.020 rad away from the goal after 0.5 s"
+    assert 1000 <= steps < 1200
+
+
+def test_an_arm_that_never_rests_is_not_called_cancelled() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    motion.cancel(7)
+    events, steps = run(motion, lambda desired: desired.copy(), moving=True)
+    (end,) = events
+    assert isinstance(end, MotionFinished)
+    assert (end.end, end.reason) == ("failed", "the arm does not come to rest")
+    assert steps >= 3000
+
+
+def test_commands_for_another_motion_are_ignored() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    motion.cancel(6)
+    motion.hold(8)
+    events, _ = run(motion, lambda desired: desired.copy())
+    assert events == [MotionFinished(motion=7, end="reached", progress=1.0)]
+
+
+def test_a_hold_is_not_confirmed_while_the_arm_still_moves() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    motion.hold(7)
+    assert run(motion, lambda desired: desired.copy(), limit=1500, moving=True)[0] == []
+    assert run(motion, lambda desired: desired.copy())[0] == [MotionHeld(motion=7)]

@@ -1,0 +1,98 @@
+"""The finger servo on a mass and a wall of our own: width, force, stall, patience."""
+
+from __future__ import annotations
+
+import pytest
+
+from robots.control.finger_servo import FingerServo
+from robots.control.motion_event import AnyMotionEvent, MotionFinished
+from robots.model.registry import model_by_name
+
+GRIPPER = model_by_name("panda").gripper
+assert GRIPPER is not None
+STEP_S = 0.001
+FINGER_KG = 0.2
+
+
+class Fingers:
+    """Two fingers alike, stopped by an object `wall_m` wide."""
+
+    def __init__(self, *, wall_m: float) -> None:
+        assert GRIPPER is not None
+        self.servo = FingerServo(GRIPPER)
+        self.wall_m = wall_m
+        self.width_m = GRIPPER.max_width_m
+        self.velocity_m_s = 0.0
+        self.servo.initialize(self.width_m)
+
+    def step(self) -> tuple[AnyMotionEvent, ...]:
+        events = self.servo.step(STEP_S, width_m=self.width_m, velocity_m_s=self.velocity_m_s)
+        self.velocity_m_s += 2.0 * self.servo.force_n / FINGER_KG * STEP_S
+        self.width_m += self.velocity_m_s * STEP_S
+        if self.width_m <= self.wall_m:
+            self.width_m, self.velocity_m_s = self.wall_m, max(self.velocity_m_s, 0.0)
+        return events
+
+    def until_told(self, limit: int = 6000) -> tuple[AnyMotionEvent, int]:
+        for step in range(limit):
+            for event in self.step():
+                return event, step
+        raise AssertionError("nothing was told")
+
+
+def test_without_an_object_the_fingers_reach_the_width_at_the_speed() -> None:
+    fingers = Fingers(wall_m=0.0)
+    fingers.servo.close_to(1, width_m=0.03, speed_m_s=0.1, force_n=40.0, now_m=fingers.width_m)
+    event, steps = fingers.until_told()
+    assert isinstance(event, MotionFinished)
+    assert (event.end, event.progress) == ("reached", pytest.approx(1.0, abs=0.02))
+    assert fingers.width_m == pytest.approx(0.03, abs=0.001)
+    assert 500 <= steps < 700
+
+
+def test_against_an_object_the_force_builds_up_is_never_exceeded_and_stays() -> None:
+    fingers = Fingers(wall_m=0.03)
+    fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=fingers.width_m)
+    event, _ = fingers.until_told()
+    assert isinstance(event, MotionFinished)
+    assert event.end == "reached"
+    for _ in range(500):
+        fingers.step()
+        assert fingers.servo.force_n == pytest.approx(-25.0)
+
+
+def test_the_force_follows_an_object_that_gives() -> None:
+    fingers = Fingers(wall_m=0.03)
+    fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=fingers.width_m)
+    fingers.until_told()
+    fingers.wall_m = 0.028
+    for _ in range(300):
+        fingers.step()
+    assert (fingers.width_m, fingers.servo.force_n) == (0.028, pytest.approx(-25.0))
+
+
+def test_a_stronger_grip_takes_over_without_letting_go() -> None:
+    fingers = Fingers(wall_m=0.03)
+    fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=20.0, now_m=fingers.width_m)
+    fingers.until_told()
+    fingers.servo.close_to(2, width_m=0.0, speed_m_s=0.05, force_n=50.0, now_m=fingers.width_m)
+    weakest = 50.0
+    for _ in range(400):
+        fingers.step()
+        weakest = min(weakest, -fingers.servo.force_n)
+    assert weakest >= 19.0
+    assert fingers.servo.force_n == pytest.approx(-50.0)
+
+
+def test_fingers_that_never_rest_fail_in_words() -> None:
+    fingers = Fingers(wall_m=0.0)
+    fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.1, force_n=20.0, now_m=fingers.width_m)
+    for step in range(4000):
+        told = fingers.servo.step(STEP_S, width_m=0.05, velocity_m_s=0.5 if step % 2 else -0.5)
+        if told:
+            (end,) = told
+            assert isinstance(end, MotionFinished)
+            assert end.end == "failed"
+            assert "neither at 0.0 mm nor at rest against something" in end.reason
+            return
+    raise AssertionError("it waited for ever")

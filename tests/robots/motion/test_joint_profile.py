@@ -1,0 +1,98 @@
+"""Point-to-point joint profiles."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.errors import RobotError
+from robots.motion import plan_joints
+from robots.port import Array, JointTrajectory
+from tests.robots.panda_arm import configurations, home, panda_model, played
+
+LIMITS = panda_model().limits
+NAMES = panda_model().arm_joints
+
+
+def plan(start: Array, goal: Array, *, speed: float, jerk_limited: bool = False) -> JointTrajectory:
+    """Plan for the Panda."""
+    return plan_joints(start, goal, speed=speed, limits=LIMITS, joint_names=NAMES, jerk_limited=jerk_limited)
+
+
+@settings(max_examples=60, deadline=None)
+@given(configurations(), configurations(), st.floats(0.05, 1.0), st.booleans())
+def test_a_profile_starts_and_ends_exactly_at_rest_and_never_exceeds_a_limit(
+    start: Array, goal: Array, speed: float, jerk_limited: bool
+) -> None:
+    """Also between the samples, as a port interpolates them."""
+    way = plan(start, goal, speed=speed, jerk_limited=jerk_limited)
+    position, velocity, acceleration = played(way)
+    assert (way.position_rad[0] == start).all()
+    assert (way.position_rad[-1] == goal).all()
+    assert not way.velocity_rad_s[[0, -1]].any()
+    assert (position >= np.minimum(start, goal) - 1e-6).all()
+    assert (position <= np.maximum(start, goal) + 1e-6).all()
+    assert (np.abs(velocity) <= speed * np.array(LIMITS.velocity_rad_s) + 1e-9).all()
+    assert (np.abs(acceleration) <= np.array(LIMITS.acceleration_rad_s2)).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(configurations(), configurations(), st.floats(0.05, 1.0))
+def test_all_joints_are_in_phase(start: Array, goal: Array, speed: float) -> None:
+    """At any time every joint has done the same share of its way."""
+    way = plan(start, goal, speed=speed)
+    moved = np.abs(goal - start) > 1e-3
+    shares = (way.position_rad - start)[:, moved] / (goal - start)[moved]
+    if moved.any():
+        assert np.ptp(shares, axis=1).max() < 1e-3
+
+
+def test_a_long_way_reaches_its_share_of_the_speed_limit_and_keeps_it() -> None:
+    """The plateau of the trapezoid."""
+    goal = home()
+    goal[0] = 2.5
+    fastest = plan(home(), goal, speed=0.4).velocity_rad_s[:, 0]
+    assert fastest.max() == pytest.approx(0.4 * LIMITS.velocity_rad_s[0], rel=0.01)
+    assert (fastest > 0.999 * fastest.max()).mean() > 0.3
+
+
+def test_half_the_speed_takes_longer() -> None:
+    """Speed is a share of the joint speed limits."""
+    goal = home() + 0.5
+    goal[3] = -1.0
+    slow, fast = plan(home(), goal, speed=0.3), plan(home(), goal, speed=0.6)
+    assert len(slow.position_rad) * slow.dt_s > 1.6 * len(fast.position_rad) * fast.dt_s
+
+
+def test_a_limited_jerk_ramps_the_acceleration() -> None:
+    """The trapezoid jumps to its acceleration at once, the ramped profile does not."""
+    goal = home() + 0.2
+    goal[3] = -2.0
+    sharp = np.abs(np.diff(plan(home(), goal, speed=1.0).velocity_rad_s[:3, 0]))[0]
+    soft = np.abs(np.diff(plan(home(), goal, speed=1.0, jerk_limited=True).velocity_rad_s[:3, 0]))[0]
+    assert soft < 0.99 * sharp
+
+
+def test_standing_still_is_a_motion_too() -> None:
+    """A goal that is reached already."""
+    way = plan(home(), home(), speed=0.5)
+    assert (way.position_rad == home()).all()
+
+
+@pytest.mark.parametrize(
+    ("goal", "message"),
+    [
+        ((0.0,) * 6, "the goal has 6 joints (this arm has 7)"),
+        ((0.0, 0.0, 0.0, 0.14, 0.0, 0.0, 0.0), "panda_joint4 cannot go to 0.1400 rad (its range is -3.0718"),
+        ((math.nan, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0), "panda_joint1 cannot go to nan rad"),
+    ],
+)
+def test_a_goal_that_cannot_be_is_refused_with_the_joint(goal: tuple[float, ...], message: str) -> None:
+    """Before any profile is made."""
+    with pytest.raises(RobotError) as refusal:
+        plan(home(), np.array(goal), speed=0.5)
+    assert str(refusal.value).startswith(message)

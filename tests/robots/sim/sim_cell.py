@@ -1,0 +1,74 @@
+"""Small simulated cells for tests, opened on the running loop."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+
+import numpy as np
+
+from engine.clock import VirtualLoop
+from engine.messages import Pose, Vector3
+from robots.model.registry import model_by_name
+from robots.port import ArmPort, Array, JointTrajectory, MotionReport, Tolerance
+from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
+from robots.sim.world import SimWorld, new_world
+
+PANDA = model_by_name("panda")
+HOME = np.array(PANDA.home_rad)
+TABLE = FixtureBody(name="table", shape="box", size_m=(1.6, 1.2, 0.04), pose=Pose(xyz=(0.0, 0.0, -0.02)))
+LEFT = ArmPlacement(name="left", model="panda", base=Pose(xyz=(-0.55, 0.0, 0.0)))
+RIGHT = ArmPlacement(name="right", model="panda", base=Pose(xyz=(0.55, 0.0, 0.0), xyzw=(0.0, 0.0, 1.0, 0.0)))
+
+# Configurations of the left arm, hand pointing down, fingers along y, tool centre point in the world at:
+PART_XYZ = (-0.09, 0.28, 0.02)
+ABOVE_PART = np.array([0.079516, 0.271183, 0.462131, -2.258997, -0.199114, 2.493332, 1.471841])  # z 0.15
+AT_PART = np.array([0.178605, 0.581023, 0.319763, -2.207157, -0.444087, 2.728343, 1.644956])  # z 0.022
+LIFTED = np.array([-0.048806, 0.176277, 0.600081, -2.239824, -0.144093, 2.380583, 1.434102])  # z 0.2
+
+
+def box(name: str, xyz: Vector3 = PART_XYZ, *, mass_kg: float = 0.12) -> PartBody:
+    """Return a part of 60 x 30 x 40 mm."""
+    return PartBody(name=name, shape="box", size_m=(0.06, 0.03, 0.04), mass_kg=mass_kg, pose=Pose(xyz=xyz))
+
+
+def one_arm(*parts: PartBody) -> Scene:
+    """Return the left arm at a table with these parts."""
+    return Scene(arms=(LEFT,), fixtures=(TABLE,), parts=parts)
+
+
+def two_arms(*parts: PartBody) -> Scene:
+    """Return both arms at a table with these parts."""
+    return Scene(arms=(LEFT, RIGHT), fixtures=(TABLE,), parts=parts)
+
+
+def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:
+    """Return a minimum-jerk motion between two configurations, sampled every 2 ms."""
+    u = np.linspace(0.0, 1.0, round(duration_s / 0.002) + 1)[:, None]
+    return JointTrajectory(
+        dt_s=0.002,
+        position_rad=start + (goal - start) * (10 * u**3 - 15 * u**4 + 6 * u**5),
+        velocity_rad_s=(goal - start) * (30 * u**2 - 60 * u**3 + 30 * u**4) / duration_s,
+    )
+
+
+async def move(arm: ArmPort, goal: Array, duration_s: float = 1.0) -> MotionReport:
+    """Go from the set point to `goal` and return the report."""
+    motion = arm.follow(smooth(np.asarray(arm.sample().desired_rad), goal, duration_s), tolerance=Tolerance())
+    return await motion.report()
+
+
+@asynccontextmanager
+async def opened(scene: Scene) -> AsyncGenerator[SimWorld]:
+    """Open a world in lockstep on a virtual loop, in its own process on a real one."""
+    virtual = isinstance(asyncio.get_running_loop(), VirtualLoop)
+    async with new_world(scene, virtual=virtual) as world:
+        yield world
+        await world.stop()
+
+
+def part_xyz(world: SimWorld, name: str) -> Vector3:
+    """Return where a part is now."""
+    xyz, _ = world.snapshot().frames()
+    return xyz[world.host.summary.frames.index(name)]

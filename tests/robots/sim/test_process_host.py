@@ -1,0 +1,107 @@
+"""The world's own process: what happens when it, or its parent, dies; how punctual it is."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from engine.errors import CellError, RobotError
+from engine.messages import Pose
+from engine.robot import DeviceStatus
+from robots.port import MotionEnd, Tolerance
+from robots.sim.process_host import ProcessHost
+from robots.sim.scene import FixtureBody, Scene
+from robots.sim.world import SimWorld
+from tests.robots.sim.sim_cell import HOME, one_arm, smooth
+
+ROOT = Path(__file__).parents[3]
+
+
+def alive(pid: int) -> bool:
+    """Return whether a process runs (a zombie does not)."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+async def test_a_killed_world_fails_its_motions_and_refuses_the_next_instead_of_hanging() -> None:
+    host = ProcessHost(one_arm())
+    world = SimWorld(one_arm(), host=host)
+    async with world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.3, 2.0), tolerance=Tolerance())
+        holding = asyncio.create_task(motion.hold())
+        await asyncio.sleep(0)
+        os.kill(host.pid, signal.SIGKILL)
+        report = await asyncio.wait_for(motion.report(), 5.0)
+        await asyncio.wait_for(holding, 5.0)
+        assert (report.end, report.reason) == (MotionEnd.FAILED, "the world's process was ended by SIGKILL")
+        assert world.status is DeviceStatus.FAULT
+        with pytest.raises(RobotError, match="SIGKILL"):
+            world.gripper("left").close_to(width_m=0.0, speed_m_s=0.1, force_n=10.0)
+        with pytest.raises(RobotError, match="SIGKILL"):
+            await world.stop()
+
+
+async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() -> None:
+    host = ProcessHost(one_arm())
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.5, 1.0), tolerance=Tolerance())
+        await asyncio.sleep(0.4)
+        pid = host.pid
+    assert (await motion.report()).end is MotionEnd.CANCELED
+    assert not alive(pid)
+
+
+async def test_a_world_that_cannot_be_built_says_why() -> None:
+    egg = FixtureBody(name="egg", shape="egg", size_m=(0.1,), pose=Pose(xyz=(0.0, 0.0, 0.0)))
+    host = ProcessHost(Scene(fixtures=(egg,)))
+    with pytest.raises(CellError, match="a egg cannot have the size"):
+        async with SimWorld(Scene(), host=host):
+            pass
+    assert not alive(host.pid)
+
+
+async def test_punctuality_is_counted() -> None:
+    host = ProcessHost(one_arm())
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.01, 0.2), tolerance=Tolerance())
+        await motion.report()
+        timing = host.timing()
+        assert 0.0 < timing.late_p50_s <= timing.late_p99_s
+        assert timing.late_max_s > 0.0
+        assert 0 <= timing.overruns <= timing.steps
+        assert world.snapshot().time_s > 0.1
+
+
+def test_the_world_ends_when_its_parent_is_killed() -> None:
+    script = (
+        "import asyncio\n"
+        "from robots.sim.process_host import ProcessHost\n"
+        "from robots.sim.scene import Scene\n"
+        "from robots.sim.world import SimWorld\n"
+        "async def main():\n"
+        "    host = ProcessHost(Scene())\n"
+        "    async with SimWorld(Scene(), host=host):\n"
+        "        print(host.pid, flush=True)\n"
+        "        await asyncio.sleep(60)\n"
+        "asyncio.run(main())\n"
+    )
+    parent = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
+    assert parent.stdout is not None
+    with parent.stdout:
+        world = int(parent.stdout.readline())
+    assert alive(world)
+    parent.kill()
+    parent.wait()
+    deadline = time.monotonic() + 5.0
+    while alive(world) and time.monotonic() < deadline:
+        os.sched_yield()
+    assert not alive(world)

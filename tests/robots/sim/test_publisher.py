@@ -1,0 +1,68 @@
+"""What a world tells on the bus: right latest values without readers, streams at their rates with them."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from engine.bus import SkillBus
+from engine.clock import new_clock
+from engine.messages import FramePoses, GripperState, JointState, PartPoses, SceneDescription
+from tests.robots.sim.sim_cell import HOME, box, move, one_arm, opened
+
+
+@pytest.mark.virtual
+async def test_latest_values_are_right_though_nobody_subscribes() -> None:
+    async with opened(one_arm(box("part", (-0.09, 0.28, 0.2)))) as world:
+        bus = SkillBus(new_clock())
+        world.register(bus)
+        await move(world.arm("left"), HOME + 0.1, 0.5)
+        joints = bus.topic("left/joint_state", JointState).latest
+        gripper = bus.topic("left/gripper/state", GripperState).latest
+        parts = bus.topic("cell/parts", PartPoses).latest
+        assert joints is not None
+        assert gripper is not None
+        assert parts is not None
+        assert joints.position_rad == pytest.approx(tuple(HOME + 0.1), abs=0.002)
+        assert (gripper.width_m, gripper.held) == (pytest.approx(0.08, abs=0.001), False)
+        assert parts.poses["part"].xyz == pytest.approx((-0.09, 0.28, 0.02), abs=0.001)
+
+
+@pytest.mark.virtual
+async def test_streams_come_at_their_rates_in_world_time() -> None:
+    async with opened(one_arm()) as world:
+        bus = SkillBus(new_clock())
+        world.register(bus)
+        joints: list[float] = []
+        frames: list[float] = []
+        bus.topic("left/joint_state", JointState).subscribe(lambda message: joints.append(message.time_s))
+        bus.topic("cell/frames", FramePoses).subscribe(lambda message: frames.append(message.time_s))
+        await asyncio.sleep(1.0)
+        assert len(joints) == 100
+        assert 29 <= len(frames) <= 31
+        assert joints == sorted(joints)
+
+
+async def test_streams_come_in_real_time_as_well() -> None:
+    async with opened(one_arm()) as world:
+        bus = SkillBus(new_clock())
+        world.register(bus)
+        stream = bus.topic("left/joint_state", JointState).stream()
+        with stream:
+            first, second = await stream.next(), await stream.next()
+        assert second.time_s > first.time_s
+
+
+@pytest.mark.virtual
+async def test_every_frame_that_is_drawn_has_a_pose() -> None:
+    async with opened(one_arm(box("part"))) as world:
+        bus = SkillBus(new_clock())
+        world.register(bus)
+        scene = bus.topic("cell/scene", SceneDescription).latest
+        poses = bus.topic("cell/frames", FramePoses).latest
+        assert scene is not None
+        assert poses is not None
+        drawn = {geometry.frame for geometry in scene.geometries}
+        assert drawn <= {"world", *poses.names}
+        assert {"world", "part", "left/panda_hand", "left/panda_leftfinger"} <= drawn

@@ -1,0 +1,55 @@
+"""Numbers shared between processes: never torn, readable after the writer died in mid-write."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from robots.sim.shared_state import SharedNumbers, new_shared_file
+
+ROOT = Path(__file__).parents[3]
+
+
+WRITER = """
+import sys
+import numpy as np
+from robots.sim.shared_state import SharedNumbers
+shared = SharedNumbers(int(sys.argv[1]), 20000)
+value = 0.0
+while True:
+    value += 1.0
+    shared.write(np.full(20000, value))
+"""
+
+
+def test_a_reader_never_sees_half_of_a_write_of_another_process() -> None:
+    descriptor = new_shared_file()
+    reader = SharedNumbers(descriptor, 20000)
+    writer = subprocess.Popen([sys.executable, "-c", WRITER, str(descriptor)], pass_fds=(descriptor,), cwd=ROOT)
+    os.close(descriptor)
+    try:
+        while reader.read()[0] == 0.0:
+            os.sched_yield()
+        copies = [reader.read() for _ in range(1000)]
+    finally:
+        writer.kill()
+        writer.wait()
+    assert all(copy.min() == copy.max() for copy in copies)
+    assert copies[-1][0] > copies[0][0]
+    reader.close()
+
+
+def test_a_writer_that_died_in_mid_write_does_not_hang_the_reader() -> None:
+    descriptor = new_shared_file()
+    shared = SharedNumbers(descriptor, 3)
+    shared.write(np.array([1.0, 2.0, 3.0]))
+    assert shared.read().tolist() == [1.0, 2.0, 3.0]
+    os.pwrite(descriptor, (3).to_bytes(8, "little"), 0)
+    os.pwrite(descriptor, bytes(8), 8)
+    assert shared.read().tolist() == [1.0, 2.0, 3.0]
+    shared.close()
+    os.close(descriptor)

@@ -1,0 +1,78 @@
+"""A context whose skills answer as a script says, and that remembers what a state asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+import msgspec
+
+from engine.clock import LoopClock
+from engine.errors import NoSuchSkill
+from engine.event import Cause
+from engine.skill import Action, Service
+from engine.state import ActionEnd
+
+R = TypeVar("R")
+F = TypeVar("F")
+S = TypeVar("S", bound=msgspec.Struct)
+
+
+def broken_off(status: str, cause: Cause | None) -> ActionEnd[object]:
+    """Make the end of a goal that gave no result."""
+    return ActionEnd(status, None, cause)
+
+
+class FakeContext:
+    """Answers by bus address.
+
+    Args:
+        answers: Address → the answer of a service (an exception is raised) or the `ActionEnd` of a goal.
+        topics: Topic → its latest message.
+    """
+
+    def __init__(
+        self, answers: Mapping[str, object] | None = None, *, topics: Mapping[str, msgspec.Struct] | None = None
+    ) -> None:
+        self._answers = dict(answers or {})
+        self._topics = dict(topics or {})
+        self.clock = LoopClock()
+        self.path = "root/step"
+        self.sent: list[tuple[str, object]] = []
+        self.logged: list[tuple[str, str]] = []
+
+    async def call(self, request: Service[R], *, to: str) -> R:
+        """Give the scripted answer."""
+        return self._answer(request, to)
+
+    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+        """Give the scripted end."""
+        return self._answer(goal, to)
+
+    async def latest(self, topic: str, kind: type[S]) -> S:
+        """Give the scripted message."""
+        message = self._topics[topic]
+        assert isinstance(message, kind)
+        return message
+
+    async def next_message(self, topic: str, kind: type[S]) -> S:
+        """Give the scripted message."""
+        return await self.latest(topic, kind)
+
+    def log(self, message: str, *, level: str = "info") -> None:
+        """Remember the line."""
+        self.logged.append((level, message))
+
+    def random(self) -> float:
+        """Be the least random of all."""
+        return 0.5
+
+    def _answer(self, request: Any, to: str) -> Any:
+        address = f"{to}/{request.skill_name()}"
+        self.sent.append((address, request))
+        if address not in self._answers:
+            raise NoSuchSkill("nobody answers at this address", where=address)
+        answer = self._answers[address]
+        if isinstance(answer, Exception):
+            raise answer
+        return answer

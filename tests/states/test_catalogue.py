@@ -1,0 +1,65 @@
+"""Every standard state keeps the contract of states."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from engine.document.signature import read_signature
+from engine.state import State
+from states import CATALOGUE
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_catalogue_has_the_standard_states() -> None:
+    """Behaviors name states by these words; a missing one breaks them."""
+    assert sorted(CATALOGUE) == [
+        "cell.ExpectPart",
+        "flow.Decide",
+        "flow.Log",
+        "flow.SetValue",
+        "flow.Wait",
+        "gripper.CheckHeld",
+        "gripper.Grasp",
+        "gripper.Move",
+        "gripper.Open",
+        "motion.MoveJoints",
+        "motion.MoveLinear",
+        "motion.MovePose",
+        "store.ReadEntry",
+        "store.WriteEntry",
+    ]
+
+
+@pytest.mark.parametrize("state", CATALOGUE.values(), ids=CATALOGUE)
+def test_a_standard_state_declares_itself_completely(state: type[State]) -> None:
+    """Its signature reads, its success is among its outcomes, it and its parameters are described."""
+    signature = read_signature(state)
+    assert signature.doc
+    assert signature.name == state.state_name
+    assert state.__name__ == state.state_name.partition(".")[2]
+    assert set(signature.success) <= set(signature.outcomes)
+    assert signature.success
+    undescribed = [name for name, key in signature.parameters.items() if "description" not in str(key.schema)]
+    assert undescribed == []
+
+
+def test_every_state_file_is_in_the_catalogue() -> None:
+    """A state that nobody can name is dead."""
+    files = {path.stem for path in (ROOT / "states").glob("*/*.py") if "State, frozen=True" in path.read_text()}
+    modules = {state.__module__.rpartition(".")[2] for state in CATALOGUE.values()}
+    assert modules == files
+
+
+def test_importing_the_states_brings_no_robot_and_no_browser() -> None:
+    """The library is found without side effects: no simulator, no server, no robots."""
+    script = (
+        "import sys, states; "
+        "print([m for m in sys.modules if m.split('.')[0] in ('robots', 'editor_web', 'mujoco', 'numpy', 'fastapi')])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
