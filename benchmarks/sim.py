@@ -1,6 +1,7 @@
 """How fast the dual-arm cell is simulated, where the time goes, and how punctual real time is.
 
-`python -P benchmarks/sim.py --seconds 10` prints a table (-P: or a neighbour here would shadow `engine`). Both arms swing to and fro all the time.
+`python -P benchmarks/sim.py --seconds 10` prints a table; both arms swing to and fro all the time.
+Without -P the neighbour `benchmarks/engine.py` would shadow the package `engine`.
 """
 
 from __future__ import annotations

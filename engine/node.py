@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Protocol
 
 import msgspec
@@ -66,9 +67,9 @@ class Work(Protocol):
         """state, machine, concurrency or behavior."""
         ...
 
-    @property
+    @cached_property
     def nominal(self) -> frozenset[str]:
-        """The outcomes that mean that nothing went wrong inside."""
+        """The outcomes that mean that nothing went wrong inside; asked at every transition."""
         ...
 
     def enter(self, scope: Scope) -> Entry:

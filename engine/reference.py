@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import msgspec
@@ -58,7 +59,7 @@ class Reference:
         """The key of this node in documents."""
         return "behavior"
 
-    @property
+    @cached_property
     def nominal(self) -> frozenset[str]:
         """The outcomes its document calls success; all of them where it does not say."""
         return frozenset(self.target.success or self.target.outcomes)

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 import msgspec
 
-from engine.bus import BusEntry
+from engine.bus.access import BusAccess, LocalBus
 from engine.cause import describe
 from engine.cell import OpenCell
 from engine.errors import FlexcellError
@@ -76,6 +76,11 @@ class Session:
         tasks = [started.task for started in self._runs.values() if started.task is not None]
         if tasks:
             await asyncio.wait(tasks)
+
+    @property
+    def bus(self) -> BusAccess:
+        """The cell's bus, by name and JSON."""
+        return LocalBus(self.cell.bus)
 
     @property
     def cell_name(self) -> str:
@@ -152,10 +157,6 @@ class Session:
         if found.latest is not None:
             callback(found.latest)
         return found.subscribe(callback).close
-
-    def bus_listing(self) -> tuple[BusEntry, ...]:
-        """Return everything on the bus."""
-        return self.cell.bus.listing()
 
     async def _execute(self, started: _Started) -> None:
         started.result = await started.run.execute()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 
 import msgspec
 
@@ -95,5 +96,11 @@ def _instance(signature: StateSignature, given: Mapping[str, object]) -> State |
             except msgspec.ValidationError:
                 return None
         values[name] = value
-    names = {found.encode_name: found.name for found in msgspec.structs.fields(signature.state)}
+    names = _field_names(signature.state)
     return signature.state(**{names[name]: value for name, value in values.items()})
+
+
+@cache
+def _field_names(state: type[State]) -> Mapping[str, str]:
+    """Field name by parameter name; kept, as reading type hints for every node would double the load time."""
+    return {found.encode_name: found.name for found in msgspec.structs.fields(state)}

@@ -65,7 +65,7 @@ async def _serve(
             Session(opened, project=project, catalogue=catalogue, journal=journal) as session,
         ):
             serving = asyncio.create_task(
-                new_dashboard(session, token_file=state / "tokens.json", host=host, port=port, on_ready=ready),
+                new_dashboard(session, token_file=state / "tokens", host=host, port=port, on_ready=ready),
                 name="serve",
             )
             loop = asyncio.get_running_loop()

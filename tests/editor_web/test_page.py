@@ -129,6 +129,7 @@ def test_a_reload_in_mid_run_shows_what_is_running(visit: Visit, site: Site) -> 
 
 def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
     """The page says so meanwhile, and goes on by itself."""
+    site.backend.step_s = 30.0
     with visit(address(TRANSFER.id), quiet=False) as page:
         page.get_by_label("Speed").fill("0.7")
         expect(page.locator(".connection")).to_have_text("Live")

@@ -136,9 +136,13 @@ def test_a_stop_preempts_all_branches() -> None:
         ),
         stop_at_s=1.0,
     )
-    assert sorted(told.story[3:]) == sorted([
-        "!root/left cleaned up", "-root/left preempted", "!root/right cleaned up", "-root/right preempted", "-root preempted",
-    ])  # fmt: skip
+    assert told.story[3:] == [
+        "!root/left cleaned up",
+        "-root/left preempted",
+        "!root/right cleaned up",
+        "-root/right preempted",
+        "-root preempted",
+    ]
     assert (told.result.status, told.result.duration_s) == ("stopped", pytest.approx(4.0))
 
 

@@ -188,7 +188,11 @@ def test_retry_on_an_outcome_gives_up_with_that_outcome() -> None:
           machine:
             initial: g
             states:
-              g: {state: test.Give, with: {outcome: c}, retry: {times: 2, outcomes: [c]}, transitions: {a: good, b: good, c: bad}}
+              g:
+                state: test.Give
+                with: {outcome: c}
+                retry: {times: 2, outcomes: [c]}
+                transitions: {a: good, b: good, c: bad}
     """)
     assert (told.story.count("+root/g"), told.result.outcome) == (3, "bad")
 

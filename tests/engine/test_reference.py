@@ -35,7 +35,12 @@ root:
     initial: first
     states:
       first: {behavior: counter.yaml, with: {limit: 5}, out: {count: total}, transitions: {full: second}}
-      second: {behavior: counter.yaml, in: {count: start}, with: {limit: "${total + 1}"}, out: {count: start}, transitions: {full: good}}
+      second:
+        behavior: counter.yaml
+        in: {count: start}
+        with: {limit: "${total + 1}"}
+        out: {count: start}
+        transitions: {full: good}
 """
 
 

@@ -61,7 +61,8 @@ def test_a_good_document_is_exit_code_0(tmp_path: Path) -> None:
 def test_machines_read_json_github_and_sarif(tmp_path: Path) -> None:
     """The same finding in three forms."""
     (tmp_path / "bad.yaml").write_text(GOOD.replace("done: finished", "done: nowhere"), encoding="utf-8")
-    (finding,) = [f for f in json.loads(flexcell("check", "bad.yaml", "--json", cwd=tmp_path).out) if f["severity"] == "error"]  # fmt: skip
+    findings = json.loads(flexcell("check", "bad.yaml", "--json", cwd=tmp_path).out)
+    (finding,) = [finding for finding in findings if finding["severity"] == "error"]
     github = flexcell("check", "bad.yaml", "--format", "github", cwd=tmp_path).out
     sarif = json.loads(flexcell("check", "bad.yaml", "--format", "sarif", cwd=tmp_path).out)
     assert (finding["file"], finding["line"], finding["code"]) == ("bad.yaml", 9, "unknown-target")

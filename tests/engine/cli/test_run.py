@@ -85,11 +85,10 @@ def test_bad_usage_is_exit_code_2_and_one_line(behavior: Path, arguments: tuple[
 def test_an_error_in_a_state_is_exit_code_3_with_its_cause(tmp_path: Path) -> None:
     """A state that asks for a store that is not there ends the run with the reason."""
     file = tmp_path / "read.yaml"
-    file.write_text(
-        COUNT.replace("choose: {state: flow.Decide, with: {when: \"${flag}\"}, transitions: {\"true\": finished, \"false\": failed}}",
-                      "choose: {state: store.ReadEntry, with: {kind: pose, name: home}, transitions: {found: finished, missing: failed}}"),
-        encoding="utf-8",
-    )  # fmt: skip
+    decide = 'choose: {state: flow.Decide, with: {when: "${flag}"}, transitions: {"true": finished, "false": failed}}'
+    transitions = "transitions: {found: finished, missing: failed}"
+    read = "choose: {state: store.ReadEntry, with: {kind: pose, name: home}, " + transitions + "}"
+    file.write_text(COUNT.replace(decide, read), encoding="utf-8")
     said = flexcell("run", file, "--clock", "virtual", "--json", cwd=tmp_path)
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")

@@ -63,10 +63,10 @@ HOSTILE: dict[str, tuple[bytes, int, int, str]] = {
 def test_hostile_text_is_refused_at_its_place_in_well_under_a_second(name: str) -> None:
     """One error with file, line and column, whatever comes."""
     content, line, column, says = HOSTILE[name]
-    start = time.process_time()
+    start = time.thread_time()
     with pytest.raises(DocumentError) as refusal:
         parse_source(content, file="x.yaml")
-    assert time.process_time() - start < 0.9
+    assert time.thread_time() - start < 0.9
     assert refusal.value.where == Position(file="x.yaml", line=line, column=column)
     assert says in refusal.value.message
 
@@ -190,7 +190,7 @@ def test_a_large_file_is_refused_without_being_read_whole(tmp_path: Path) -> Non
     file = tmp_path / "large.yaml"
     with file.open("wb") as stream:
         stream.truncate(1_000_000_000)
-    start = time.process_time()
+    start = time.thread_time()
     with pytest.raises(DocumentError, match="larger than 2 MB"):
         load_source(file)
-    assert time.process_time() - start < 0.5
+    assert time.thread_time() - start < 0.5

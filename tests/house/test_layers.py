@@ -1,0 +1,67 @@
+"""The architecture holds: import contracts, no circles, no file that tells about its making."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("engine", "states", "robots", "editor_web")
+SOURCES = sorted(
+    path for package in PACKAGES for path in (ROOT / package).rglob("*.py") if "node_modules" not in path.parts
+)
+
+
+def test_the_wings_stand_on_the_engine_and_never_on_one_another() -> None:
+    """The contracts in pyproject.toml are kept."""
+    lint = Path(sys.executable).with_name("lint-imports")
+    done = subprocess.run([lint], cwd=ROOT, capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode == 0, done.stdout
+
+
+def _name(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _imports(path: Path, known: set[str]) -> set[str]:
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+    return {name for name in found if name in known} - {_name(path)}
+
+
+def test_no_modules_import_one_another_in_a_circle() -> None:
+    """Imports run one way, typing imports included."""
+    names = {_name(path): path for path in SOURCES}
+    # A package's own face imports its files; the files never need the face of their own package.
+    graph = {name: _imports(path, set(names)) for name, path in names.items() if path.name != "__init__.py"}
+    state: dict[str, str] = {}
+
+    def visit(name: str, trail: tuple[str, ...]) -> None:
+        assert state.get(name) != "open", " → ".join((*trail[trail.index(name) :], name))
+        if name not in graph or state.get(name) == "done":
+            return
+        state[name] = "open"
+        for target in sorted(graph[name]):
+            visit(target, (*trail, name))
+        state[name] = "done"
+
+    for name in graph:
+        visit(name, ())
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=_name)
+def test_a_file_says_what_it_is_for_and_keeps_to_one_subject(path: Path) -> None:
+    """A docstring in the first line, at most 420 lines, and no grab-bag names."""
+    text = path.read_text(encoding="utf-8")
+    assert ast.get_docstring(ast.parse(text)), "no docstring"
+    assert text.count("\n") <= 420
+    assert path.stem not in ("utils", "util", "helpers", "common", "manager", "misc")
