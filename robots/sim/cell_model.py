@@ -56,6 +56,10 @@ class CellModel:
     frames: tuple[str, ...]
     frame_bodies: Indices
     parts: tuple[str, ...]
+    part_qpos: Indices
+    """Addresses of the parts' poses, seven a part, in the order of `parts`."""
+    part_dof: Indices
+    """Addresses of the parts' velocities, six a part."""
     body_names: tuple[str, ...]
 
 
@@ -87,6 +91,8 @@ def build_cell(scene: Scene) -> CellModel:
         frames=frames + parts,
         frame_bodies=np.array([compiled.body(name).id for name in frames + parts], dtype=np.intp),
         parts=parts,
+        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts for i in range(7)),
+        part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts for i in range(6)),
         body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
     )
 

@@ -85,11 +85,15 @@ class StopAll(Command, frozen=True, kw_only=True, tag="stop_all"):
     """Cancel every motion."""
 
 
+class ResetParts(Command, frozen=True, kw_only=True, tag="reset_parts"):
+    """Put the free parts back where the scene has them, at rest."""
+
+
 class Shutdown(Command, frozen=True, kw_only=True, tag="shutdown"):
     """Bring everything to rest, then end the world's process."""
 
 
-AnyCommand = Follow | CloseTo | Hold | Resume | Cancel | StopAll | Shutdown
+AnyCommand = Follow | CloseTo | Hold | Resume | Cancel | StopAll | ResetParts | Shutdown
 
 
 def _to_bytes(values: Array) -> bytes:

@@ -10,7 +10,7 @@ from robots.control.joint_impedance import ImpedanceGains, JointImpedance
 from robots.control.motion_event import AnyMotionEvent
 from robots.port import Array
 from robots.sim.cell_model import ArmIndices, CellModel, GripperIndices
-from robots.sim.commands import AnyCommand, Cancel, CloseTo, Follow, Hold, Resume, Shutdown, StopAll
+from robots.sim.commands import AnyCommand, Cancel, CloseTo, Follow, Hold, ResetParts, Resume, Shutdown, StopAll
 from robots.sim.contacts import ContactReader
 from robots.sim.physics import Physics
 from robots.sim.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
@@ -59,6 +59,7 @@ class Simulation:
         self._ctrl, self._bias = physics.motors, physics.bias
         self._wanted_acceleration = np.zeros(physics.dof_count)
         self._inertia_torque = np.zeros(physics.dof_count)
+        self._start_poses = self._qpos[cell.part_qpos].copy()
         self._set_home()
         self._contacts = ContactReader(cell, physics)
         inertia = physics.inertia_diagonal()
@@ -100,6 +101,9 @@ class Simulation:
             case Cancel():
                 for device in self._devices():
                     device.cancel(command.motion)
+            case ResetParts():
+                self._qpos[self._cell.part_qpos] = self._start_poses
+                self._qvel[self._cell.part_dof] = 0.0
             case StopAll() | Shutdown():
                 for device in self._devices():
                     device.stop()

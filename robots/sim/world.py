@@ -8,12 +8,14 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from engine.bus import SkillBus
+from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
-from engine.errors import RobotError
+from engine.errors import RobotError, SkillFailed
 from engine.robot import DeviceStatus, Robot
+from engine.skills.world import PartsReset, ResetParts
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, GripperPort, MotionEnd
+from robots.sim.commands import ResetParts as ResetPartsCommand
 from robots.sim.commands import StopAll
 from robots.sim.host import Host
 from robots.sim.lockstep_host import LockstepHost
@@ -55,6 +57,7 @@ class SimWorld:
         }
         self._status = DeviceStatus.DISCONNECTED
         self._publisher: WorldPublisher | None = None
+        self._bus: SkillBus | None = None
         self._timer: asyncio.Task[None] | None = None
         self._joint_steps = max(1, round(1.0 / (JOINT_RATE_HZ * scene.step_s)))
         self._frame_steps = max(1, round(1.0 / (FRAME_RATE_HZ * scene.step_s)))
@@ -101,8 +104,21 @@ class SimWorld:
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
         self._publisher = WorldPublisher(bus, self._host, lambda: describe_scene(self._scene, cache=self._cache))
+        self._bus = bus
+        bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
         if not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
+
+    async def _reset_parts(self, request: ResetParts) -> PartsReset:
+        """Put the parts back; raises SkillFailed while a run holds an arm or something moves."""
+        leases = self._bus.leases if self._bus is not None else LeaseTable()
+        owners = {arm: owner for arm in self._arms if (owner := leases.owner(arm)) is not None}
+        for arm, owner in owners.items():
+            raise SkillFailed(f"{arm} is commanded by run {owner}", where=self.name, hint="wait for its end or stop it")
+        if self._board.under_way():
+            raise SkillFailed("something moves", where=self.name, hint="stop it first")
+        self._host.send(ResetPartsCommand())
+        return PartsReset(parts=tuple(part.name for part in self._scene.parts))
 
     async def stop(self) -> None:
         """Cancel every motion and return when all have ended at rest.

@@ -51,5 +51,6 @@ export const api = {
   behavior: (id: string) => call<BehaviorBody>(`/behaviors/${idPath(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartedBody>('/runs', body, { 'idempotency-key': key }),
+  resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
   stop: (run: string) => post<void>(`/runs/${encodeURIComponent(run)}/stop`, { reason: 'stopped in the dashboard' }),
 }

@@ -11,6 +11,7 @@ import { StatusBadge } from '../components/StatusBadge'
 import { isActive } from '../document/live'
 import { nodeAt, pathsTo } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
+import { ResetParts } from '../features/cell/ResetParts'
 import { FindingList } from '../features/findings/FindingList'
 import { Graph } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
@@ -56,7 +57,7 @@ function Loaded({ behavior, run, busyWith, session, isNarrow, onStarted }: Behav
     </Panel>
   )
   const cell = (
-    <Panel title="Cell" className="cell-panel">
+    <Panel title="Cell" className="cell-panel" tools={session?.role === 'operator' && <ResetParts isBusy={busyWith !== undefined} />}>
       <CellFrame isServed={session?.has_cell_view ?? false} />
     </Panel>
   )

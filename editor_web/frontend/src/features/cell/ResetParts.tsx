@@ -1,0 +1,36 @@
+/** Puts the parts of a simulated cell back for the next trial. */
+import { Button } from '@mantine/core'
+import { IconRestore } from '@tabler/icons-react'
+import { useState } from 'react'
+import { api } from '../../api/client'
+
+export function ResetParts({ isBusy }: { isBusy: boolean }) {
+  const { reset, said } = useReset()
+  return (
+    <>
+      <span role="status" className="quiet">
+        {said}
+      </span>
+      <Button
+        size="compact-sm"
+        variant="default"
+        leftSection={<IconRestore size={14} aria-hidden />}
+        disabled={isBusy}
+        onClick={reset}
+      >
+        Reset parts
+      </Button>
+    </>
+  )
+}
+
+function useReset() {
+  const [said, setSaid] = useState('')
+  const reset = () => {
+    api.resetParts().then(
+      () => setSaid('Parts are back'),
+      (error: unknown) => setSaid(error instanceof Error ? error.message : String(error)),
+    )
+  }
+  return { reset, said }
+}
