@@ -130,6 +130,13 @@ class Session:
             started.stopping = True
             started.run.stop(reason)
 
+    async def wait(self, run_id: str) -> RunView:
+        """Wait until a run is over and return it."""
+        started = self._known(run_id)
+        if started.task is not None:
+            await asyncio.wait({started.task})
+        return self.run(run_id)
+
     def subscribe(self, callback: EventCallback) -> Callable[[], None]:
         """Call back with (run id, event) for every event of every run; returns what ends it."""
         self._callbacks = (*self._callbacks, callback)

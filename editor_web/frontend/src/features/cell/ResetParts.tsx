@@ -8,6 +8,7 @@ export function ResetParts({ isBusy }: { isBusy: boolean }) {
   const { reset, said } = useReset()
   return (
     <>
+      <span className="spacer" />
       <span role="status" className="quiet">
         {said}
       </span>
