@@ -48,8 +48,8 @@ def demo(options: list[str]) -> int:
     install("all")
     if "--headless" in options:
         rest = [option for option in options if option != "--headless"]
-        return _call([BIN / "flexcell", "run", DEMO, "--cell", CELL, "--clock", "virtual", *rest])
-    return _call([BIN / "flexcell", "serve", "--cell", CELL, *options])
+        return _become([BIN / "flexcell", "run", DEMO, "--cell", CELL, "--clock", "virtual", *rest])
+    return _become([BIN / "flexcell", "serve", "--cell", CELL, *options])
 
 
 def test(options: list[str]) -> int:
@@ -65,7 +65,7 @@ def test(options: list[str]) -> int:
         started_s = time.monotonic()
         _check([BIN / command[0], *command[1:]])
         _say(f"{name}: {time.monotonic() - started_s:.0f} s")
-    return _call([PYTHON, "-m", "pytest", "-n", "2", "-q", *options])
+    return _become([PYTHON, "-m", "pytest", "-n", "2", "-q", *options])
 
 
 def install(extras: str) -> None:
@@ -123,8 +123,12 @@ def _check(command: list[str | Path]) -> None:
     subprocess.run(command, check=True, cwd=ROOT)
 
 
-def _call(command: list[str | Path]) -> int:
-    return subprocess.run(command, check=False, cwd=ROOT).returncode
+def _become(command: list[str | Path]) -> int:
+    """Go on as `command`, so that Ctrl-C and signals reach it alone and it can bring robots to rest."""
+    os.chdir(ROOT)
+    if os.name != "nt":
+        os.execv(command[0], [str(part) for part in command])
+    return subprocess.run(command, check=False).returncode
 
 
 def _say(text: str) -> None:

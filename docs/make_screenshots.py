@@ -68,15 +68,14 @@ def visit(browser: Browser, login: str, scheme: Scheme) -> Page:
 
 
 def in_motion(page: Page, name: str) -> None:
-    """Start the transfer, take a picture while both arms grasp their part, and stop it."""
+    """Start the transfer, take a picture while both arms move, wait for its end, put the parts back."""
     page.get_by_role("button", name="Start").click()
     expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=60_000)
     expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=60_000)
     picture(page, name)
-    stop = page.get_by_role("button", name="Stop")
-    if stop.is_visible():
-        stop.click()
-    expect(page.locator(".page-head .badge")).not_to_have_text("running", timeout=60_000)
+    expect(page.locator(".page-head .badge")).not_to_have_text("running", timeout=120_000)
+    page.get_by_role("button", name="Reset parts").click(timeout=PICTURE_LIMIT_MS)
+    expect(page.get_by_text("Parts are back")).to_be_visible(timeout=60_000)
 
 
 def main() -> None:
