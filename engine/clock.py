@@ -50,6 +50,10 @@ class Lockstep(Protocol):
         ...
 
 
+_LEAP_S = 0.25
+"""How far a simulation is stepped at a time before the loop looks outside again."""
+
+
 class NothingCanWake(FlexcellError):
     """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
 
@@ -172,6 +176,9 @@ class VirtualLoop(asyncio.SelectorEventLoop):
                 return None
             self.call_soon(self._nothing_can_wake)
             return 0
+        if self._stepped:
+            # In long waits the loop must still look at signals and sockets now and then.
+            target_s = min(target_s, self._now_s + _LEAP_S)
         # Simulations that are not busy still take part: parts fall while a behavior sleeps.
         for simulation in self._stepped if not math.isinf(target_s) else busy:
             target_s = min(target_s, simulation.advance(target_s))

@@ -14,7 +14,7 @@ from typing import Protocol
 import msgspec
 
 from engine.cause import cause_of, describe, under
-from engine.errors import FlexcellError, JournalError
+from engine.errors import FlexcellError, JournalError, StateError
 from engine.event import Cause, Entered, Exited, Logged, Retried
 from engine.execution import Execution
 from engine.state import Outcome, State
@@ -118,15 +118,20 @@ class Node:
             return Left("", self.on_error, cause_of(error))
 
     async def _timed(self, timeout: Timeout, scope: Scope, execution: Execution) -> Left:
-        limit = asyncio.timeout(timeout.after_s)
+        # A task of its own: a stop and a timeout may come together, and clean-up must be cut by neither.
+        body = asyncio.create_task(self._retried(scope, execution), name=self.path)
         try:
-            async with limit:
-                return await self._retried(scope, execution)
-        except TimeoutError:
-            if not limit.expired():
-                raise
-            cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
-            return Left("", timeout.target, cause)
+            await asyncio.wait({body}, timeout=timeout.after_s)
+        except asyncio.CancelledError:
+            await preempted(body)
+            raise
+        if body.done():
+            return body.result()
+        await preempted(body)
+        if not body.cancelled() and (error := body.exception()) is not None:
+            raise error
+        cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
+        return Left("", timeout.target, cause)
 
     async def _retried(self, scope: Scope, execution: Execution) -> Left:
         retry = self.retry
@@ -180,12 +185,24 @@ class Node:
             if refused is not None:
                 raise refused
             outcome = await self.work.run(entry, path, visit, scope, execution)
-        except asyncio.CancelledError:
-            self._record_exit(execution, visit, "", preempted=True)
-            raise
-        except Exception as error:
+        except asyncio.CancelledError as stray:
+            if being_cancelled():
+                self._record_exit(execution, visit, "", preempted=True)
+                raise
+            error = StateError("a CancelledError came out though nobody asked it to stop", where=self.position or path)
             self._record_exit(execution, visit, "", cause=cause_of(error))
+            raise error from stray
+        except Exception as error:
+            self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
+            if being_cancelled():
+                # A stop beats retry and on_error, also when the clean-up fails; the cause is recorded.
+                log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
+                raise asyncio.CancelledError from error
             raise
+        if being_cancelled():
+            # It took no notice, or was just done; whoever stops it must not find its successor running.
+            self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)
+            raise asyncio.CancelledError
         self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
         return Left(outcome.name, None, outcome.cause)
 
@@ -211,6 +228,31 @@ class Node:
                 cause=cause,
             )
         )
+
+
+def being_cancelled() -> bool:
+    """Tell whether the running branch has been asked to stop."""
+    task = asyncio.current_task()
+    return task is not None and task.cancelling() > 0
+
+
+async def preempted(task: asyncio.Task[Left]) -> None:
+    """Cancel a task once and wait for its clean-up, however often the caller is cancelled meanwhile.
+
+    Raises:
+        CancelledError: the caller was cancelled; the task has ended all the same.
+    """
+    task.cancel()
+    cancelled: asyncio.CancelledError | None = None
+    while not task.done():
+        try:
+            await asyncio.wait({task})
+        except asyncio.CancelledError as error:
+            cancelled = error
+    if not task.cancelled():
+        task.exception()  # seen here; whoever asked for the stop decides what becomes of it
+    if cancelled is not None:
+        raise cancelled
 
 
 def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:

@@ -121,12 +121,15 @@ class Run:
         self._task = asyncio.create_task(self.plan.root.perform(scope, self._execution), name=f"run {self.id}")
         while True:
             try:
-                return "finished", await asyncio.shield(self._task), None
+                await asyncio.wait({self._task})
             except asyncio.CancelledError:
-                if self._task.done():
-                    return "stopped", None, self._stopped()
                 self._cancelled = True
                 self.stop("the process that ran it was stopped")
+                continue
+            try:
+                return "finished", self._task.result(), None
+            except asyncio.CancelledError:
+                return "stopped", None, self._stopped()
             except FlexcellError as error:
                 return "errored", None, cause_of(error)
             except Exception as error:

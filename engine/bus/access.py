@@ -86,7 +86,8 @@ class LocalBus:
             await handle.result()
             raise
         finally:
-            self._bus.leases.release_run(VISITOR.run)
+            if not any(other is not handle for other in self._bus.goals(VISITOR.run)):
+                self._bus.leases.release_run(VISITOR.run)
 
     def _typed(self, address: str, request: object) -> Any:
         skill = self._bus.request_type(address)

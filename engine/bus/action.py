@@ -164,7 +164,12 @@ class GoalHandle(Generic[R, F]):
         if self._goal.status is not GoalStatus.PENDING:
             self._goal.status = GoalStatus.CANCELING
         if self._goal.cancel_callback is not None:
-            self._goal.cancel_callback()
+            try:
+                self._goal.cancel_callback()
+            except Exception:
+                # The stop must go on to the other goals, and this handler must end all the same.
+                _log.exception("the cancel callback of %s raised; its handler is cancelled", self.address)
+                self._task.cancel()
         elif self._goal.started:
             self._task.cancel()
 

@@ -121,11 +121,16 @@ class ArmServer:
             RobotError: it still moves.
         """
         self._stops += 1
-        if self._gripper is not None:
-            await self._gripper.stop()
-        if self._motion is not None:
-            self._motion.cancel()
-            await self._motion.report()
+        motion = self._motion
+        if motion is not None:
+            motion.cancel()
+        try:
+            if self._gripper is not None:
+                await self._gripper.stop()
+        finally:
+            # The arm brakes first and is waited for, whatever becomes of the fingers.
+            if motion is not None:
+                await motion.report()
         if self._status is DeviceStatus.DISCONNECTED:
             return
         speed = np.abs(self._port.sample().velocity_rad_s)

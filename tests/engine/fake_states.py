@@ -109,6 +109,44 @@ class Use(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
+class Stubborn(State, frozen=True, kw_only=True):
+    """Take being cancelled for a reason to be done."""
+
+    state_name: ClassVar[str] = "test.Stubborn"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        try:
+            await ctx.clock.sleep(1000.0)
+        except asyncio.CancelledError:
+            ctx.log("ignored")
+        return Outcome("done")
+
+
+class Messy(State, frozen=True, kw_only=True):
+    """Fail in the clean-up."""
+
+    state_name: ClassVar[str] = "test.Messy"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        try:
+            await ctx.clock.sleep(1000.0)
+        except asyncio.CancelledError:
+            raise ZeroDivisionError("in the clean-up") from None
+        return Outcome("done")
+
+
+class Stray(State, frozen=True, kw_only=True):
+    """Let a CancelledError out that nobody asked for."""
+
+    state_name: ClassVar[str] = "test.Stray"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        raise asyncio.CancelledError
+
+
 CATALOGUE: dict[str, type[State]] = {
-    state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use)
+    state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Messy, Stray)
 }

@@ -292,3 +292,46 @@ def test_parameters_reach_states_through_expressions() -> None:
         parameters={"limit": 4},
     )
     assert told.result.userdata["count"] == 6
+
+
+ONE = """
+    root:
+      machine:
+        initial: s
+        states:
+          s: {{state: {state}{more}, transitions: {{{outcome}: next}}}}
+          next: {{state: test.Give, transitions: {{a: good, b: good, c: bad}}}}
+"""
+
+
+def test_a_stop_beats_a_state_that_takes_no_notice() -> None:
+    """It swallows the cancel and returns an outcome; its successor never starts."""
+    told = run_document(ONE.format(state="test.Stubborn", more="", outcome="done"), stop_at_s=1.0)
+    assert (told.result.status, told.story[-2:]) == ("stopped", ["-root/s preempted", "-root preempted"])
+
+
+@pytest.mark.parametrize("more", [", retry: {times: 3}", ", on_error: next", ", timeout: {after: 9 s, to: next}"])
+def test_a_stop_beats_the_handlers_of_a_clean_up_that_fails(more: str) -> None:
+    """No retry, no on_error, no timeout leads on; the failure is in the log."""
+    told = run_document(ONE.format(state="test.Messy", more=more, outcome="done"), stop_at_s=1.0)
+    assert told.result.status == "stopped"
+    assert told.story.count("+root/s") == 1
+    assert "+root/next" not in told.story
+    assert any("clean-up failed: " in line for line in told.story)
+
+
+@pytest.mark.parametrize(("timeout_s", "stop_s"), [(2.0, 1.0), (1.0, 2.0), (1.0, 1.0)])
+def test_timeout_and_stop_together_never_cut_a_clean_up(timeout_s: float, stop_s: float) -> None:
+    """Whichever comes first, the clean-up of three seconds runs to its end once."""
+    more = f", with: {{cleanup_s: 3.0}}, timeout: {{after: {timeout_s}, to: next}}"
+    told = run_document(ONE.format(state="test.Hang", more=more, outcome="never"), stop_at_s=stop_s)
+    assert (told.result.status, told.story.count("!root/s cleaned up")) == ("stopped", 1)
+    assert told.result.duration_s == pytest.approx(min(timeout_s, stop_s) + 3.0)
+
+
+def test_a_stray_cancellation_is_an_error_and_no_stop() -> None:
+    """Nobody asked the state to stop: the run says so, and on_error can handle it."""
+    told = run_document(ONE.format(state="test.Stray", more="", outcome="done"))
+    assert told.result.status == "errored"
+    assert told.result.cause is not None
+    assert "nobody asked it to stop" in told.result.cause.message

@@ -287,3 +287,24 @@ async def test_parameters_are_validated_at_every_change() -> None:
     with pytest.raises(BusError, match="Expected `float`, got `str`"):
         bus.parameters.set("left/speed", "fast")
     assert (bus.parameters.get("left/speed"), seen) == (0.7, [0.7])
+
+
+async def test_a_cancel_callback_that_raises_still_ends_the_goal(caplog: pytest.LogCaptureFixture) -> None:
+    """A driver's bug in its stop path must not keep the others from stopping."""
+    bus = SkillBus(new_clock())
+
+    def broken() -> None:
+        raise RuntimeError("driver bug")
+
+    async def handler(goal: GripperOpen, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        handle.accept()
+        handle.on_cancel(broken)
+        await asyncio.get_running_loop().create_future()
+        return HELD
+
+    bus.advertise_action(GripperOpen, handler, namespace="left/gripper")
+    handle = bus.send_goal(GripperOpen(), to="left/gripper")
+    await handle.accepted()
+    with caplog.at_level(logging.CRITICAL, logger="flexcell.bus"):
+        await bus.cancel_goals()
+    assert handle.status is GoalStatus.CANCELED
