@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,12 +11,11 @@ from engine.cause import under
 from engine.errors import StateError
 from engine.event import Cause
 from engine.execution import Execution
-from engine.node import NOTHING, Entry, Left, Node, explain, log
+from engine.node import NOTHING, Entry, Left, Node, explain, overdue_log
+from engine.preemption import preempt
 from engine.settle import settle
 from engine.state import Outcome
 from engine.userdata import Scope
-
-_OVERDUE_S = 5.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +69,7 @@ class Concurrency:
         try:
             outcome = await self._decide(path, tasks)
         finally:
-            await _preempt(tasks, execution)
+            await preempt(tasks.values(), overdue_log(execution))
         _raise_late_failure(tasks)
         for name in self.children:
             for key, value in branches[name].own_values().items():
@@ -119,30 +117,6 @@ class Concurrency:
 def _as_outcome(left: Left) -> Left:
     """Give a child that was left by timeout or on_error the outcome named there."""
     return left if left.target is None else Left(left.target, None, left.cause)
-
-
-async def _preempt(tasks: Mapping[str, asyncio.Task[Left]], execution: Execution) -> None:
-    """Cancel the unfinished children once and wait for their clean-up, however often we are cancelled."""
-    unfinished = {task for task in tasks.values() if not task.done()}
-    for task in tasks.values():  # in document order: clean-up must happen in the same order every time
-        task.cancel()
-    cancelled: asyncio.CancelledError | None = None
-    for patience in itertools.count():
-        if not unfinished:
-            break
-        try:
-            _, unfinished = await asyncio.wait(unfinished, timeout=_OVERDUE_S)
-        except asyncio.CancelledError as error:
-            cancelled = error
-            continue
-        for late in sorted(task.get_name() for task in unfinished):
-            waited_s = (patience + 1) * _OVERDUE_S
-            log(execution, late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
-    for task in tasks.values():
-        if not task.cancelled():
-            task.exception()  # seen here; the first one, in document order, is what travels on
-    if cancelled is not None:
-        raise cancelled
 
 
 def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:

@@ -6,7 +6,7 @@ The same wrapper surrounds a single state and a whole container; what differs is
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol
@@ -17,6 +17,7 @@ from engine.cause import cause_of, describe, under
 from engine.errors import FlexcellError, JournalError, StateError
 from engine.event import Cause, Entered, Exited, Logged, Retried
 from engine.execution import Execution
+from engine.preemption import being_cancelled, preempt
 from engine.state import Outcome, State
 from engine.userdata import Scope
 
@@ -113,7 +114,8 @@ class Node:
         except JournalError:
             raise
         except FlexcellError as error:
-            if self.on_error is None:
+            # A stop beats on_error, also when the clean-up fails.
+            if self.on_error is None or being_cancelled():
                 raise
             return Left("", self.on_error, cause_of(error))
 
@@ -123,11 +125,11 @@ class Node:
         try:
             await asyncio.wait({body}, timeout=timeout.after_s)
         except asyncio.CancelledError:
-            await preempted(body)
+            await preempt((body,), overdue_log(execution))
             raise
         if body.done():
             return body.result()
-        await preempted(body)
+        await preempt((body,), overdue_log(execution))
         if not body.cancelled() and (error := body.exception()) is not None:
             raise error
         cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
@@ -146,7 +148,7 @@ class Node:
             except JournalError:
                 raise
             except FlexcellError as error:
-                if retry is None or not retry.errors or attempt > retry.times:
+                if retry is None or not retry.errors or attempt > retry.times or being_cancelled():
                     raise
                 again = cause_of(error)
             attempt += 1
@@ -194,10 +196,8 @@ class Node:
             raise error from stray
         except Exception as error:
             self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
-            if being_cancelled():
-                # A stop beats retry and on_error, also when the clean-up fails; the cause is recorded.
+            if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
-                raise asyncio.CancelledError from error
             raise
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
@@ -230,43 +230,22 @@ class Node:
         )
 
 
-def being_cancelled() -> bool:
-    """Tell whether the running branch has been asked to stop."""
-    task = asyncio.current_task()
-    return task is not None and task.cancelling() > 0
-
-
-async def preempted(task: asyncio.Task[Left]) -> None:
-    """Cancel a task once and wait for its clean-up, however often the caller is cancelled meanwhile.
-
-    Raises:
-        CancelledError: the caller was cancelled; the task has ended all the same.
-    """
-    task.cancel()
-    cancelled: asyncio.CancelledError | None = None
-    while not task.done():
-        try:
-            await asyncio.wait({task})
-        except asyncio.CancelledError as error:
-            cancelled = error
-    if not task.cancelled():
-        task.exception()  # seen here; whoever asked for the stop decides what becomes of it
-    if cancelled is not None:
-        raise cancelled
-
-
 def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
     """Write a line into the event log of the run."""
     recorder = execution.recorder
     recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=message))
 
 
+def overdue_log(execution: Execution) -> Callable[[str, float], None]:
+    """Return what names, in the event log, a node that is slow to clean up."""
+
+    def tell(path: str, waited_s: float) -> None:
+        log(execution, path, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
+
+    return tell
+
+
 def explain(child: Node, left: Left) -> Cause:
     """Return why a container failed through this child."""
     said = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
     return under(said, left.cause, where=child.path)
-
-
-def summary(cause: Cause | None) -> str:
-    """Return a chain as one line, empty for none."""
-    return describe(cause) if cause is not None else ""

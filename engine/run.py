@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import msgspec
 
 from engine.bus import SkillBus
-from engine.cause import cause_of
+from engine.cause import cause_of, under
 from engine.errors import FlexcellError, JournalError
 from engine.event import Cause, RunEnded, RunStarted, StopRequested
 from engine.execution import Execution
@@ -131,6 +131,8 @@ class Run:
             except asyncio.CancelledError:
                 return "stopped", None, self._stopped()
             except FlexcellError as error:
+                if self._stop_reason is not None:
+                    return "stopped", None, under(self._stopped().message, cause_of(error), kind="Stopped")
                 return "errored", None, cause_of(error)
             except Exception as error:
                 # A custom state may raise anything; it ends the run with its cause, not the engine.

@@ -172,3 +172,11 @@ def test_a_timeout_of_a_branch_is_an_outcome_for_the_conditions() -> None:
         )
     )
     assert (told.result.outcome, told.result.duration_s) == ("bad", pytest.approx(3.0))
+
+
+def test_a_sibling_whose_clean_up_fails_is_an_error_of_the_container() -> None:
+    """The other child had decided the outcome; what went wrong while stopping is not lost."""
+    told = run_document(_two(GIVE_C, "{state: test.Messy}", "[{good: {left: a}}, {bad: {left: c}}]", "otherwise: bad"))
+    assert told.result.status == "errored"
+    assert told.result.cause is not None
+    assert "test.Messy raised ZeroDivisionError: in the clean-up" in told.result.cause.message
