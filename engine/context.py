@@ -7,12 +7,15 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from engine.bus import GoalEnd, GoalHandle, GoalStatus, Holder
+from engine.bus import GoalEnd, GoalStatus, Holder
+from engine.cause import cause_of
 from engine.clock import Clock
-from engine.event import Cause, GoalFinished, GoalSent
+from engine.errors import FlexcellError
+from engine.event import Answered, Called, Cause, GoalFinished, GoalSent, Received
 from engine.execution import Execution
 from engine.node import log
 from engine.skill import Action, Service
+from engine.skill_port import Goal
 from engine.state import ActionEnd
 
 R = TypeVar("R")
@@ -45,13 +48,14 @@ class WaitingClock:
 class RunningContext:
     """The `engine.state.Context` of one activation of one state."""
 
-    __slots__ = ("_execution", "_goals", "_visit", "path")
+    __slots__ = ("_calls", "_execution", "_goals", "_visit", "path")
 
     def __init__(self, execution: Execution, path: str, visit: int) -> None:
         self._execution = execution
         self.path = path
         self._visit = visit
         self._goals = 0
+        self._calls = 0
 
     @property
     def clock(self) -> Clock:
@@ -60,9 +64,18 @@ class RunningContext:
 
     async def call(self, request: Service[R], *, to: str) -> R:
         """Ask a service after the journal is durable, as it may have an effect."""
-        await self._execution.recorder.commit()
-        answer = await self._execution.bus.call(request, to=to)
-        self._execution.waits += 1
+        execution = self._execution
+        self._calls += 1
+        call = f"{self.path}#{self._visit}.c{self._calls}"
+        self._record_called(call, request, f"{to}/{request.skill_name()}")
+        await execution.recorder.commit()
+        try:
+            answer = await execution.skills.call(request, to=to, holder=self._holder)
+        except FlexcellError as error:
+            self._record_answered(call, None, cause_of(error))
+            raise
+        self._record_answered(call, answer, None)
+        execution.waits += 1
         return answer
 
     async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
@@ -72,27 +85,32 @@ class RunningContext:
         self._goals += 1
         goal_id = f"{self.path}#{self._visit}.{self._goals}"
         self._record_sent(goal_id, goal, f"{to}/{goal.skill_name()}")
-        await execution.recorder.commit()
-        holder = Holder(execution.run, self.path)
-        handle = execution.bus.send_goal(goal, to=to, holder=holder, goal_id=goal_id)
         try:
-            end = await handle.result()
+            await execution.recorder.commit()
+            sent = execution.skills.send_goal(goal, to=to, holder=self._holder, goal_id=goal_id)
+        except FlexcellError as error:
+            self._record_finished(GoalEnd(GoalStatus.REJECTED, None, cause_of(error)), goal_id)
+            raise
         except asyncio.CancelledError:
-            self._record_finished(await _cancelled(handle), goal_id)
+            self._record_finished(GoalEnd(GoalStatus.CANCELED, None, None), goal_id)
+            raise
+        try:
+            end = await sent.result()
+        except asyncio.CancelledError:
+            self._record_finished(await _cancelled(sent), goal_id)
             raise
         self._record_finished(end, goal_id)
         return ActionEnd(end.status.value, end.result, end.cause)
 
     async def latest(self, topic: str, kind: type[S]) -> S:
         """Return the newest message of a topic, waiting for the first one."""
-        newest = self._execution.bus.topic(topic, kind).latest
-        return newest if newest is not None else await self.next_message(topic, kind)
+        self._execution.waits += 1
+        return self._received(topic, await self._execution.skills.latest(topic, kind, holder=self._holder))
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
         """Wait for the next message of a topic."""
         self._execution.waits += 1
-        with self._execution.bus.topic(topic, kind).stream(size=1) as stream:
-            return await stream.next()
+        return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
 
     def log(self, message: str, *, level: str = "info") -> None:
         """Write a line into the event log."""
@@ -101,6 +119,49 @@ class RunningContext:
     def random(self) -> float:
         """A number in [0, 1) from the run's seed."""
         return self._execution.random.random()
+
+    @property
+    def _holder(self) -> Holder:
+        return Holder(self._execution.run, self.path)
+
+    def _received(self, topic: str, message: S) -> S:
+        recorder = self._execution.recorder
+        recorder.record(
+            Received(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=self.path,
+                topic=topic,
+                message=msgspec.to_builtins(message),
+            )
+        )
+        return message
+
+    def _record_called(self, call: str, request: Service[Any], address: str) -> None:
+        recorder = self._execution.recorder
+        recorder.record(
+            Called(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=self.path,
+                call=call,
+                address=address,
+                request=msgspec.to_builtins(request),
+            )
+        )
+
+    def _record_answered(self, call: str, answer: object, cause: Cause | None) -> None:
+        recorder = self._execution.recorder
+        recorder.record(
+            Answered(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=self.path,
+                call=call,
+                result=msgspec.to_builtins(answer),
+                cause=cause,
+            )
+        )
 
     def _record_sent(self, goal_id: str, goal: Action[Any, Any], address: str) -> None:
         recorder = self._execution.recorder
@@ -130,7 +191,7 @@ class RunningContext:
         )
 
 
-async def _cancelled(handle: GoalHandle[Any, Any]) -> GoalEnd[Any]:
+async def _cancelled(handle: Goal) -> GoalEnd[Any]:
     """Cancel a goal and wait until its server confirms, however often we are cancelled meanwhile."""
     handle.cancel()
     while True:

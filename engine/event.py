@@ -100,6 +100,157 @@ class GoalFinished(Event, frozen=True, kw_only=True, tag="goal_finished", omit_d
     cause: Cause | None = None
 
 
+class GoalHeld(Event, frozen=True, kw_only=True, tag="goal_held"):
+    """The device confirmed that it is at rest and keeps the goal."""
+
+    path: str
+    goal: str
+
+
+class GoalResumed(Event, frozen=True, kw_only=True, tag="goal_resumed"):
+    """A goal that was held goes on."""
+
+    path: str
+    goal: str
+
+
+class Called(Event, frozen=True, kw_only=True, tag="call"):
+    """A state asked a service; `call` numbers the calls of one activation, from 1."""
+
+    path: str
+    call: str
+    address: str
+    request: dict[str, object]
+
+
+class Answered(Event, frozen=True, kw_only=True, tag="answer", omit_defaults=True):
+    """The service answered, or failed with `cause`."""
+
+    path: str
+    call: str
+    result: object = None
+    cause: Cause | None = None
+
+
+class Received(Event, frozen=True, kw_only=True, tag="received"):
+    """A state read a message of a topic."""
+
+    path: str
+    topic: str
+    message: object
+
+
+class Diverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=True):
+    """A node was left for `target` without an outcome: by timeout, guard or on_error (`by`)."""
+
+    path: str
+    visit: int
+    by: str
+    target: str
+    cause: Cause | None = None
+
+
+class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
+    """A composite or decorator of a behavior tree has another status: success, failure, running or invalid."""
+
+    path: str
+    status: str
+
+
+class Commanded(Event, frozen=True, kw_only=True, tag="command"):
+    """The operator commanded something; `command` is a name of `engine.control.Control`."""
+
+    command: str
+    path: str
+    arguments: dict[str, object]
+
+
+class GateReached(Event, frozen=True, kw_only=True, tag="gate", omit_defaults=True):
+    """A node waits `before` its entry or `after` its outcome, for one of `reasons`."""
+
+    path: str
+    visit: int
+    point: str
+    reasons: tuple[str, ...]
+    outcome: str = ""
+
+
+class GatePassed(Event, frozen=True, kw_only=True, tag="gate_passed"):
+    """It waits no longer."""
+
+    path: str
+    visit: int
+    point: str
+
+
+class OutcomeRequested(Event, frozen=True, kw_only=True, tag="outcome_requested"):
+    """The run's autonomy is below what `outcome` requires; the operator is asked once."""
+
+    path: str
+    visit: int
+    outcome: str
+    required: str
+
+
+class OutcomeWithdrawn(Event, frozen=True, kw_only=True, tag="outcome_withdrawn"):
+    """The question of `OutcomeRequested` has become void, answered or not."""
+
+    path: str
+    visit: int
+    outcome: str
+
+
+class PauseConfirmed(Event, frozen=True, kw_only=True, tag="pause_confirmed", omit_defaults=True):
+    """Everything that was to be held is at rest; `cannot` names goals that cannot be held."""
+
+    cannot: tuple[str, ...] = ()
+
+
+class OperatorChanged(Event, frozen=True, kw_only=True, tag="operator"):
+    """The operator is `attached`, `detached` or `lost`."""
+
+    status: str
+
+
+class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed"):
+    """A new version of the document took the place of the running one; `report` has a line for each change."""
+
+    document: str
+    report: tuple[str, ...]
+
+
+class RunResumed(Event, frozen=True, kw_only=True, tag="resumed"):
+    """The run goes on after its engine died; nodes in `rerun` are entered again, others took an outcome."""
+
+    after_seq: int
+    epoch: int
+    rerun: tuple[str, ...]
+
+
+class FaultInjected(Event, frozen=True, kw_only=True, tag="fault", omit_defaults=True):
+    """A fault of the fault file was applied to a request."""
+
+    path: str
+    address: str
+    fault: str
+    detail: str = ""
+
+
+class LoopBlocked(Event, frozen=True, kw_only=True, tag="loop_blocked"):
+    """A state kept the event loop from running: every other state had to wait."""
+
+    path: str
+    blocked_s: float
+    where: str
+
+
+class Abandoned(Event, frozen=True, kw_only=True, tag="abandoned"):
+    """A node did not confirm in time that it stopped; the run goes on without it."""
+
+    path: str
+    waited_s: float
+
+
 class Logged(Event, frozen=True, kw_only=True, tag="log"):
     """A state or the runner says something; `level` is debug, info, warning or error."""
 
@@ -133,14 +284,33 @@ class RunEnded(Event, frozen=True, kw_only=True, tag="run_ended", omit_defaults=
 
 AnyEvent = (
     RunStarted
+    | RunResumed
     | Entered
     | Exited
     | UserdataWritten
     | Transitioned
+    | Diverted
+    | Retried
+    | StatusChanged
     | GoalSent
     | GoalFinished
+    | GoalHeld
+    | GoalResumed
+    | Called
+    | Answered
+    | Received
     | Logged
-    | Retried
+    | Commanded
+    | GateReached
+    | GatePassed
+    | OutcomeRequested
+    | OutcomeWithdrawn
+    | PauseConfirmed
+    | OperatorChanged
+    | BehaviorChanged
+    | FaultInjected
+    | LoopBlocked
+    | Abandoned
     | StopRequested
     | RunEnded
 )

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.recorder import Recorder
+from engine.skill_port import SkillPort
 
 
 @dataclass(kw_only=True)
@@ -19,6 +20,7 @@ class Execution:
     clock: Clock
     recorder: Recorder
     random: random.Random
+    skills: SkillPort
     instant_limit: int = 10_000
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
     waits: int = 0

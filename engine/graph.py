@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import msgspec
 
-from engine.document.behavior import Behavior, Node
+from engine.document.behavior import Behavior
+from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES, Node
 from engine.plan import Catalogue
 
 
@@ -50,12 +51,12 @@ class _Drawing:
             path=path,
             name=name,
             kind=node.kind,
-            title=node.state or node.behavior or "",
+            title=node.state or node.behavior or node.behaviour or "",
             description=node.description,
             outcomes=self._outcomes(node),
             children=self._children(node, inside, path),
-            transitions=_arrows(node) if node.machine is not None else (),
-            initial=node.machine.initial if node.machine is not None else None,
+            transitions=_arrows(node) if node.sequential is not None else (),
+            initial=node.sequential.initial if node.sequential is not None else None,
             conditions=_rules(node),
         )
 
@@ -75,6 +76,10 @@ class _Drawing:
         if node.concurrency is not None:
             otherwise = (node.concurrency.otherwise,) if node.concurrency.otherwise else ()
             return tuple(dict.fromkeys((*(rule.outcome for rule in node.concurrency.rules), *otherwise)))
+        if node.foreach is not None:
+            return FOREACH_OUTCOMES
+        if node.sequential is None:
+            return TREE_OUTCOMES
         return tuple(dict.fromkeys(arrow.target for arrow in _arrows(node) if arrow.target not in node.children))
 
 
@@ -88,7 +93,9 @@ def _arrows(node: Node) -> tuple[GraphTransition, ...]:
 
 def _ways_out(child: Node) -> Mapping[str, str]:
     ways = dict(child.transitions)
-    if child.timeout is not None:
+    if child.guard is not None and child.guard.to is not None:
+        ways[f"unless {child.guard.when}"] = child.guard.to
+    if child.timeout is not None and child.timeout.to is not None:
         ways[f"after {child.timeout.after_s:g} s"] = child.timeout.to
     if child.on_error is not None:
         ways["error"] = child.on_error

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from engine import concurrency, machine
 from engine.document import behavior as document
+from engine.document import node as nodes
 from engine.document.expression import compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
@@ -78,33 +79,36 @@ class _Planner:
     catalogue: Catalogue
     base: str
 
-    def node(self, name: str, inside: str, node: document.Node) -> Node:
+    def node(self, name: str, inside: str, node: nodes.Node) -> Node:
         """Plan one node; `inside` is its path in its own document."""
-        makers: dict[str, Callable[[str, document.Node], Work]] = {
+        makers: dict[str, Callable[[str, nodes.Node], Work]] = {
             "state": self._leaf,
             "machine": self._machine,
             "concurrency": self._concurrency,
             "behavior": self._reference,
         }
+        if node.kind not in makers:
+            where = self.behavior.position(inside)
+            raise DocumentError(f"`{node.kind}` cannot be run yet", where=where, hint="use a machine")
         return Node(
             path=self.base + inside.removeprefix("root"),
             name=name,
             work=makers[node.kind](inside, node),
             transitions=node.transitions,
-            timeout=Timeout(after_s=node.timeout.after_s, target=node.timeout.to) if node.timeout else None,
+            timeout=_timeout(node.timeout),
             retry=_retry(node.retry) if node.retry else None,
             on_error=node.on_error,
             position=str(self.behavior.position(inside)),
         )
 
-    def _children(self, inside: str, node: document.Node) -> dict[str, Node]:
+    def _children(self, inside: str, node: nodes.Node) -> dict[str, Node]:
         return {name: self.node(name, f"{inside}/{name}", child) for name, child in node.children.items()}
 
-    def _machine(self, inside: str, node: document.Node) -> Work:
+    def _machine(self, inside: str, node: nodes.Node) -> Work:
         initial = node.machine.initial if node.machine else ""
         return machine.Machine(initial=initial, children=self._children(inside, node), userdata=node.userdata)
 
-    def _concurrency(self, inside: str, node: document.Node) -> Work:
+    def _concurrency(self, inside: str, node: nodes.Node) -> Work:
         container = node.concurrency
         rules = container.rules if container else ()
         return concurrency.Concurrency(
@@ -114,7 +118,7 @@ class _Planner:
             userdata=node.userdata,
         )
 
-    def _leaf(self, inside: str, node: document.Node) -> Work:
+    def _leaf(self, inside: str, node: nodes.Node) -> Work:
         state = self._state(inside, node.state or "")
         return Leaf(
             state=state,
@@ -136,7 +140,7 @@ class _Planner:
             hint=near_names(name, self.catalogue),
         )
 
-    def _reference(self, inside: str, node: document.Node) -> Work:
+    def _reference(self, inside: str, node: nodes.Node) -> Work:
         target = self.behavior.references[node.behavior or ""]
         below = self.base + inside.removeprefix("root")
         return Reference(
@@ -148,5 +152,11 @@ class _Planner:
         )
 
 
-def _retry(retry: document.Retry) -> Retry:
+def _timeout(timeout: nodes.Timeout | None) -> Timeout | None:
+    if timeout is None or timeout.to is None:
+        return None
+    return Timeout(after_s=timeout.after_s, target=timeout.to)
+
+
+def _retry(retry: nodes.Retry) -> Retry:
     return Retry(times=retry.times, backoff_s=retry.backoff_s, outcomes=retry.outcomes, errors=retry.errors)

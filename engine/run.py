@@ -17,6 +17,7 @@ from engine.execution import Execution
 from engine.node import Left, explain, log
 from engine.plan import Plan
 from engine.recorder import EventSink, MemorySink, Recorder, Watcher
+from engine.skill_port import BusPort, SkillPort
 from engine.userdata import Scope
 
 
@@ -47,6 +48,7 @@ class Run:
         inputs: Mapping[str, object] | None = None,
         seed: int = 0,
         journal: EventSink | None = None,
+        skills: SkillPort | None = None,
         instant_limit: int = 10_000,
     ) -> None:
         self.id = run
@@ -61,6 +63,7 @@ class Run:
             clock=bus.clock,
             recorder=self._recorder,
             random=random.Random(seed),
+            skills=skills or BusPort(bus),
             instant_limit=instant_limit,
         )
         self._task: asyncio.Task[Left] | None = None

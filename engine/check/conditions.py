@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject
-from engine.document.behavior import Condition
+from engine.document.node import Condition
 from engine.nearness import near_names
 
 MAX_STEPS = 20_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from engine.check.finding import Finding, new_finding
-from engine.check.subject import Subject
+from engine.check.subject import Subject, targets
 from engine.document.parameter import Parameter
 from engine.nearness import near_names
 
@@ -26,8 +26,7 @@ def check_declarations(subject: Subject) -> Iterator[Finding]:
     reached = subject.outcomes.get("root")
     if reached is None:
         return
-    root = subject.nodes["root"].node
-    leaving = {*reached, *([root.timeout.to] if root.timeout else []), *([root.on_error] if root.on_error else [])}
+    leaving = {*reached, *targets(subject.nodes["root"].node).values()}
     for index, outcome in enumerate(declared):
         if outcome not in leaving:
             position = subject.behavior.source.position(("outcomes", index))

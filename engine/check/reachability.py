@@ -12,13 +12,13 @@ from engine.nearness import near_names
 def check_reachability(subject: Subject) -> Iterator[Finding]:
     """Find missing initial states, states nothing leads to, and states that never lead out."""
     for placed in subject.nodes.values():
-        machine = placed.node.machine
+        machine = placed.node.sequential
         if machine is None:
             continue
         if machine.initial not in machine.states:
             message = f"there is no state `{machine.initial}` to begin with"
             hint = near_names(machine.initial, machine.states)
-            yield subject.finding("missing-initial", message, placed.path, "machine", "initial", hint=hint)
+            yield subject.finding("missing-initial", message, placed.path, placed.node.kind, "initial", hint=hint)
             continue
         yield from _check_machine(subject, placed, machine.initial)
 

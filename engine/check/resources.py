@@ -9,8 +9,9 @@ import msgspec
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject, new_subject
-from engine.document.behavior import Behavior, Node
+from engine.document.behavior import Behavior
 from engine.document.expression import compile_template
+from engine.document.node import Node
 from engine.document.signature import StateSignature
 from engine.errors import ExpressionError
 from engine.state import State

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from engine.check.finding import Finding, new_finding
-from engine.document.behavior import Behavior, Node
+from engine.document.behavior import Behavior
+from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES, Node
 from engine.document.signature import StateSignature, read_signature
 from engine.errors import RegistryError, StateError
 from engine.nearness import near_names
@@ -85,7 +86,9 @@ def new_subject(behavior: Behavior, catalogue: Catalogue, *, base: str = "root")
 def targets(node: Node) -> dict[tuple[str, ...], str]:
     """Return where a node in a machine can lead, by the keys inside the node that say so."""
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
-    if node.timeout is not None:
+    if node.guard is not None and node.guard.to is not None:
+        found["guard", "to"] = node.guard.to
+    if node.timeout is not None and node.timeout.to is not None:
         found["timeout", "to"] = node.timeout.to
     if node.on_error is not None:
         found["on_error",] = node.on_error
@@ -112,9 +115,10 @@ def _signatures(behavior: Behavior, catalogue: Catalogue) -> tuple[dict[str, Sta
 
 def _outcomes(placed: Placed, behavior: Behavior, signatures: Mapping[str, StateSignature]) -> tuple[str, ...] | None:
     own = _own_outcomes(placed.node, behavior, signatures)
-    if own is None or placed.container is None or placed.container.concurrency is None:
+    container = placed.container
+    if own is None or container is None or (container.concurrency is None and container.foreach is None):
         return own
-    # In a concurrency container a timeout or error gives the child an outcome that conditions see.
+    # In a concurrency or foreach container a timeout or error gives the child an outcome that it sees.
     return tuple(dict.fromkeys((*own, *(targets(placed.node).values()))))
 
 
@@ -128,5 +132,9 @@ def _own_outcomes(node: Node, behavior: Behavior, signatures: Mapping[str, State
     if node.concurrency is not None:
         named = [rule.outcome for rule in node.concurrency.rules]
         return tuple(dict.fromkeys([*named, *([node.concurrency.otherwise] if node.concurrency.otherwise else [])]))
+    if node.foreach is not None:
+        return FOREACH_OUTCOMES
+    if node.sequential is None:
+        return TREE_OUTCOMES
     leading = [target for child in node.children.values() for target in targets(child).values()]
     return tuple(dict.fromkeys(target for target in leading if target not in node.children))

@@ -57,9 +57,11 @@ def _visible_keys(subject: Subject) -> dict[str, frozenset[str]]:
         visible[path] = outer if placed.parent is None else inside[placed.parent]
         if placed.node.concurrency is not None:
             inside[path] = visible[path].union(placed.node.userdata)
-        elif placed.node.machine is not None:
+        elif placed.node.children:
+            rounds = placed.node.foreach
+            own = (rounds.item, *((rounds.index,) if rounds.index else ())) if rounds is not None else ()
             written = [key for child in subject.children(placed) for key in _written(subject, child)]
-            inside[path] = visible[path].union(placed.node.userdata, written)
+            inside[path] = visible[path].union(placed.node.userdata, written, own)
     return visible
 
 

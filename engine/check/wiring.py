@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject, targets
-from engine.document.behavior import Node
+from engine.document.node import Node
 from engine.nearness import near_names
 
 
@@ -51,7 +51,7 @@ def _ways_out(subject: Subject, placed: Placed) -> Collection[str] | None:
     """Return the outcomes that a machine may have; None where its container takes any."""
     if placed.container is None:
         return subject.behavior.outcomes
-    return placed.node.transitions if placed.container.machine is not None else None
+    return placed.node.transitions if placed.container.sequential is not None else None
 
 
 def _check_targets(
@@ -87,7 +87,7 @@ def _check_outcomes(subject: Subject, child: Placed) -> Iterator[Finding]:
 
 def _reported_inside(node: Node) -> bool:
     """A machine's loose ends are reported at the transition inside it, where the slip is likely to be."""
-    return node.machine is not None
+    return node.sequential is not None
 
 
 def _check_root(subject: Subject) -> Iterator[Finding]:
@@ -97,7 +97,7 @@ def _check_root(subject: Subject) -> Iterator[Finding]:
         if target not in declared:
             message = f"`{target}` is not an outcome of this behavior"
             yield subject.finding("unknown-target", message, "root", *keys, hint=near_names(target, declared))
-    if root.node.machine is not None:
+    if root.node.sequential is not None:
         return
     for outcome in subject.outcomes.get("root", ()):
         if outcome not in declared:

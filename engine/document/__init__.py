@@ -3,11 +3,12 @@
 A document that cannot be used is a `DocumentError` with file, line and column.
 """
 
-from engine.document.behavior import Behavior, BehaviorDocument, Concurrency, Condition, Machine, Node, Retry, Timeout
+from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, Placement, RobotEntry, load_cell
 from engine.document.entries import Entries, EntriesDocument, load_entries, write_entries
 from engine.document.expression import Template, compile_template
 from engine.document.loader import CircularReference, load_behavior, parse_behavior, read_behavior
+from engine.document.node import Concurrency, Condition, ForEach, Guard, Machine, Node, Retry, Timeout
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.schema import write_schemas
 from engine.document.signature import KeySignature, StateSignature, read_signature
@@ -25,6 +26,8 @@ __all__ = [
     "Entries",
     "EntriesDocument",
     "Fixture",
+    "ForEach",
+    "Guard",
     "Jitter",
     "KeySignature",
     "Machine",

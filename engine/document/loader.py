@@ -16,16 +16,6 @@ from engine.errors import DocumentError, Position
 MAX_CHAIN = 64
 MAX_EXPANDED_NODES = 200_000
 
-_LATER = "it comes with a later version"
-_REFUSED: Mapping[str, str] = {
-    "tree": f"{_LATER}; use a machine with `retry` and `transitions`",
-    "priority": f"{_LATER}; use `concurrency`",
-    "foreach": f"{_LATER}; use a machine that loops",
-    "guard": f"{_LATER}; use the state flow.Decide",
-    "autonomy": f"{_LATER}; remove it",
-    "resume": f"{_LATER}; remove it",
-}
-
 
 @dataclass(frozen=True, kw_only=True)
 class CircularReference:
@@ -94,7 +84,7 @@ class _Reading:
         return behavior
 
     def build(self, source: Source, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        document = convert(source, BehaviorDocument, refused=_REFUSED)
+        document = convert(source, BehaviorDocument)
         behavior = Behavior(document=document, file=file, meaning="", source=source)
         require_structure(behavior)
         references = self._references(behavior, (*chain, _identity(file)))

@@ -1,0 +1,388 @@
+"""The nodes of a behavior document as frozen models: states, containers and the parts of trees.
+
+A node has exactly one kind key and, beside it, keys that hold for every kind (`transitions`,
+`timeout`, `retry`, `on_error`, `guard`, `autonomy`, `resume`, `description`). Mappings keep the
+order of the document, which is the order of precedence.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from pathlib import PurePosixPath
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict
+from engine.document.duration import Duration, seconds
+
+NodeKind = Literal[
+    "state",
+    "machine",
+    "concurrency",
+    "priority",
+    "tree",
+    "foreach",
+    "behavior",
+    "sequence",
+    "selector",
+    "parallel",
+    "inverter",
+    "one_shot",
+    "repeat",
+    "cooldown",
+    "remap",
+    "condition",
+    "behaviour",
+    "retry",
+    "timeout",
+    "guard",
+]
+KINDS: tuple[NodeKind, ...] = ("state", "machine", "concurrency", "priority", "tree", "foreach", "behavior")
+TREE_KINDS: tuple[NodeKind, ...] = (
+    "sequence",
+    "selector",
+    "parallel",
+    "inverter",
+    "one_shot",
+    "repeat",
+    "cooldown",
+    "remap",
+    "condition",
+    "behaviour",
+)
+"""Kinds that stand only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
+Wrapper = Literal["retry", "timeout", "guard"]
+WRAPPERS: tuple[Wrapper, ...] = ("retry", "timeout", "guard")
+"""Keys of every node that, given a `child` inside a tree, are decorators of it."""
+
+Key = Annotated[str, Meta(pattern="^[A-Za-z_][A-Za-z0-9_]{0,63}$", description="Letters, digits and `_`")]
+NodeName = Annotated[
+    str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`, no `/`")
+]
+OutcomeName = Annotated[
+    str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")
+]
+Reference = Annotated[str, Meta(min_length=1, description="A behavior file, relative to this document")]
+Expression = Annotated[str, Meta(min_length=1, description="An expression, `${…}`")]
+AutonomyLevel = Literal["off", "low", "high", "full"]
+Status = Literal["success", "failure", "running"]
+Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or more")]
+
+
+class Timeout(Strict, frozen=True, kw_only=True):
+    """Preempt the node `after` a duration and leave it for `to`.
+
+    In a machine `to` is a sibling or an outcome of the machine; in a concurrency or foreach
+    container it is the outcome that the container sees; in a tree it is `success` or `failure`; at
+    the root it is an outcome of the behavior. As a decorator in a tree it has a `child` and fails.
+    """
+
+    after: Duration
+    to: str | None = None
+    child: Node | None = None
+
+    @property
+    def after_s(self) -> float:
+        """The duration in seconds."""
+        return seconds(self.after)
+
+
+class Retry(Strict, frozen=True, kw_only=True):
+    """Run the node again, up to `times` more, after these outcomes, and after errors when `errors`.
+
+    The wait before the first repetition is `backoff`; it doubles each time. As a decorator in a
+    tree it has a `child` and runs it again after FAILURE.
+    """
+
+    times: Annotated[int, Meta(ge=1, le=1_000_000, description="How often to run it again, 1 or more")]
+    backoff: Duration = 0.0
+    outcomes: tuple[str, ...] = ()
+    errors: bool = True
+    child: Node | None = None
+
+    @property
+    def backoff_s(self) -> float:
+        """The first wait in seconds."""
+        return seconds(self.backoff)
+
+
+class Guard(Strict, frozen=True, kw_only=True):
+    """Enter the node only when the expression `when` is true, else leave it at once for `to`.
+
+    As a decorator in a tree it has a `child`, which is stopped with FAILURE when `when` becomes false.
+    """
+
+    when: Expression
+    to: str | None = None
+    child: Node | None = None
+
+
+class Machine(Strict, frozen=True, kw_only=True):
+    """A state machine: one child at a time, from `initial` along the children's `transitions`."""
+
+    initial: str
+    states: Annotated[dict[NodeName, Node], Meta(min_length=1, description="The children, at least one")]
+    userdata: dict[Key, object] = {}
+
+
+class Condition(Strict, frozen=True, kw_only=True):
+    """`outcome` is taken when every child in `when` has finished with the outcome named for it."""
+
+    outcome: str
+    when: Mapping[str, str]
+
+
+class Concurrency(Strict, frozen=True, kw_only=True):
+    """Children side by side; the first condition that holds decides the outcome."""
+
+    states: Annotated[dict[NodeName, Node], Meta(min_length=1, description="The children, at least one")]
+    conditions: tuple[
+        Annotated[
+            dict[OutcomeName, Annotated[dict[str, str], Meta(min_length=1, description="`{child: outcome}`")]],
+            Meta(min_length=1, max_length=1, description="`{outcome: {child: outcome, …}}`"),
+        ],
+        ...,
+    ]
+    otherwise: str | None = None
+    userdata: dict[Key, object] = {}
+
+    @property
+    def rules(self) -> tuple[Condition, ...]:
+        """The conditions in order of precedence."""
+        return tuple(Condition(outcome=name, when=when) for entry in self.conditions for name, when in entry.items())
+
+
+class ForEach(Strict, frozen=True, kw_only=True, rename={"item": "as"}):
+    """Run `child` once for each of `items`, or `times` times.
+
+    Outcomes: `exhausted` when all were done, `broken` when a child ended otherwise than `next` says.
+
+    `items` is an expression that gives a list. Each round has a scope of its own with the item
+    under the key `as` and the number of the round, from 0, under `index`. `next` names the
+    outcomes after which the next round begins, by default those that mean success to the child.
+    `collect` appends, after each such round, the value of a key to a list outside.
+    """
+
+    child: Node
+    items: Expression | list[object] | None = None
+    times: int | Expression | None = None
+    item: Key = "item"
+    index: Key | None = None
+    next: tuple[str, ...] = ()
+    collect: dict[Key, Key] = {}
+    userdata: dict[Key, object] = {}
+
+
+class Composite(Strict, frozen=True, kw_only=True):
+    """Children of a sequence or selector; with `memory` a child that is done is not asked again."""
+
+    children: Annotated[tuple[Node, ...], Meta(min_length=1, description="The children, at least one")]
+    memory: bool
+
+
+class Parallel(Strict, frozen=True, kw_only=True):
+    """Children ticked together; `policy` says whose success is its own: `all`, `one`, or those named."""
+
+    children: Annotated[tuple[Node, ...], Meta(min_length=1, description="The children, at least one")]
+    policy: Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)] = "all"
+    synchronise: bool = False
+
+
+class Decorator(Strict, frozen=True, kw_only=True):
+    """Turns SUCCESS of its child into FAILURE and back."""
+
+    child: Node
+
+
+class OneShot(Strict, frozen=True, kw_only=True):
+    """Runs its child to completion, or to success, once in a run of the tree, and remembers the end."""
+
+    child: Node
+    policy: Literal["completion", "success"] = "completion"
+
+
+class Repeat(Strict, frozen=True, kw_only=True):
+    """Runs its child until it has succeeded `times` times in a row; fails when it fails."""
+
+    child: Node
+    times: Times
+
+
+class Cooldown(Strict, frozen=True, kw_only=True):
+    """Fails without asking its child until `after` has passed since the child last ended."""
+
+    child: Node
+    after: Duration
+
+    @property
+    def after_s(self) -> float:
+        """The duration in seconds."""
+        return seconds(self.after)
+
+
+class Remap(Strict, frozen=True, kw_only=True):
+    """Shows another status than the child has."""
+
+    child: Node
+    success: Status = "success"
+    failure: Status = "failure"
+    running: Status = "running"
+
+
+class StatusCondition(Strict, frozen=True, kw_only=True):
+    """Is SUCCESS when the child has this status, RUNNING until then."""
+
+    child: Node
+    status: Status
+
+
+TREE_OUTCOMES = ("success", "failure")
+FOREACH_OUTCOMES = ("exhausted", "broken")
+
+_Listed = Annotated[tuple["Node", ...], Meta(min_length=1, description="The children, at least one")]
+
+
+class Node(
+    Strict, frozen=True, kw_only=True, dict=True, rename={"parameters": "with", "inputs": "in", "outputs": "out"}
+):
+    """One node: its kind, its wiring into the enclosing container, and what to do when it fails.
+
+    `parameters` (`with:`) go to a state or behavior; text in them may hold `${…}` expressions.
+    `inputs` (`in:`) maps input keys of the state or behavior to userdata keys that can be read
+    here, `outputs` (`out:`) maps output keys to the userdata keys that they are written to.
+    `autonomy` names for an outcome the level from which on it does not pass by itself any more;
+    `resume` says what to do with the node after a crash: `rerun`, `ask`, or take an outcome.
+    `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its place in paths.
+    """
+
+    state: str | None = None
+    machine: Machine | None = None
+    concurrency: Concurrency | None = None
+    priority: Machine | None = None
+    tree: Node | None = None
+    foreach: ForEach | None = None
+    behavior: Reference | None = None
+    sequence: _Listed | Composite | None = None
+    selector: _Listed | Composite | None = None
+    parallel: _Listed | Parallel | None = None
+    inverter: Decorator | None = None
+    one_shot: OneShot | None = None
+    repeat: Repeat | None = None
+    cooldown: Cooldown | None = None
+    remap: Remap | None = None
+    condition: StatusCondition | None = None
+    behaviour: str | None = None
+    name: NodeName | None = None
+    parameters: dict[str, object] = {}
+    inputs: dict[str, Key] = {}
+    outputs: dict[str, Key] = {}
+    transitions: dict[str, str] = {}
+    guard: Guard | None = None
+    timeout: Timeout | None = None
+    retry: Retry | None = None
+    on_error: str | None = None
+    autonomy: dict[str, AutonomyLevel] = {}
+    resume: str | None = None
+    success: tuple[str, ...] = ()
+    description: str = ""
+
+    @property
+    def kinds(self) -> tuple[NodeKind, ...]:
+        """All kind keys it has; a valid node has one."""
+        plain: tuple[NodeKind, ...] = tuple(kind for kind in (*KINDS, *TREE_KINDS) if getattr(self, kind) is not None)
+        wrapping: tuple[NodeKind, ...] = tuple(key for key in WRAPPERS if self._wrapped(key) is not None)
+        return (*plain, *wrapping)
+
+    @property
+    def kind(self) -> NodeKind:
+        """The key that says what the node is."""
+        if self.state is not None:
+            return "state"
+        return self.kinds[0]
+
+    @property
+    def sequential(self) -> Machine | None:
+        """The states and the initial one of a machine or priority container."""
+        return self.machine or self.priority
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The nodes directly inside, by the last part of their path, in document order."""
+        if self.state is not None:
+            return {}
+        container = self.machine or self.concurrency or self.priority
+        if container is not None:
+            return container.states
+        return self._inside
+
+    def child_keys(self, name: str) -> tuple[str | int, ...]:
+        """Return the keys, from this node inward, under which the child `name` is written."""
+        if self.machine is not None or self.concurrency is not None or self.priority is not None:
+            return (self.kind, "states", name)
+        return self._keys_inside[name]
+
+    @property
+    def userdata(self) -> Mapping[str, object]:
+        """The initial values of the container's own scope."""
+        container = self.machine or self.concurrency or self.priority or self.foreach
+        return container.userdata if container is not None else {}
+
+    @cached_property
+    def _inside(self) -> Mapping[str, Node]:
+        return {name: child for name, _, child in self._placed()}
+
+    @cached_property
+    def _keys_inside(self) -> Mapping[str, tuple[str | int, ...]]:
+        return {name: keys for name, keys, _ in self._placed()}
+
+    def _wrapped(self, key: Wrapper) -> Node | None:
+        wrapper: Retry | Timeout | Guard | None = getattr(self, key)
+        return wrapper.child if wrapper is not None else None
+
+    def _placed(self) -> list[tuple[str, tuple[str | int, ...], Node]]:
+        if self.foreach is not None:
+            return [("child", ("foreach", "child"), self.foreach.child)]
+        if self.tree is not None:
+            return [(self.tree.own_name, ("tree",), self.tree)]
+        for kind, group in (("sequence", self.sequence), ("selector", self.selector), ("parallel", self.parallel)):
+            if isinstance(group, tuple):
+                return [(n, (kind, i), c) for i, (n, c) in enumerate(zip(_names(group), group, strict=True))]
+            if group is not None:
+                named = zip(_names(group.children), group.children, strict=True)
+                return [(n, (kind, "children", i), c) for i, (n, c) in enumerate(named)]
+        single = self.inverter or self.one_shot or self.repeat or self.cooldown or self.remap or self.condition
+        if single is not None:
+            return [(single.child.own_name, (self.kind, "child"), single.child)]
+        for key in WRAPPERS:
+            child = self._wrapped(key)
+            if child is not None:
+                return [(child.own_name, (key, "child"), child)]
+        return []
+
+    @property
+    def own_name(self) -> str:
+        """Its name inside a tree: as given, else after what it is."""
+        if self.name is not None:
+            return self.name
+        said = self.state or self.behaviour or ""
+        said = re.split(r"[.:]", said)[-1] or (PurePosixPath(self.behavior).stem if self.behavior else "")
+        return re.sub(r"[^A-Za-z0-9_-]", "_", said)[:64] or (self.kinds or ("node",))[0]
+
+
+def _names(children: Iterable[Node]) -> list[str]:
+    """Name the children of a composite; a name that is taken gets a number."""
+    names: list[str] = []
+    taken: set[str] = set()
+    seen: dict[str, int] = {}
+    for child in children:
+        name = child.own_name
+        seen[name] = seen.get(name, 0) + 1
+        while name in taken:
+            name = f"{child.own_name}_{seen[child.own_name]}"
+            seen[child.own_name] += 1
+        taken.add(name)
+        names.append(name)
+    return names
