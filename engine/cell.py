@@ -7,6 +7,7 @@ bringing every robot to rest. It belongs to the event loop it is opened on.
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Callable, Mapping
 from contextlib import AsyncExitStack
 from types import TracebackType
@@ -17,9 +18,15 @@ from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries import load_entries
 from engine.errors import CellError, FlexcellError, RobotError
+from engine.preemption import Overdue, preempt
 from engine.registry import DRIVERS, WORLDS, load_maker
 from engine.robot import Robot, World
 from engine.store import SqliteStore, Store, register_store
+
+_PATIENCE_S = 10.0
+"""How long a robot may take to come to rest, and the goals' handlers to end."""
+
+_log = logging.getLogger("flexcell.cell")
 
 NewWorld = Callable[..., World]
 NewRobot = Callable[..., Robot]
@@ -40,6 +47,7 @@ class OpenCell:
         self.bus = SkillBus(new_clock())
         self.store: Store | None = None
         self.robots: Mapping[str, Robot] = {}
+        self._world: World | None = None
         self._store_path = store_path
         self._stack = AsyncExitStack()
 
@@ -63,17 +71,37 @@ class OpenCell:
         await self._stack.aclose()
 
     async def stop(self) -> None:
-        """Bring every robot to rest.
+        """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
 
         Raises:
             RobotError: one could not confirm it; the others were stopped all the same.
         """
-        ends = await asyncio.gather(*(robot.stop() for robot in self.robots.values()), return_exceptions=True)
-        failures = [end for end in ends if isinstance(end, BaseException)]
+        for goal in self.bus.goals():
+            goal.cancel()
+        devices: tuple[Robot, ...] = tuple(self.robots.values())
+        if self._world is not None:
+            devices += (self._world,)
+        ends = await asyncio.gather(*(_stopped(device) for device in devices))
+        failures = [failure for failure in ends if failure is not None]
         if failures:
             raise RobotError(
                 "; ".join(str(failure) for failure in failures), where=self.name, hint="use the emergency stop"
             ) from failures[0]
+
+    async def snapshot(self) -> bytes | None:
+        """Return what `restore` needs to bring the world back to the present; None where there is none."""
+        return self._world.snapshot() if self._world is not None else None
+
+    async def restore(self, snapshot: bytes) -> None:
+        """Bring the world to where `snapshot` was made, at rest; before the first goal.
+
+        Raises:
+            CellError: this cell has no world that could be brought anywhere.
+            RobotError: something moves, or the snapshot is none of this very world.
+        """
+        if self._world is None:
+            raise CellError("the cell has no world to restore", where=self.name, hint="open the cell it was made in")
+        await self._world.restore(snapshot)
 
     async def _open(self) -> None:
         if self.document is None:
@@ -81,7 +109,16 @@ class OpenCell:
         await self._open_store(self.document)
         world = await self._open_world(self.document)
         await self._open_robots(self.document, world)
-        await self._stack.enter_async_context(self.bus)
+        self._stack.push_async_callback(self._close_bus)
+
+    async def _close_bus(self) -> None:
+        """Cancel what still runs; a handler that does not end keeps no robot from coming to rest."""
+        closing = asyncio.create_task(self.bus.__aexit__(None, None, None), name="closing the bus")
+        failure = await _carried_through(closing)
+        if failure is not None and not isinstance(failure, _Overdue):
+            raise failure
+        for goal in self.bus.goals():
+            _log.error("the handler of %s does not end; its robot is stopped without it", goal.address)
 
     async def _open_store(self, cell: Cell) -> None:
         if cell.document.store is None:
@@ -101,6 +138,7 @@ class OpenCell:
             new_world(cell, bus=self.bus, virtual=self.bus.clock.virtual, seed=self.seed)
         )
         world.register(self.bus)
+        self._world = world
         return world
 
     async def _open_robots(self, cell: Cell, world: World | None) -> None:
@@ -119,3 +157,42 @@ class OpenCell:
     def _new_robot(self, cell: Cell, name: str, kind: str) -> Robot:
         maker: NewRobot = load_maker(DRIVERS, kind)
         return maker(cell, name=name, bus=self.bus)
+
+
+class _Overdue(Exception):
+    """Something takes longer than anybody waits for it."""
+
+
+async def _stopped(device: Robot) -> BaseException | None:
+    """Stop a device and return why it is not known to rest; one that hangs holds up no other."""
+    failure = await _carried_through(asyncio.create_task(device.stop(), name=f"stop {device.name}"))
+    if isinstance(failure, _Overdue):
+        return RobotError(f"it does not confirm that it rests within {_PATIENCE_S:g} s", where=device.name)
+    return failure
+
+
+async def _carried_through(task: asyncio.Task[None]) -> BaseException | None:
+    """Return why a task failed, None if it did not, `_Overdue` if it was cancelled for taking too long.
+
+    Cancelling the caller does not interrupt it: once begun, a stop is carried through.
+    """
+    loop = asyncio.get_running_loop()
+    deadline_s = loop.time() + _PATIENCE_S
+    cancelled: asyncio.CancelledError | None = None
+    while not task.done() and loop.time() < deadline_s:
+        try:
+            await asyncio.wait((task,), timeout=deadline_s - loop.time())
+        except asyncio.CancelledError as error:
+            cancelled = error
+    overdue = not task.done()
+    if overdue:
+        await preempt((task,), Overdue(tell=_say_overdue))
+    if cancelled is not None:
+        raise cancelled
+    if overdue:
+        return _Overdue()
+    return asyncio.CancelledError() if task.cancelled() else task.exception()
+
+
+def _say_overdue(name: str, waited_s: float) -> None:
+    _log.error("%s has not ended %g s after it was cancelled", name, waited_s)

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 from engine.cause import under
 from engine.errors import StateError
 from engine.event import Cause
 from engine.execution import Execution
-from engine.node import NOTHING, Entry, Left, Node, explain, overdue_log
+from engine.node import NOTHING, Entry, Left, Node, explain, overdue
 from engine.preemption import preempt
 from engine.settle import settle
 from engine.state import Outcome
@@ -45,6 +45,12 @@ class Concurrency:
         return "concurrency"
 
     @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """Those of its conditions, and `otherwise`."""
+        otherwise = (self.otherwise,) if self.otherwise is not None else ()
+        return tuple(dict.fromkeys((*(condition.outcome for condition in self.conditions), *otherwise)))
+
+    @cached_property
     def nominal(self) -> frozenset[str]:
         """Outcomes of conditions that ask only for nominal outcomes of the children."""
         return frozenset(
@@ -53,43 +59,51 @@ class Concurrency:
             if all(due in self.children[name].work.nominal for name, due in c.when.items())
         )
 
+    @cached_property
+    def _rank(self) -> dict[str, int]:
+        return {name: rank for rank, name in enumerate(self.children)}
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Start all children, decide whenever some have finished, preempt and await the others."""
-        inner = Scope(path, self.userdata, scope)
-        branches = {name: Scope(path, {}, inner, isolated=True) for name in self.children}
+        point = entry.point
+        inner = Scope(path, point.values if point is not None else self.userdata, scope)
+        written: Mapping[str, Mapping[str, object]] = point.branches if point is not None else {}
+        branches = {name: branch_scope(path, name, inner, written.get(name, {})) for name in self.children}
         tasks = {
-            name: asyncio.create_task(child.perform(branches[name], execution), name=child.path)
+            name: execution.activity.branch(child.path, child.perform(branches[name], execution))
             for name, child in self.children.items()
         }
         execution.waits += 1
         try:
-            outcome = await self._decide(path, tasks)
+            outcome = await self._decide(path, tasks, execution)
         finally:
-            await preempt(tasks.values(), overdue_log(execution))
+            await preempt(tasks.values(), overdue(execution, path))
         _raise_late_failure(tasks)
         for name in self.children:
-            for key, value in branches[name].own_values().items():
-                inner.write(key, value)
+            merge(branches[name], inner, execution)
         return outcome
 
-    async def _decide(self, path: str, tasks: Mapping[str, asyncio.Task[Left]]) -> Outcome:
+    async def _decide(self, path: str, tasks: Mapping[str, asyncio.Task[Left]], execution: Execution) -> Outcome:
         finished: dict[str, Left] = {}
-        while True:
-            waiting = {task for name, task in tasks.items() if name not in finished}
-            if not waiting:
-                return self._uncovered(path, finished)
-            await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+        ended = asyncio.Event()
+        arrived: list[str] = []
+        for name, task in tasks.items():
+            task.add_done_callback(partial(_arrive, arrived, name, ended))
+        while len(finished) < len(tasks):
+            await ended.wait()
             await settle(depth=path.count("/"))
-            for name, task in tasks.items():
-                if task.done() and name not in finished:
-                    finished[name] = _as_outcome(task.result())
-            for condition in self.conditions:
+            ended.clear()
+            for name in sorted(arrived, key=self._rank.__getitem__):
+                finished[name] = _as_outcome(tasks[name].result())
+            arrived.clear()
+            for condition in execution.latest(path, self).conditions:
                 if condition.holds(finished):
                     return Outcome(condition.outcome, cause=self._cause(condition.outcome, finished))
+        return self._uncovered(path, finished)
 
     def _cause(self, outcome: str, finished: Mapping[str, Left]) -> Cause | None:
         if outcome in self.nominal:
@@ -114,6 +128,11 @@ class Concurrency:
         )
 
 
+def _arrive(arrived: list[str], name: str, ended: asyncio.Event, _: asyncio.Task[Left]) -> None:
+    arrived.append(name)
+    ended.set()
+
+
 def _as_outcome(left: Left) -> Left:
     """Give a child that was left by timeout or on_error the outcome named there."""
     return left if left.target is None else Left(left.target, None, left.cause)
@@ -124,3 +143,15 @@ def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
     for task in tasks.values():
         if not task.cancelled() and (error := task.exception()) is not None:
             raise error
+
+
+def branch_scope(path: str, name: str, outer: Scope, written: Mapping[str, object]) -> Scope:
+    """Return the scope of one branch, in which its writes stay until the branches are merged."""
+    return Scope(f"{path}/{name}*", written, outer, isolated=True)
+
+
+def merge(branch: Scope, into: Scope, execution: Execution) -> None:
+    """Write what a branch has written where the keys live around it."""
+    for key, value in branch.own_values().items():
+        written_to = into.write(key, value)
+        execution.record_write(branch.path.removesuffix("*"), written_to, key, value)

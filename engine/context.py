@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 import msgspec
@@ -11,9 +12,10 @@ from engine.bus import GoalEnd, GoalStatus, Holder
 from engine.cause import cause_of
 from engine.clock import Clock
 from engine.errors import FlexcellError
-from engine.event import Answered, Called, Cause, GoalFinished, GoalSent, Received
+from engine.event import Answered, Called, Cause, GoalFinished, GoalHeld, GoalResumed, GoalSent, Received
 from engine.execution import Execution
 from engine.node import log
+from engine.recorder import Recorder
 from engine.skill import Action, Service
 from engine.skill_port import Goal
 from engine.state import ActionEnd
@@ -24,10 +26,11 @@ S = TypeVar("S", bound=msgspec.Struct)
 
 
 class WaitingClock:
-    """The run's clock, noting that the state waited so that endless instant loops are told apart."""
+    """The run's clock as a state sees it: it stands still while the state's branch is held."""
 
-    def __init__(self, execution: Execution) -> None:
+    def __init__(self, execution: Execution, path: str) -> None:
         self._execution = execution
+        self._path = path
 
     @property
     def virtual(self) -> bool:
@@ -40,17 +43,42 @@ class WaitingClock:
 
     async def sleep(self, duration_s: float) -> None:
         """Let `duration_s` pass."""
-        if duration_s > 0:
-            self._execution.waits += 1
-        await self._execution.clock.sleep(duration_s)
+        await self._execution.sleep(self._path, duration_s)
+
+
+class HeldGoal:
+    """A goal that the run holds and resumes along with its branch."""
+
+    def __init__(self, goal: Goal, goal_id: str, path: str, recorder: Recorder) -> None:
+        self._goal = goal
+        self._recorder = recorder
+        self.label = goal_id
+        self.path = path
+
+    async def hold(self) -> None:
+        """Bring the device to rest; raises BusError where the skill cannot be held."""
+        await self._goal.hold()
+        if not self._goal.finished:
+            recorder = self._recorder
+            recorder.record(GoalHeld(seq=recorder.next_seq(), time_s=recorder.now_s(), path=self.path, goal=self.label))
+
+    async def resume(self) -> None:
+        """Let it go on."""
+        await self._goal.resume()
+        if not self._goal.finished:
+            recorder = self._recorder
+            recorder.record(
+                GoalResumed(seq=recorder.next_seq(), time_s=recorder.now_s(), path=self.path, goal=self.label)
+            )
 
 
 class RunningContext:
     """The `engine.state.Context` of one activation of one state."""
 
-    __slots__ = ("_calls", "_execution", "_goals", "_visit", "path")
+    __slots__ = ("_autonomy", "_calls", "_execution", "_goals", "_visit", "path")
 
-    def __init__(self, execution: Execution, path: str, visit: int) -> None:
+    def __init__(self, execution: Execution, path: str, visit: int, autonomy: Mapping[str, str]) -> None:
+        self._autonomy = autonomy
         self._execution = execution
         self.path = path
         self._visit = visit
@@ -60,11 +88,12 @@ class RunningContext:
     @property
     def clock(self) -> Clock:
         """The run's time."""
-        return WaitingClock(self._execution)
+        return WaitingClock(self._execution, self.path)
 
     async def call(self, request: Service[R], *, to: str) -> R:
         """Ask a service after the journal is durable, as it may have an effect."""
         execution = self._execution
+        await execution.suspensions.until_free(self.path)
         self._calls += 1
         call = f"{self.path}#{self._visit}.c{self._calls}"
         self._record_called(call, request, f"{to}/{request.skill_name()}")
@@ -82,6 +111,7 @@ class RunningContext:
         """Send a goal and wait for its end; when preempted, cancel it and wait for rest."""
         execution = self._execution
         execution.waits += 1
+        await execution.suspensions.until_free(self.path)
         self._goals += 1
         goal_id = f"{self.path}#{self._visit}.{self._goals}"
         self._record_sent(goal_id, goal, f"{to}/{goal.skill_name()}")
@@ -94,11 +124,15 @@ class RunningContext:
         except asyncio.CancelledError:
             self._record_finished(GoalEnd(GoalStatus.CANCELED, None, None), goal_id)
             raise
+        held = HeldGoal(sent, goal_id, self.path, execution.recorder)
+        execution.suspensions.attach(held)
         try:
             end = await sent.result()
         except asyncio.CancelledError:
             self._record_finished(await _cancelled(sent), goal_id)
             raise
+        finally:
+            await execution.suspensions.detach(held)
         self._record_finished(end, goal_id)
         return ActionEnd(end.status.value, end.result, end.cause)
 
@@ -111,6 +145,12 @@ class RunningContext:
         """Wait for the next message of a topic."""
         self._execution.waits += 1
         return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
+
+    async def offer(self, outcome: str) -> None:
+        """Ask the operator for an outcome where the run's autonomy does not let it pass; cancelling withdraws."""
+        self._execution.waits += 1
+        required = self._autonomy.get(outcome, "off")
+        await self._execution.gate.offer(self.path, self._visit, outcome, required)
 
     def log(self, message: str, *, level: str = "info") -> None:
         """Write a line into the event log."""

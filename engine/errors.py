@@ -54,6 +54,14 @@ class StateError(FlexcellError):
     """A state broke its contract or raised; `where` is the node path."""
 
 
+class NotStopped(StateError):
+    """A node was told to stop and has not in time; it was abandoned, and what it commands stays leased."""
+
+
+class ControlError(FlexcellError):
+    """A command of the operator cannot be carried out; nothing has changed."""
+
+
 class RegistryError(FlexcellError):
     """A name resolves to no state, robot or store."""
 
@@ -96,6 +104,10 @@ class EntryConflict(StoreError):
 
 class JournalError(FlexcellError):
     """The journal cannot be written; the run must stop."""
+
+
+class RecordingError(FlexcellError):
+    """A recording cannot be begun, read or replayed; `where` is the file."""
 
 
 class CellError(FlexcellError):

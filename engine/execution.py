@@ -1,14 +1,25 @@
-"""What the nodes of one run share: time, bus, recorder, random numbers, counters."""
+"""What the nodes of one run share: time, bus, recorder, gate, random numbers, counters."""
 
 from __future__ import annotations
 
+import asyncio
 import random
 from dataclasses import dataclass, field
+from typing import Any, TypeVar
 
+import msgspec
+
+from engine.activity import Activity
 from engine.bus import SkillBus
 from engine.clock import Clock
+from engine.control.gate import Gate
+from engine.event import Abandoned, UserdataWritten
+from engine.point import Point
 from engine.recorder import Recorder
 from engine.skill_port import SkillPort
+from engine.suspension import Suspensions
+
+W = TypeVar("W")
 
 
 @dataclass(kw_only=True)
@@ -21,14 +32,70 @@ class Execution:
     recorder: Recorder
     random: random.Random
     skills: SkillPort
+    suspensions: Suspensions
+    gate: Gate
+    activity: Activity = field(default_factory=Activity)
     instant_limit: int = 10_000
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
+    abandon_after_s: float = 30.0
+    """How long a node may take to confirm that it stopped before the run goes on without it."""
     waits: int = 0
     """How often a state has waited for something; unchanged means that no time passed."""
     visits: dict[str, int] = field(default_factory=dict[str, int])
+    points: dict[str, Point] = field(default_factory=dict[str, Point])
+    """Where nodes stood that are gone on with; each is taken once."""
+
+    replaced: dict[str, object] = field(default_factory=dict[str, object])
+    """Containers by path whose definition a hot change has replaced."""
+    abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
+    """Tasks that did not end when told to; nobody waits for them any more."""
 
     def visit(self, path: str) -> int:
         """Count an activation of `path` and return which one it is, from 1."""
         visit = self.visits.get(path, 0) + 1
         self.visits[path] = visit
         return visit
+
+    def abandon(self, task: asyncio.Task[Any] | None, path: str, waited_s: float) -> None:
+        """Give up a task that does not end; what it leased stays leased."""
+        recorder = self.recorder
+        recorder.record(Abandoned(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, waited_s=waited_s))
+        if task is not None:
+            self.abandoned[path] = task
+
+    def point(self, path: str) -> Point | None:
+        """Take the point at which the node is to be gone on with, if any."""
+        return self.points.pop(path, None) if self.points else None
+
+    def latest(self, path: str, work: W) -> W:
+        """Return the present definition of a container: another one after a hot change."""
+        if not self.replaced:
+            return work
+        found = self.replaced.get(path)
+        return found if isinstance(found, type(work)) else work
+
+    def record_write(self, path: str, scope: str, key: str, value: object) -> None:
+        """Record that the node at `path` wrote `key` into `scope`."""
+        recorder = self.recorder
+        recorder.record(
+            UserdataWritten(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=path,
+                scope=scope,
+                key=key,
+                value=msgspec.to_builtins(value),
+            )
+        )
+
+    async def sleep(self, path: str, duration_s: float) -> None:
+        """Let `duration_s` pass in which the branch of `path` is not held."""
+        if duration_s <= 0:
+            await self.clock.sleep(0)
+            return
+        self.waits += 1
+        timer = self.suspensions.timer(path, duration_s)
+        try:
+            await timer.future
+        finally:
+            self.suspensions.drop(timer)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -15,11 +15,10 @@ from engine.context import RunningContext
 from engine.document.expression import Template
 from engine.document.signature import StateSignature
 from engine.errors import FlexcellError, StateError, UserdataError
-from engine.event import UserdataWritten
 from engine.execution import Execution
 from engine.nearness import near_names
-from engine.node import Entry
-from engine.state import Outcome, State
+from engine.node import Entry, Node
+from engine.state import Context, Outcome, State
 from engine.userdata import Scope
 
 
@@ -33,11 +32,22 @@ class Leaf:
     inputs: Mapping[str, str]
     outputs: Mapping[str, str]
     position: str
+    autonomy: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def kind(self) -> str:
         """The key of this node in documents."""
         return "state"
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """None."""
+        return {}
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """Those its class declares."""
+        return self.state.outcomes
 
     @cached_property
     def nominal(self) -> frozenset[str]:
@@ -70,8 +80,12 @@ class Leaf:
         holder = Holder(execution.run, path)
         if resources:
             execution.bus.leases.acquire(resources, holder)
+        context = RunningContext(execution, path, visit, self.autonomy)
+        pausing = PausingState(state, context) if self._pauses else None
+        if pausing is not None:
+            execution.suspensions.attach(pausing)
         try:
-            outcome: Any = await state.run(RunningContext(execution, path, visit), **entry.inputs)
+            outcome: Any = await state.run(context, **entry.inputs)
         except (FlexcellError, asyncio.CancelledError):
             raise
         except Exception as error:
@@ -80,12 +94,18 @@ class Leaf:
                 f"{self.signature.name} raised {type(error).__name__}: {error}", where=self.position
             ) from error
         finally:
+            if pausing is not None:
+                await execution.suspensions.detach(pausing)
             if resources:
                 execution.bus.leases.release(resources, holder)
         if not isinstance(outcome, Outcome) or outcome.name not in self.state.outcomes:
             raise self._undeclared_outcome(outcome)
         self._write(outcome, path, scope, execution)
         return outcome
+
+    @cached_property
+    def _pauses(self) -> bool:
+        return self.state.on_pause is not State.on_pause or self.state.on_resume is not State.on_resume
 
     def _instance(self, given: object) -> State:
         try:
@@ -117,18 +137,7 @@ class Leaf:
                     hint=f"declare it in `outputs`; {near_names(key, self.signature.outputs)}",
                 )
             target = self.outputs.get(key, key)
-            written_to = scope.write(target, value)
-            recorder = execution.recorder
-            recorder.record(
-                UserdataWritten(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    scope=written_to,
-                    key=target,
-                    value=msgspec.to_builtins(value),
-                )
-            )
+            execution.record_write(path, scope.write(target, value), target, value)
 
     def _undeclared_outcome(self, outcome: object) -> StateError:
         said = f"outcome {outcome.name!r}" if isinstance(outcome, Outcome) else f"a {type(outcome).__name__}"
@@ -137,6 +146,33 @@ class Leaf:
             where=self.position,
             hint=f"its outcomes are {', '.join(self.state.outcomes)}",
         )
+
+
+class PausingState:
+    """A running state that has something to do itself when its branch is held."""
+
+    def __init__(self, state: State, context: RunningContext) -> None:
+        self._state = state
+        self._context = context
+        self.path = context.path
+        self.label = context.path
+
+    async def hold(self) -> None:
+        """Call its `on_pause`."""
+        await self._told(self._state.on_pause)
+
+    async def resume(self) -> None:
+        """Call its `on_resume`."""
+        await self._told(self._state.on_resume)
+
+    async def _told(self, hook: Callable[[Context], Awaitable[None]]) -> None:
+        try:
+            await hook(self._context)
+        except FlexcellError:
+            raise
+        except Exception as error:
+            # A custom state may raise anything; the pause of the others goes on.
+            raise StateError(f"{hook.__qualname__} raised {type(error).__name__}: {error}", where=self.path) from error
 
 
 def _mapping(given: object) -> dict[str, object]:

@@ -25,11 +25,14 @@ class Machine:
     initial: str
     children: Mapping[str, Node]
     userdata: Mapping[str, object] = field(default_factory=dict[str, object])
+    kind: str = "machine"
+    """The key of this container in documents."""
 
-    @property
-    def kind(self) -> str:
-        """The key of this container in documents."""
-        return "machine"
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """Targets that are no children."""
+        leading = [target for child in self.children.values() for target in child.targets]
+        return tuple(dict.fromkeys(target for target in leading if target not in self.children))
 
     @cached_property
     def nominal(self) -> frozenset[str]:
@@ -44,6 +47,7 @@ class Machine:
             child = self.children.get(name)
             if child is not None:
                 due += [t for outcome, t in child.transitions.items() if outcome in child.work.nominal]
+                due += [child.guard.target] if child.guard is not None else []
         return frozenset(reached - set(self.children))
 
     def enter(self, scope: Scope) -> Entry:
@@ -52,26 +56,30 @@ class Machine:
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run children until a transition names an outcome of this machine."""
-        inner = Scope(path, self.userdata, scope)
-        name = self.initial
-        went_wrong: Cause | None = None
+        point = entry.point
+        inner = Scope(path, point.values if point is not None else self.userdata, scope)
+        name = point.current if point is not None and point.current is not None else self.initial
+        went_wrong: Cause | None = point.cause if point is not None else None
         instants = 0
         waits = execution.waits
+        machine = self
         while True:
-            child = self.children[name]
-            left = await child.perform(inner, execution)
+            left = await machine.children[name].perform(inner, execution)
+            # After a hot change the transitions are those of the new version.
+            machine = execution.latest(path, machine)
+            child = machine.children[name]
             if left.cause is not None or (left.outcome and left.outcome not in child.work.nominal):
                 went_wrong = explain(child, left)
-            target = self._target(child, left)
+            target = machine._target(child, left)
             self._record(execution, path, name, left.outcome, target)
-            if target not in self.children:
-                return Outcome(target, cause=None if target in self.nominal else went_wrong)
+            if target not in machine.children:
+                return Outcome(target, cause=None if target in machine.nominal else went_wrong)
             instants = instants + 1 if execution.waits == waits else 0
             waits = execution.waits
             if instants and instants % _FAIRNESS == 0:
                 await asyncio.sleep(0)
                 if instants >= execution.instant_limit:
-                    raise self._endless(path, target, instants)
+                    raise machine._endless(path, target, instants)
             name = target
 
     def _target(self, child: Node, left: Left) -> str:

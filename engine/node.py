@@ -6,18 +6,21 @@ The same wrapper surrounds a single state and a whole container; what differs is
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol
 
 import msgspec
 
 from engine.cause import cause_of, describe, under
-from engine.errors import FlexcellError, JournalError, StateError
-from engine.event import Cause, Entered, Exited, Logged, Retried
+from engine.control.gate import Order
+from engine.document.expression import Template
+from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
+from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
-from engine.preemption import being_cancelled, preempt
+from engine.point import Point
+from engine.preemption import Overdue, being_cancelled, preempt
 from engine.state import Outcome, State
 from engine.userdata import Scope
 
@@ -40,8 +43,16 @@ class Retry:
     errors: bool = True
 
 
+@dataclass(frozen=True, kw_only=True)
+class Guard:
+    """Enter the node only when `when` is true, else leave it for `target`."""
+
+    when: Template
+    target: str
+
+
 class Left(msgspec.Struct, frozen=True):
-    """How a node was left: with an outcome, or straight to a target (timeout, on_error)."""
+    """How a node was left: with an outcome, or straight to a target (timeout, guard, on_error)."""
 
     outcome: str
     target: str | None = None
@@ -50,11 +61,15 @@ class Left(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class Entry:
-    """What a node was entered with: the state to run, its input values, and both as plain data."""
+    """What a node was entered with: the state to run, its input values, and both as plain data.
+
+    `point` says where to go on inside a container that was entered before.
+    """
 
     state: State | None = None
     inputs: Mapping[str, object] = field(default_factory=dict[str, object])
     shown: dict[str, object] = field(default_factory=dict[str, object])
+    point: Point | None = None
 
 
 NOTHING = Entry()
@@ -65,12 +80,22 @@ class Work(Protocol):
 
     @property
     def kind(self) -> str:
-        """state, machine, concurrency or behavior."""
+        """The key of the node in documents."""
+        ...
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The nodes directly inside, by name, in document order."""
         ...
 
     @cached_property
     def nominal(self) -> frozenset[str]:
         """The outcomes that mean that nothing went wrong inside; asked at every transition."""
+        ...
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """All outcomes it can have."""
         ...
 
     def enter(self, scope: Scope) -> Entry:
@@ -93,64 +118,148 @@ class Node:
     timeout: Timeout | None = None
     retry: Retry | None = None
     on_error: str | None = None
+    guard: Guard | None = None
+    autonomy: Mapping[str, str] = field(default_factory=dict[str, str])
+    resume: str | None = None
     position: str = ""
 
+    @cached_property
+    def targets(self) -> tuple[str, ...]:
+        """Where it can lead inside a machine."""
+        own = [*self.transitions.values()]
+        own += [self.guard.target] if self.guard is not None else []
+        own += [self.timeout.target] if self.timeout is not None else []
+        own += [self.on_error] if self.on_error is not None else []
+        return tuple(dict.fromkeys(own))
+
+    @cached_property
+    def _plain(self) -> bool:
+        return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
+
     async def perform(self, scope: Scope, execution: Execution) -> Left:
-        """Run the node to its end, whatever that is.
+        """Run the node to its end, whatever that is, past the gate before and after it.
 
         Raises:
             FlexcellError: the work raised, retries are used up and `on_error` is not set.
             CancelledError: the node was preempted; its clean-up is done.
         """
-        if self.timeout is None and self.retry is None and self.on_error is None:
-            return await self._attempt(scope, execution)
-        return await self._guarded(scope, execution)
+        gate = execution.gate
+        point = execution.point(self.path) if execution.points else None
+        if point is not None and not point.active:
+            left = Left(point.left or "", point.diverted, point.cause)
+            if point.passed or not gate.armed:
+                return left
+            order = await self._after(left, scope, execution)
+            if order is None:
+                return left
+            if order.outcome is not None:
+                return self._forced(order.outcome, execution)
+        while True:
+            left = None
+            order: Order | None = None
+            try:
+                if gate.armed and point is None:
+                    order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
+                if order is None:
+                    if self._plain:
+                        left = await self._attempt(scope, execution, point)
+                    else:
+                        left = await self._guarded(scope, execution, point)
+            except asyncio.CancelledError:
+                order = self._ordered(execution)
+                if order is None:
+                    raise
+            except FlexcellError:
+                self._ordered(execution)
+                raise
+            point = None
+            if left is not None and gate.armed:
+                order = await self._after(left, scope, execution)
+            if order is None and left is not None:
+                return left
+            if order is not None and order.outcome is not None:
+                return self._forced(order.outcome, execution)
 
-    async def _guarded(self, scope: Scope, execution: Execution) -> Left:
+    async def _after(self, left: Left, scope: Scope, execution: Execution) -> Order | None:
+        visit = execution.visits.get(self.path, 0)
+        required = self.autonomy.get(left.outcome, "off")
+        return await execution.gate.after(self.path, visit, left.outcome, required, scope)
+
+    def _ordered(self, execution: Execution) -> Order | None:
+        """Return what the operator ordered if that, and nothing else, is why this node was preempted."""
+        task = asyncio.current_task()
+        if not execution.gate.has_order(self.path) or task is None:
+            return None
+        order = execution.gate.taken_order(self.path)
+        return order if task.uncancel() == 0 else None
+
+    def _forced(self, outcome: str, execution: Execution) -> Left:
+        self._record_diverted(execution, "operator", outcome, None)
+        return Left(outcome, None, Cause(message="forced by the operator", where=self.path, kind="Forced"))
+
+    async def _guarded(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         try:
+            if self.guard is not None and point is None and not self._open(self.guard, scope):
+                self._record_diverted(execution, "guard", self.guard.target, None)
+                return Left("", self.guard.target)
             if self.timeout is None:
-                return await self._retried(scope, execution)
-            return await self._timed(self.timeout, scope, execution)
-        except JournalError:
+                return await self._retried(scope, execution, point)
+            return await self._timed(self.timeout, scope, execution, point)
+        except (JournalError, NotStopped):
             raise
         except FlexcellError as error:
             # A stop beats on_error, also when the clean-up fails.
             if self.on_error is None or being_cancelled():
                 raise
-            return Left("", self.on_error, cause_of(error))
+            cause = cause_of(error)
+            self._record_diverted(execution, "on_error", self.on_error, cause)
+            return Left("", self.on_error, cause)
 
-    async def _timed(self, timeout: Timeout, scope: Scope, execution: Execution) -> Left:
+    def _open(self, guard: Guard, scope: Scope) -> bool:
+        where = self.position or self.path
+        value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
+        if not isinstance(value, bool):
+            raise ExpressionError(f"the guard gave {value!r}, which is no truth value", where=where, hint="compare it")
+        return value
+
+    async def _timed(self, timeout: Timeout, scope: Scope, execution: Execution, point: Point | None) -> Left:
         # A task of its own: a stop and a timeout may come together, and clean-up must be cut by neither.
-        body = asyncio.create_task(self._retried(scope, execution), name=self.path)
+        body = execution.activity.branch(self.path, self._retried(scope, execution, point), body=True)
+        elapsed_s = point.elapsed_s if point is not None else 0.0
+        timer = execution.suspensions.timer(self.path, max(0.0, timeout.after_s - elapsed_s))
         try:
-            await asyncio.wait({body}, timeout=timeout.after_s)
+            await asyncio.wait({body, timer.future}, return_when=asyncio.FIRST_COMPLETED)
         except asyncio.CancelledError:
-            await preempt((body,), overdue_log(execution))
+            await preempt((body,), overdue(execution, self.path))
             raise
+        finally:
+            execution.suspensions.drop(timer)
         if body.done():
             return body.result()
-        await preempt((body,), overdue_log(execution))
+        await preempt((body,), overdue(execution, self.path))
         if not body.cancelled() and (error := body.exception()) is not None:
             raise error
         cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
+        self._record_diverted(execution, "timeout", timeout.target, cause)
         return Left("", timeout.target, cause)
 
-    async def _retried(self, scope: Scope, execution: Execution) -> Left:
+    async def _retried(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         retry = self.retry
-        attempt = 1
+        attempt = point.attempt if point is not None else 1
         while True:
             again: Cause | None
             try:
-                left = await self._attempt(scope, execution)
+                left = await self._attempt(scope, execution, point)
                 if retry is None or left.outcome not in retry.outcomes or attempt > retry.times:
                     return left
                 again = under(f"outcome {left.outcome}", left.cause, where=self.path)
-            except JournalError:
+            except (JournalError, NotStopped):
                 raise
             except FlexcellError as error:
                 if retry is None or not retry.errors or attempt > retry.times or being_cancelled():
                     raise
                 again = cause_of(error)
+            point = None
             attempt += 1
             wait_s = retry.backoff_s * 2 ** (attempt - 2)
             recorder = execution.recorder
@@ -165,24 +274,28 @@ class Node:
                 )
             )
             if wait_s > 0:
-                execution.waits += 1
-                await execution.clock.sleep(wait_s)
+                await execution.sleep(self.path, wait_s)
 
-    async def _attempt(self, scope: Scope, execution: Execution) -> Left:
+    async def _attempt(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         recorder = execution.recorder
         path = self.path
-        visit = execution.visit(path)
-        entry, refused = self._entered(scope)
-        recorder.record(
-            Entered(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                visit=visit,
-                kind=self.work.kind,
-                inputs=entry.shown,
+        resumed = point is not None and self.work.kind != "state"
+        visit = point.visit if point is not None and resumed else execution.visit(path)
+        if point is not None and resumed:
+            entry, refused = Entry(None, point.inputs, {}, point), None
+        else:
+            entry, refused = self._entered(scope)
+            recorder.record(
+                Entered(
+                    seq=recorder.next_seq(),
+                    time_s=recorder.now_s(),
+                    path=path,
+                    visit=visit,
+                    kind=self.work.kind,
+                    inputs=entry.shown,
+                )
             )
-        )
+        execution.activity.nodes[path] = visit
         try:
             if refused is not None:
                 raise refused
@@ -217,6 +330,7 @@ class Node:
         self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
     ) -> None:
         recorder = execution.recorder
+        execution.activity.nodes.pop(self.path, None)
         recorder.record(
             Exited(
                 seq=recorder.next_seq(),
@@ -229,6 +343,20 @@ class Node:
             )
         )
 
+    def _record_diverted(self, execution: Execution, by: str, target: str, cause: Cause | None) -> None:
+        recorder = execution.recorder
+        recorder.record(
+            Diverted(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=self.path,
+                visit=execution.visits.get(self.path, 0),
+                by=by,
+                target=target,
+                cause=cause,
+            )
+        )
+
 
 def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
     """Write a line into the event log of the run."""
@@ -236,13 +364,18 @@ def log(execution: Execution, path: str, message: str, *, level: str = "info") -
     recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=message))
 
 
-def overdue_log(execution: Execution) -> Callable[[str, float], None]:
-    """Return what names, in the event log, a node that is slow to clean up."""
+def overdue(execution: Execution, path: str) -> Overdue:
+    """Return what names, in the event log, nodes inside `path` that are slow to clean up, and gives them up."""
 
-    def tell(path: str, waited_s: float) -> None:
-        log(execution, path, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
+    def tell(late: str, waited_s: float) -> None:
+        log(execution, late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
 
-    return tell
+    def abandon(task: asyncio.Task[Any], waited_s: float) -> None:
+        execution.abandon(task, task.get_name(), waited_s)
+
+    # The innermost gives up first, or every level around it would be given up with it.
+    grace_s = 0.1 * max(0, 20 - path.count("/"))
+    return Overdue(tell=tell, abandon=abandon, abandon_after_s=execution.abandon_after_s + grace_s)
 
 
 def explain(child: Node, left: Left) -> Cause:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 from engine import concurrency, machine
 from engine.document import behavior as document
@@ -12,9 +13,11 @@ from engine.document.expression import compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
 from engine.errors import DocumentError
+from engine.foreach import ForEach
 from engine.leaf import Leaf
 from engine.nearness import near_names
-from engine.node import Node, Retry, Timeout, Work
+from engine.node import Guard, Node, Retry, Timeout, Work
+from engine.priority import Priority
 from engine.reference import Reference
 from engine.registry import state_by_path
 from engine.state import State
@@ -33,6 +36,22 @@ class Plan:
     success: tuple[str, ...]
     parameters: Mapping[str, Parameter]
     userdata: Mapping[str, object]
+
+    @cached_property
+    def nodes(self) -> Mapping[str, Node]:
+        """All nodes by path, in document order, those of referred behaviors included."""
+        found: dict[str, Node] = {}
+        due = [self.root]
+        while due:
+            node = due.pop()
+            found[node.path] = node
+            due += reversed(list(node.work.children.values()))
+        return found
+
+    def outcomes_of(self, path: str) -> tuple[str, ...] | None:
+        """Return the outcomes that the node at `path` can have; None where there is no such node."""
+        node = self.nodes.get(path)
+        return node.work.outcomes if node is not None else None
 
     def checked_parameters(self, given: Mapping[str, object]) -> dict[str, object]:
         """Return a value for every parameter.
@@ -85,6 +104,8 @@ class _Planner:
             "state": self._leaf,
             "machine": self._machine,
             "concurrency": self._concurrency,
+            "priority": self._priority,
+            "foreach": self._foreach,
             "behavior": self._reference,
         }
         if node.kind not in makers:
@@ -98,15 +119,43 @@ class _Planner:
             timeout=_timeout(node.timeout),
             retry=_retry(node.retry) if node.retry else None,
             on_error=node.on_error,
+            guard=_guard(node.guard),
+            autonomy=node.autonomy,
+            resume=node.resume,
             position=str(self.behavior.position(inside)),
         )
 
     def _children(self, inside: str, node: nodes.Node) -> dict[str, Node]:
         return {name: self.node(name, f"{inside}/{name}", child) for name, child in node.children.items()}
 
-    def _machine(self, inside: str, node: nodes.Node) -> Work:
-        initial = node.machine.initial if node.machine else ""
-        return machine.Machine(initial=initial, children=self._children(inside, node), userdata=node.userdata)
+    def _machine(self, inside: str, node: nodes.Node) -> machine.Machine:
+        states = node.sequential
+        return machine.Machine(
+            initial=states.initial if states else "",
+            children=self._children(inside, node),
+            userdata=node.userdata,
+            kind=node.kind,
+        )
+
+    def _priority(self, inside: str, node: nodes.Node) -> Work:
+        return Priority(machine=self._machine(inside, node))
+
+    def _foreach(self, inside: str, node: nodes.Node) -> Work:
+        rounds = node.foreach
+        if rounds is None:
+            raise DocumentError("a foreach without its keys", where=self.behavior.position(inside))
+        child = self._children(inside, node)["child"]
+        return ForEach(
+            child=child,
+            items=compile_template(rounds.items if rounds.items is not None else rounds.times),
+            counted=rounds.items is None,
+            item=rounds.item,
+            index=rounds.index,
+            next=frozenset(rounds.next) or child.work.nominal,
+            collect=rounds.collect,
+            userdata=rounds.userdata,
+            position=str(self.behavior.position(inside)),
+        )
 
     def _concurrency(self, inside: str, node: nodes.Node) -> Work:
         container = node.concurrency
@@ -126,6 +175,7 @@ class _Planner:
             parameters=compile_template(node.parameters),
             inputs=node.inputs,
             outputs=node.outputs,
+            autonomy=node.autonomy,
             position=str(self.behavior.position(inside)),
         )
 
@@ -156,6 +206,12 @@ def _timeout(timeout: nodes.Timeout | None) -> Timeout | None:
     if timeout is None or timeout.to is None:
         return None
     return Timeout(after_s=timeout.after_s, target=timeout.to)
+
+
+def _guard(guard: nodes.Guard | None) -> Guard | None:
+    if guard is None or guard.to is None:
+        return None
+    return Guard(when=compile_template(guard.when), target=guard.to)
 
 
 def _retry(retry: nodes.Retry) -> Retry:

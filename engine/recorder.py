@@ -4,50 +4,31 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from typing import Protocol
 
 from engine.clock import Clock
 from engine.event import Event
+from engine.journal import RunJournal
 
 Watcher = Callable[[Event], None]
 _log = logging.getLogger("flexcell.run")
 
 
-class EventSink(Protocol):
-    """Where events are kept durably; the journal is one."""
-
-    def append(self, event: Event) -> None:
-        """Take an event; cheap, not yet durable."""
-        ...
-
-    async def commit(self) -> None:
-        """Return when everything appended before is durable.
-
-        Raises:
-            JournalError: it cannot be written; the run must stop.
-        """
-        ...
-
-
-class MemorySink:
-    """Keeps nothing durably; for runs that nobody wants to resume."""
-
-    def append(self, event: Event) -> None:
-        """Forget the event."""
-
-    async def commit(self) -> None:
-        """Return at once."""
-
-
 class Recorder:
-    """Numbers and hands on the events of one run, on the loop thread."""
+    """Numbers and hands on the events of one run, on the loop thread.
 
-    def __init__(self, clock: Clock, sink: EventSink) -> None:
+    Args:
+        clock: The run's time.
+        journal: Where events are kept durably.
+        after_seq: The number of the last event of a run that goes on.
+        after_s: The time of that event.
+    """
+
+    def __init__(self, clock: Clock, journal: RunJournal, *, after_seq: int = 0, after_s: float = 0.0) -> None:
         self._clock_now_s = clock.now_s
-        self._sink = sink
-        self._start_s = clock.now_s()
+        self._journal = journal
+        self._start_s = clock.now_s() - after_s
         self._watchers: tuple[Watcher, ...] = ()
-        self._seq = 0
+        self._seq = after_seq
 
     def now_s(self) -> float:
         """Seconds since the run began, to the microsecond so that equal instants print equally."""
@@ -61,7 +42,7 @@ class Recorder:
 
     def record(self, event: Event) -> None:
         """Take an event made with `next_seq` and `now_s`."""
-        self._sink.append(event)
+        self._journal.append(event)
         for watcher in self._watchers:
             try:
                 watcher(event)
@@ -80,4 +61,4 @@ class Recorder:
 
     async def commit(self) -> None:
         """Make what was recorded durable; due before any effect leaves the engine."""
-        await self._sink.commit()
+        await self._journal.commit()

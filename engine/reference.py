@@ -59,6 +59,16 @@ class Reference:
         """The key of this node in documents."""
         return "behavior"
 
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The root of the other behavior."""
+        return {"root": self.target.root}
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """Those its document declares."""
+        return self.target.outcomes
+
     @cached_property
     def nominal(self) -> frozenset[str]:
         """The outcomes its document calls success; all of them where it does not say."""
@@ -74,9 +84,11 @@ class Reference:
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run the other behavior to one of its outcomes and copy out what `outputs` names."""
-        inner = Scope(path, {**self.target.userdata, **entry.inputs})
+        values = entry.point.values if entry.point is not None else {**self.target.userdata, **entry.inputs}
+        inner = Scope(path, values)
         left = await self.target.root.perform(inner, execution)
         name = left.target or left.outcome
         for key, outer in self.outputs.items():
-            scope.write(outer, inner.read(key, reader=self.position))
+            value = inner.read(key, reader=self.position)
+            execution.record_write(path, scope.write(outer, value), outer, value)
         return Outcome(name, cause=None if name in self.nominal else explain(self.target.root, left))

@@ -65,9 +65,31 @@ class Robot(Protocol):
 class World(Robot, Protocol):
     """Simulated surroundings: makes the simulated robots and publishes scene, frames and parts.
 
-    On a `VirtualLoop` it attaches itself to the loop while it is open and is stepped by it.
+    A cell that was killed goes on in a new world, brought to where the old one was: `snapshot`, then
+    `restore`. On a `VirtualLoop` it attaches itself to the loop while it is open and is stepped by it.
     """
 
     def robots(self) -> tuple[Robot, ...]:
         """The simulated robots and grippers that live in this world, not yet connected."""
+        ...
+
+    def snapshot(self) -> bytes:
+        """Return everything needed to go on from here; in real time it may be a few milliseconds old.
+
+        Cheap enough for every commit of a journal. Equal states give equal bytes.
+
+        Raises:
+            RobotError: the world is not open.
+        """
+        ...
+
+    async def restore(self, snapshot: bytes) -> None:
+        """Bring everything to where `snapshot` was made, at rest; world and robots are connected.
+
+        Whatever moved stands still there, and what a gripper held it still holds.
+
+        Raises:
+            RobotError: something moves, the world is gone, or these bytes are no snapshot of this very
+                world: damaged, or of another cell, seed or version.
+        """
         ...

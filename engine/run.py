@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import asyncio
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
 
 from engine.bus import SkillBus
 from engine.cause import cause_of, under
-from engine.errors import FlexcellError, JournalError
-from engine.event import Cause, RunEnded, RunStarted, StopRequested
+from engine.checkpoint import Checkpoint
+from engine.control import Control, Gate
+from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.event import Cause, Commanded, Exited, RunEnded, RunResumed, RunStarted, StopRequested
 from engine.execution import Execution
+from engine.journal import NullRunJournal, RunJournal
 from engine.node import Left, explain, log
 from engine.plan import Plan
-from engine.recorder import EventSink, MemorySink, Recorder, Watcher
+from engine.recorder import Recorder, Watcher
 from engine.skill_port import BusPort, SkillPort
+from engine.supervision import Supervision
+from engine.suspension import Suspensions
 from engine.userdata import Scope
 
 
@@ -33,10 +38,29 @@ class RunResult:
     cause: Cause | None
     duration_s: float
     userdata: Mapping[str, object]
+    abandoned: tuple[str, ...] = ()
+    """States that did not end when told to; what they command may still move and stays leased."""
 
 
 class Run:
-    """One execution of one plan on a bus; made and used on the loop thread."""
+    """One execution of one plan on a bus; made and used on the loop thread.
+
+    Args:
+        plan: What is executed.
+        run: Its id.
+        bus: Where its skills are; its clock is the run's.
+        parameters: Values for the behavior's parameters.
+        inputs: Initial values of userdata keys that the behavior declares.
+        seed: Of its random numbers.
+        journal: Where its events are kept durably; nowhere by default.
+        skills: Stands in for the bus where robots are recorded, or faults injected.
+        supervision: Operator, autonomy, breakpoints, time-outs.
+        checkpoint: The moment to go on from; of this run after a crash, or of another one.
+        instant_limit: Transitions in a row in which nothing is waited for before a loop is reported.
+
+    Raises:
+        DocumentError: a parameter or input is not acceptable.
+    """
 
     def __init__(
         self,
@@ -47,8 +71,10 @@ class Run:
         parameters: Mapping[str, object] | None = None,
         inputs: Mapping[str, object] | None = None,
         seed: int = 0,
-        journal: EventSink | None = None,
+        journal: RunJournal | None = None,
         skills: SkillPort | None = None,
+        supervision: Supervision | None = None,
+        checkpoint: Checkpoint | None = None,
         instant_limit: int = 10_000,
     ) -> None:
         self.id = run
@@ -56,20 +82,63 @@ class Run:
         self.seed = seed
         self.parameters = plan.checked_parameters(parameters or {})
         self._inputs = plan.checked_inputs(inputs or {})
-        self._recorder = Recorder(bus.clock, journal or MemorySink())
+        self._supervision = supervision or Supervision()
+        self._checkpoint = checkpoint
+        self._goes_on = checkpoint is not None and checkpoint.run == run
+        self._recorder = Recorder(
+            bus.clock,
+            journal or NullRunJournal(run_id=run),
+            after_seq=checkpoint.seq if checkpoint is not None and self._goes_on else 0,
+            after_s=checkpoint.time_s if checkpoint is not None and self._goes_on else 0.0,
+        )
+        suspensions = Suspensions()
         self._execution = Execution(
             run=run,
             bus=bus,
             clock=bus.clock,
             recorder=self._recorder,
-            random=random.Random(seed),
+            random=random.Random(seed if checkpoint is None else f"{seed} after {checkpoint.seq}"),
             skills=skills or BusPort(bus),
+            suspensions=suspensions,
+            gate=Gate(self._recorder, suspensions),
             instant_limit=instant_limit,
+            abandon_after_s=self._supervision.abandon_after_s,
         )
+        if checkpoint is not None:
+            self._execution.points = dict(checkpoint.points)
+            self._execution.visits = dict(checkpoint.visits)
         self._task: asyncio.Task[Left] | None = None
         self._stop_reason: str | None = None
+        self._begun = False
         self._ended = False
         self._cancelled = False
+        self._given_up: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._patience: asyncio.TimerHandle | None = None
+        self._control = self._new_control()
+
+    @property
+    def control(self) -> Control:
+        """What an operator can do with this run, from its making to its end."""
+        self._begin()
+        return self._control
+
+    @property
+    def recorder(self) -> Recorder:
+        """The event log, for what has to be told of the run from outside."""
+        return self._recorder
+
+    @property
+    def ended(self) -> bool:
+        """True once it is over."""
+        return self._ended
+
+    def outcomes(self, path: str) -> Sequence[str] | None:
+        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        return self.plan.outcomes_of(path)
+
+    def paths(self) -> Sequence[str]:
+        """Return the paths of all nodes."""
+        return tuple(self.plan.nodes)
 
     def watch(self, watcher: Watcher) -> None:
         """Call `watcher` with every event of this run, on the loop thread."""
@@ -78,14 +147,20 @@ class Run:
     def stop(self, reason: str) -> None:
         """Preempt everything; `execute` returns when all clean-up is done and the robots rest.
 
-        Before the start it prevents the start; later calls and calls after the end do nothing.
+        A stop beats pause, lock and autonomy. Before the start it prevents the start; later calls
+        are recorded and change nothing; calls after the end do nothing.
         """
-        if self._stop_reason is not None or self._ended:
+        if self._ended:
             return
-        self._stop_reason = reason
+        first = self._stop_reason is None
+        self._stop_reason = self._stop_reason or reason
         if self._task is not None:
             self._record_stop(reason)
-            self._task.cancel()
+            if first:
+                self._task.cancel()
+                # A little longer than any container inside waits for its children.
+                patience_s = self._supervision.abandon_after_s + 2.5
+                self._patience = self._task.get_loop().call_later(patience_s, self._give_up)
 
     async def execute(self) -> RunResult:
         """Run to the end and report it; never raises for what happens inside the behavior.
@@ -93,16 +168,17 @@ class Run:
         Cancelling this call stops the run and waits for its clean-up before CancelledError goes on.
         """
         started_s = self._execution.clock.now_s()
-        scope = Scope("", {**self.plan.userdata, **self._inputs}, Scope("parameters", self.parameters))
-        self._record_start()
+        self._begin()
+        before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
+        scope = Scope("", {**before, **self._inputs}, Scope("parameters", self.parameters))
         status, left, cause = await self._perform(scope)
-        await self._execution.bus.cancel_goals(self.id)
-        self._execution.bus.leases.release_run(self.id)
+        await self._release()
         outcome = (left.target or left.outcome) if left is not None else None
         success = outcome in self.plan.success
         if left is not None and not success:
             cause = explain(self.plan.root, left)
         self._ended = True
+        self._control.close()
         cause = await self._record_end(status, outcome, cause)
         if self._cancelled:
             raise asyncio.CancelledError
@@ -115,35 +191,122 @@ class Run:
             cause=cause,
             duration_s=round(self._execution.clock.now_s() - started_s, 6),
             userdata=scope.own_values(),
+            abandoned=tuple(self._execution.abandoned),
         )
 
     async def _perform(self, scope: Scope) -> tuple[str, Left | None, Cause | None]:
         if self._stop_reason is not None:
             self._record_stop(self._stop_reason)
             return "stopped", None, self._stopped()
-        self._task = asyncio.create_task(self.plan.root.perform(scope, self._execution), name=f"run {self.id}")
-        while True:
+        root = self.plan.root
+        self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
+        try:
+            while not self._task.done():
+                try:
+                    await asyncio.wait({self._task, self._given_up}, return_when=asyncio.FIRST_COMPLETED)
+                except asyncio.CancelledError:
+                    self._cancelled = True
+                    self.stop("the process that ran it was stopped")
+                    continue
+                if not self._task.done():
+                    return "errored", None, self._abandon(self._task)
+        finally:
+            if self._patience is not None:
+                self._patience.cancel()
+        return self._told(self._task)
+
+    def _told(self, task: asyncio.Task[Left]) -> tuple[str, Left | None, Cause | None]:
+        try:
+            return "finished", task.result(), None
+        except asyncio.CancelledError:
+            return "stopped", None, self._stopped()
+        except FlexcellError as error:
+            cause = cause_of(error)
+            if self._stop_reason is not None and not self._execution.abandoned:
+                return "stopped", None, under(self._stopped().message, cause, kind="Stopped")
+            return "errored", None, cause
+        except Exception as error:
+            # A custom state may raise anything; it ends the run with its cause, not the engine.
+            log(self._execution, self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
+            return "errored", None, cause_of(error)
+
+    def _give_up(self) -> None:
+        if not self._given_up.done():
+            self._given_up.set_result(None)
+
+    def _abandon(self, task: asyncio.Task[Left]) -> Cause:
+        waited_s = self._supervision.abandon_after_s
+        leaves = [path for path in self._execution.activity.nodes if not self.plan.nodes[path].work.children]
+        for path in leaves:
+            self._execution.abandon(task, path, waited_s)
+        error = NotStopped(
+            f"{', '.join(leaves) or 'the run'} did not stop within {waited_s:g} s and was abandoned",
+            where=self.plan.root.path,
+            hint="let the state's clean-up end, and CancelledError pass",
+        )
+        return cause_of(error)
+
+    async def _release(self) -> None:
+        """Cancel the goals that are left and give the resources back, however often we are cancelled meanwhile."""
+        if self._execution.abandoned:
+            return
+        cancelling = asyncio.create_task(self._execution.bus.cancel_goals(self.id), name=f"goals of run {self.id}")
+        while not cancelling.done():
             try:
-                await asyncio.wait({self._task})
+                await asyncio.wait({cancelling})
             except asyncio.CancelledError:
                 self._cancelled = True
-                self.stop("the process that ran it was stopped")
-                continue
-            try:
-                return "finished", self._task.result(), None
-            except asyncio.CancelledError:
-                return "stopped", None, self._stopped()
-            except FlexcellError as error:
-                if self._stop_reason is not None:
-                    return "stopped", None, under(self._stopped().message, cause_of(error), kind="Stopped")
-                return "errored", None, cause_of(error)
-            except Exception as error:
-                # A custom state may raise anything; it ends the run with its cause, not the engine.
-                log(self._execution, self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
-                return "errored", None, cause_of(error)
+        self._execution.bus.leases.release_run(self.id)
+        cancelling.result()
 
     def _stopped(self) -> Cause:
         return Cause(message=f"stopped: {self._stop_reason or 'cancelled'}", where=self.plan.root.path, kind="Stopped")
+
+    def _new_control(self) -> Control:
+        control = Control(
+            gate=self._execution.gate,
+            suspensions=self._execution.suspensions,
+            activity=self._execution.activity,
+            recorder=self._recorder,
+            structure=self,
+            stop=self.stop,
+            demanded=self._supervision.demand_operator,
+            loss_policy=self._supervision.loss_policy,
+            loss_timeout_s=self._supervision.loss_timeout_s,
+        )
+        gate = self._execution.gate
+        gate.autonomy = self._supervision.autonomy
+        gate.breakpoints = self._supervision.breakpoints
+        gate.arm()
+        return control
+
+    def _begin(self) -> None:
+        """Record the first events, once: before any command, watcher or node."""
+        if self._begun:
+            return
+        self._begun = True
+        checkpoint = self._checkpoint
+        if checkpoint is not None and self._goes_on:
+            self._record_resumed(checkpoint)
+        else:
+            self._record_start()
+            if checkpoint is not None:
+                arguments: dict[str, object] = {"run": checkpoint.run, "seq": checkpoint.seq}
+                self._command("start_from", list(checkpoint.rerun), arguments)
+        if self._supervision.start_paused:
+            self._control.pause()
+
+    def _command(self, command: str, paths: Sequence[str], arguments: dict[str, object]) -> None:
+        recorder = self._recorder
+        recorder.record(
+            Commanded(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                command=command,
+                path=", ".join(paths),
+                arguments=arguments,
+            )
+        )
 
     def _record_start(self) -> None:
         self._recorder.record(
@@ -153,10 +316,34 @@ class Run:
                 behavior=self.plan.name,
                 document=self.plan.document_hash,
                 parameters=msgspec.to_builtins(dict(self.parameters)),
+                inputs=msgspec.to_builtins(self._inputs),
                 seed=self.seed,
                 clock="virtual" if self._execution.clock.virtual else "real",
             )
         )
+
+    def _record_resumed(self, checkpoint: Checkpoint) -> None:
+        recorder = self._recorder
+        recorder.record(
+            RunResumed(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                after_seq=checkpoint.seq,
+                epoch=checkpoint.epoch,
+                rerun=checkpoint.rerun,
+            )
+        )
+        for path, outcome in checkpoint.taken.items():
+            recorder.record(
+                Exited(
+                    seq=recorder.next_seq(),
+                    time_s=recorder.now_s(),
+                    path=path,
+                    visit=checkpoint.visits.get(path, 0),
+                    outcome=outcome,
+                    cause=checkpoint.points[path].cause,
+                )
+            )
 
     def _record_stop(self, reason: str) -> None:
         self._recorder.record(

@@ -91,6 +91,14 @@ class Context(Protocol):
         """Wait for the next message of a topic."""
         ...
 
+    async def offer(self, outcome: str) -> None:
+        """Return when the operator agrees to `outcome`, at once where the run's autonomy lets it pass.
+
+        A state that changes its mind cancels this call, which withdraws the question. Returning
+        the outcome afterwards asks no second time.
+        """
+        ...
+
     def log(self, message: str, *, level: str = "info") -> None:
         """Write a line into the run's event log."""
         ...
@@ -115,6 +123,12 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def resources(self) -> tuple[str, ...]:
         """Names of the robots and devices this state commands; leased while it runs."""
         return ()
+
+    async def on_pause(self, ctx: Context) -> None:
+        """Come to rest; called while `run` goes on when the run is paused, beside holding its goals."""
+
+    async def on_resume(self, ctx: Context) -> None:
+        """Go on after a pause."""
 
     run: ClassVar[Callable[..., Coroutine[Any, Any, Outcome]]]
     """Do the step: subclasses write `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""

@@ -78,11 +78,11 @@ class Motion(Protocol):
         ...
 
     async def hold(self) -> None:
-        """Decelerate on the path and return when at rest."""
+        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
         ...
 
     async def resume(self) -> None:
-        """Go on along the path; returns when moving again."""
+        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
         ...
 
     def cancel(self) -> None:

@@ -18,7 +18,7 @@ from engine.clock import new_clock
 from engine.document import parse_behavior
 from engine.journal import Journal
 from engine.plan import Plan, new_plan
-from engine.recorder import EventSink
+from engine.journal import RunJournal
 from engine.run import Run
 from engine.state import Context, Outcome, State
 
@@ -92,7 +92,7 @@ def journaled_chain(watch: Stopwatch, states: int) -> Sample:
     number = itertools.count()
     with tempfile.TemporaryDirectory() as folder, Journal.open(folder) as journal:
 
-        def begin() -> EventSink:
+        def begin() -> RunJournal:
             return journal.begin(f"run-{next(number)}", behavior="bench", document=plan.document_hash, started_unix_s=0)
 
         return asyncio.run(_measured(watch, plan, states, begin))
@@ -161,13 +161,13 @@ def load(watch: Stopwatch, states: int) -> Sample:
 
 
 async def _measured(
-    watch: Stopwatch, plan: Plan, units: int, begin: Callable[[], EventSink | None] = lambda: None
+    watch: Stopwatch, plan: Plan, units: int, begin: Callable[[], RunJournal | None] = lambda: None
 ) -> Sample:
     bus = SkillBus(new_clock())
     return await watch.measure_async(units, lambda: _run(plan, bus, begin()))
 
 
-async def _run(plan: Plan, bus: SkillBus, journal: EventSink | None = None) -> None:
+async def _run(plan: Plan, bus: SkillBus, journal: RunJournal | None = None) -> None:
     result = await Run(plan, run="bench", bus=bus, journal=journal).execute()
     if result.status != "finished":
         raise AssertionError(f"the benchmark's run ended {result.status}: {result.cause}")

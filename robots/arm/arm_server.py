@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from types import TracebackType
 from typing import Self
 
@@ -26,14 +25,17 @@ from engine.skills.motion import (
 )
 from robots.arm.planner import ArmPlanner
 from robots.arm.tool_frames import WORLD, ToolFrames
+from robots.attend import attend
+from robots.gripper.grip_judgement import Grip
 from robots.gripper.gripper_server import GripperServer
 from robots.model.kinematics import ArmKinematics
 from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
-from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, Tolerance
+from robots.port import ArmPort, Array, JointTrajectory, Motion, Tolerance
 
-FEEDBACK_S = 0.05
 _REST_RAD_S = 0.02
+# How long a moving arm may take to come to rest, and how often that is looked at.
+_BRAKING_S, _LOOK_S = 2.0, 0.01
 
 
 class ArmServer:
@@ -114,6 +116,16 @@ class ArmServer:
             licence=model.licence,
         )
 
+    def grips(self) -> dict[str, Grip]:
+        """What the gripper was told to grasp and hold, by its name; empty when nothing."""
+        gripper = self._gripper
+        return {} if gripper is None or gripper.grip is None else {gripper.name: gripper.grip}
+
+    def recall(self, grips: Mapping[str, Grip]) -> None:
+        """Judge by `grips` from now on whether the gripper holds what it was told to grasp."""
+        if self._gripper is not None:
+            self._gripper.grip = grips.get(self._gripper.name)
+
     async def stop(self) -> None:
         """Cancel what arm and gripper do; return when the arm is measured at rest.
 
@@ -131,17 +143,25 @@ class ArmServer:
             # The arm brakes first and is waited for, whatever becomes of the fingers.
             if motion is not None:
                 await motion.report()
-        if self._status is DeviceStatus.DISCONNECTED:
-            return
-        speed = np.abs(self._port.sample().velocity_rad_s)
-        fastest = int(np.argmax(speed))
-        if speed[fastest] > _REST_RAD_S:
-            self._status = DeviceStatus.FAULT
-            raise RobotError(
-                f"{self._model.arm_joints[fastest]} still moves at {speed[fastest]:.3f} rad/s after the stop",
-                where=self._name,
-                hint="use the emergency stop",
-            )
+        if self._status is not DeviceStatus.DISCONNECTED:
+            await self._confirm_rest()
+
+    async def _confirm_rest(self) -> None:
+        """Return when the arm is measured at rest; whoever else moved it is being stopped as well."""
+        patience_s = self._clock.now_s() + _BRAKING_S
+        while True:
+            speed = np.abs(self._port.sample().velocity_rad_s)
+            fastest = int(np.argmax(speed))
+            if speed[fastest] <= _REST_RAD_S:
+                return
+            if self._clock.now_s() >= patience_s:
+                self._status = DeviceStatus.FAULT
+                raise RobotError(
+                    f"{self._model.arm_joints[fastest]} still moves at {speed[fastest]:.3f} rad/s after the stop",
+                    where=self._name,
+                    hint="use the emergency stop",
+                )
+            await self._clock.sleep(_LOOK_S)
 
     async def __aenter__(self) -> Self:
         names = self._port.joint_names
@@ -242,26 +262,10 @@ class ArmServer:
         except RobotError as error:
             raise SkillFailed("the motion was not started", where=handle.address) from error
         self._motion = motion
-        handle.on_cancel(motion.cancel)
-        handle.on_hold(motion.hold)
-        handle.on_resume(motion.resume)
-        report = asyncio.ensure_future(motion.report())
         try:
-            while not (await asyncio.wait((report,), timeout=FEEDBACK_S))[0]:
-                tell(motion)
+            await attend(motion, handle, tell=lambda: tell(motion), device=self._name, words="the arm")
         finally:
-            # Also when this task is cancelled, the goal ends with the arm at rest.
-            if not report.done():
-                motion.cancel()
-                await asyncio.wait((report,))
             self._motion = None
-        end = report.result()
-        tell(motion)
-        if end.end is MotionEnd.FAILED:
-            cause = RobotError(end.reason or "the port gives no reason", where=self._name)
-            raise SkillFailed("the arm stopped before the goal", where=handle.address) from cause
-        if end.end is MotionEnd.CANCELED and not handle.cancel_requested:
-            raise SkillFailed("the arm was told to stop", where=handle.address)
         return self._clock.now_s() - started_s
 
     def _measured(self) -> tuple[float, ...]:

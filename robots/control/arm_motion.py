@@ -28,6 +28,7 @@ class _Following:
     ending: MotionEnd | None = None
     reason: str = ""
     hold: bool = False
+    request: int = 0
     told_held: bool = False
     tell_resumed: bool = False
     waited_s: float = 0.0
@@ -52,7 +53,8 @@ class ArmMotion:
         self.acceleration = np.zeros(len(joints))
 
     def initialize(self, position: Array) -> None:
-        """Hold `position` from now on."""
+        """Hold `position` from now on; whatever ran is forgotten."""
+        self._following, self._give_way, self._rest_s = None, None, 0.0
         self.position[:] = position
         self._stand_still()
 
@@ -71,15 +73,18 @@ class ArmMotion:
         playback = Playback(trajectory, acceleration_rad_s2=self._acceleration_limit)
         self._following = _Following(number=number, playback=playback, tolerance=tolerance)
 
-    def hold(self, number: int) -> None:
+    def hold(self, number: int, *, request: int = 0) -> None:
         """Decelerate on the path."""
-        if self._following and self._following.number == number:
-            self._following.hold, self._following.told_held, self._following.tell_resumed = True, False, False
+        following = self._following
+        if following and following.number == number:
+            following.hold, following.told_held, following.tell_resumed = True, False, False
+            following.request = request
 
-    def resume(self, number: int) -> None:
+    def resume(self, number: int, *, request: int = 0) -> None:
         """Go on along the path."""
-        if self._following and self._following.number == number:
-            self._following.hold, self._following.tell_resumed = False, True
+        following = self._following
+        if following and following.number == number:
+            following.hold, following.tell_resumed, following.request = False, True, request
 
     def cancel(self, number: int) -> None:
         """Decelerate on the path, then end as canceled."""
@@ -137,7 +142,7 @@ class ArmMotion:
         playback = following.playback
         if following.tell_resumed and (playback.pace > 0.0 or playback.at_end):
             following.tell_resumed = False
-            return (MotionResumed(motion=following.number),)
+            return (MotionResumed(motion=following.number, request=following.request),)
         if not playback.stopped:
             return ()
         if following.ending is not None:
@@ -146,7 +151,7 @@ class ArmMotion:
             if not at_rest or following.told_held:
                 return ()
             following.told_held = True
-            return (MotionHeld(motion=following.number),)
+            return (MotionHeld(motion=following.number, request=following.request),)
         return self._settle(following, step_s, position, at_rest)
 
     def _settle(

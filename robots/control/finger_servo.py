@@ -18,6 +18,20 @@ _FORCE_SHARE = 0.95
 _PATIENCE_S = 2.0
 
 
+@dataclass(frozen=True, kw_only=True)
+class FingerCommand:
+    """What the fingers do without a motion: go to `target_m` and press with at most `force_n`.
+
+    `set_m` is how far the set point has come; against an object it stays ahead of the opening by
+    what the force needs.
+    """
+
+    set_m: float
+    target_m: float
+    speed_m_s: float
+    force_n: float
+
+
 @dataclass(kw_only=True)
 class _Closing:
     """The motion under way."""
@@ -27,6 +41,7 @@ class _Closing:
     start_m: float
     deadline_s: float
     hold: bool = False
+    request: int = 0
     told_held: bool = False
     tell_resumed: bool = False
     cancel: bool = False
@@ -52,6 +67,18 @@ class FingerServo:
         """Keep the opening `width_m` from now on."""
         self._set_m = self._target_m = width_m
         self._limit_n = self._gripper.max_force_n
+
+    @property
+    def command(self) -> FingerCommand:
+        """What would go on if the motion under way, if any, were cancelled now."""
+        target = self._target_m if self._closing is None else self._set_m
+        return FingerCommand(set_m=self._set_m, target_m=target, speed_m_s=self._speed_m_s, force_n=self._limit_n)
+
+    def take_over(self, command: FingerCommand) -> None:
+        """Do from now on what another servo did; whatever ran is forgotten."""
+        self._closing, self._rest_s = None, 0.0
+        self._set_m, self._target_m = command.set_m, command.target_m
+        self._speed_m_s, self._limit_n = command.speed_m_s, command.force_n
 
     @property
     def number(self) -> int:
@@ -84,15 +111,18 @@ class FingerServo:
         patience = abs(target - now_m) / speed + _PATIENCE_S
         self._closing = _Closing(number=number, target_m=target, start_m=now_m, deadline_s=patience)
 
-    def hold(self, number: int) -> None:
+    def hold(self, number: int, *, request: int = 0) -> None:
         """Stop the fingers on their way."""
-        if self._closing and self._closing.number == number:
-            self._closing.hold, self._closing.told_held, self._closing.tell_resumed = True, False, False
+        closing = self._closing
+        if closing and closing.number == number:
+            closing.hold, closing.told_held, closing.tell_resumed = True, False, False
+            closing.request = request
 
-    def resume(self, number: int) -> None:
+    def resume(self, number: int, *, request: int = 0) -> None:
         """Let the fingers go on."""
-        if self._closing and self._closing.number == number:
-            self._closing.hold, self._closing.tell_resumed = False, True
+        closing = self._closing
+        if closing and closing.number == number:
+            closing.hold, closing.tell_resumed, closing.request = False, True, request
 
     def cancel(self, number: int) -> None:
         """Stop the fingers where they are and end as canceled."""
@@ -127,7 +157,7 @@ class FingerServo:
         if closing.tell_resumed:
             closing.tell_resumed = False
             self._rest_s = 0.0
-            return (MotionResumed(motion=closing.number),)
+            return (MotionResumed(motion=closing.number, request=closing.request),)
         if closing.cancel:
             if at_rest:
                 self._target_m = self._set_m
@@ -137,7 +167,7 @@ class FingerServo:
             if not at_rest or closing.told_held:
                 return ()
             closing.told_held = True
-            return (MotionHeld(motion=closing.number),)
+            return (MotionHeld(motion=closing.number, request=closing.request),)
         arrived = self._set_m == closing.target_m and abs(width_m - closing.target_m) < _AT_WIDTH_M
         pressing = abs(self.force_n) >= _FORCE_SHARE * self._limit_n
         if at_rest and (arrived or pressing):

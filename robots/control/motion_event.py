@@ -23,11 +23,15 @@ class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
 
 
 class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):
-    """It stands still on its path."""
+    """It stands still on its path; `request` is the number of the newest hold or resume that led to it."""
+
+    request: int = 0
 
 
 class MotionResumed(MotionEvent, frozen=True, kw_only=True, tag="resumed"):
-    """It is moving along its path again."""
+    """It is moving along its path again; `request` is the number of the newest hold or resume that led to it."""
+
+    request: int = 0
 
 
 AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed

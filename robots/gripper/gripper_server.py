@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected, RobotError, SkillFailed
 from engine.messages import GripperState
@@ -15,10 +13,10 @@ from engine.skills.gripper import (
     GripperOpen,
     ReadGripper,
 )
+from robots.attend import attend
 from robots.gripper.grip_judgement import Grip, judge
-from robots.port import GripperPort, GripperSample, Motion, MotionEnd
+from robots.port import GripperPort, GripperSample, Motion
 
-FEEDBACK_S = 0.05
 _MOVE_FORCE_N = 30.0
 _AT_WIDTH_M = 0.002
 
@@ -30,7 +28,8 @@ class GripperServer:
         self.name = name
         self._port = port
         self._motion: Motion | None = None
-        self._grip: Grip | None = None
+        self.grip: Grip | None = None
+        """What it was told to grasp and hold; None once it was told otherwise."""
 
     @property
     def moving(self) -> bool:
@@ -62,14 +61,14 @@ class GripperServer:
     async def _grasp(self, goal: GripperGrasp, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
         self._refuse_beyond(goal.width_m, handle)
         handle.accept()
-        self._grip = Grip(
+        self.grip = Grip(
             least_m=goal.width_m - goal.tolerance_inner_m,
             most_m=goal.width_m + goal.tolerance_outer_m,
             force_n=goal.force_n,
         )
         await self._carry_out(0.0, goal.speed_m_s, goal.force_n, handle)
         sample = self._port.sample()
-        reason = judge(sample, self._grip)
+        reason = judge(sample, self.grip)
         return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason)
 
     async def _read(self, request: ReadGripper) -> GripperState:
@@ -78,11 +77,11 @@ class GripperServer:
             time_s=sample.time_s,
             width_m=sample.width_m,
             force_n=sample.force_n,
-            held=self._grip is not None and not judge(sample, self._grip),
+            held=self.grip is not None and not judge(sample, self.grip),
         )
 
     async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
-        self._grip = None
+        self.grip = None
         await self._carry_out(width_m, speed_m_s, _MOVE_FORCE_N, handle)
         sample = self._port.sample()
         if abs(sample.width_m - width_m) > _AT_WIDTH_M and not handle.cancel_requested:
@@ -111,26 +110,15 @@ class GripperServer:
             motion = self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n)
         except RobotError as error:
             raise SkillFailed("the fingers were not started", where=handle.address) from error
+
+        def tell() -> None:
+            handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))
+
         self._motion = motion
-        handle.on_cancel(motion.cancel)
-        handle.on_hold(motion.hold)
-        handle.on_resume(motion.resume)
-        report = asyncio.ensure_future(motion.report())
         try:
-            while not (await asyncio.wait((report,), timeout=FEEDBACK_S))[0]:
-                handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))
+            await attend(motion, handle, tell=tell, device=self.name, words="the gripper")
         finally:
-            # Also when this task is cancelled, the goal ends with the fingers at rest.
-            if not report.done():
-                motion.cancel()
-                await asyncio.wait((report,))
             self._motion = None
-        end = report.result()
-        if end.end is MotionEnd.FAILED:
-            cause = RobotError(end.reason or "the port gives no reason", where=self.name)
-            raise SkillFailed("the gripper did not finish", where=handle.address) from cause
-        if end.end is MotionEnd.CANCELED and not handle.cancel_requested:
-            raise SkillFailed("the gripper was told to stop", where=handle.address)
 
 
 def _touching(sample: GripperSample) -> str:

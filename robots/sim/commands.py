@@ -64,15 +64,17 @@ class CloseTo(Command, frozen=True, kw_only=True, tag="close_to"):
 
 
 class Hold(Command, frozen=True, kw_only=True, tag="hold"):
-    """Bring a motion to rest on its path."""
+    """Bring a motion to rest on its path; a motion's holds and resumes are numbered from 1 by the sender."""
 
     motion: int
+    request: int
 
 
 class Resume(Command, frozen=True, kw_only=True, tag="resume"):
     """Let a held motion go on."""
 
     motion: int
+    request: int
 
 
 class Cancel(Command, frozen=True, kw_only=True, tag="cancel"):
@@ -89,11 +91,26 @@ class ResetParts(Command, frozen=True, kw_only=True, tag="reset_parts"):
     """Put the free parts back where the scene has them, at rest."""
 
 
+class Restore(Command, frozen=True, kw_only=True, tag="restore"):
+    """Go to where an image of this world was made, at rest; `numbers` are float64 as in `ImageLayout`."""
+
+    numbers: bytes
+
+    @classmethod
+    def of(cls, image: Array) -> Restore:
+        """Return the command to go to `image`."""
+        return cls(numbers=_to_bytes(image))
+
+    def image(self) -> Array:
+        """Return the image it carries."""
+        return np.frombuffer(self.numbers)
+
+
 class Shutdown(Command, frozen=True, kw_only=True, tag="shutdown"):
     """Bring everything to rest, then end the world's process."""
 
 
-AnyCommand = Follow | CloseTo | Hold | Resume | Cancel | StopAll | ResetParts | Shutdown
+AnyCommand = Follow | CloseTo | Hold | Resume | Cancel | StopAll | ResetParts | Restore | Shutdown
 
 
 def _to_bytes(values: Array) -> bytes:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from robots.control.motion_event import AnyMotionEvent
+from robots.port import Array
 from robots.sim.commands import AnyCommand
 from robots.sim.snapshot import CellSummary, Snapshot
 
@@ -32,6 +33,18 @@ class Host(Protocol):
 
     def snapshot(self) -> Snapshot:
         """Its newest state."""
+        ...
+
+    def image(self) -> Array:
+        """Everything that its future depends on, now or a few steps ago, as `ImageLayout` has it."""
+        ...
+
+    async def restore(self, image: Array) -> None:
+        """Go to where an image of this world was made, at rest; nothing moves, and nothing is started meanwhile.
+
+        Raises:
+            RobotError: the world is gone.
+        """
         ...
 
     def send(self, command: AnyCommand) -> None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from engine.errors import RobotError
+from robots.port import Array
 from robots.sim.cell_model import build_cell
-from robots.sim.commands import AnyCommand
+from robots.sim.commands import AnyCommand, Restore
 from robots.sim.host import HostListener, StepHook
 from robots.sim.scene import Scene
 from robots.sim.simulation import Simulation
@@ -49,6 +52,19 @@ class LockstepHost:
         values = self.simulation.layout.new_array()
         self.simulation.write_snapshot(values)
         return Snapshot(self.simulation.layout, values)
+
+    def image(self) -> Array:
+        """Everything that the future depends on, after the last step."""
+        image = np.zeros(self.summary.image_size)
+        self.simulation.write_image(image)
+        return image
+
+    async def restore(self, image: Array) -> None:
+        """Go to where an image of this world was made, at rest."""
+        before = self.simulation.steps
+        self.simulation.apply(Restore.of(image))
+        # The world's clock jumps, the loop's does not.
+        self._start_steps += self.simulation.steps - before
 
     def send(self, command: AnyCommand) -> None:
         """Give a command, which acts from the next step on."""

@@ -10,8 +10,6 @@ from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHe
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands import AnyCommand, Cancel, Hold, Resume
 
-_Waiters = list[asyncio.Future[None]]
-
 
 class SimMotion:
     """One motion in a simulated world; implements `robots.port.Motion`."""
@@ -25,8 +23,8 @@ class SimMotion:
         self._last_progress = 0.0
         self._loop = asyncio.get_running_loop()
         self._end: asyncio.Future[MotionReport] = self._loop.create_future()
-        self._held: _Waiters = []
-        self._resumed: _Waiters = []
+        self._asked = 0
+        self._waiters: list[tuple[int, asyncio.Future[None]]] = []
 
     @property
     def ended(self) -> bool:
@@ -47,33 +45,35 @@ class SimMotion:
         return await asyncio.shield(self._end)
 
     async def hold(self) -> None:
-        """Decelerate on the path and return when at rest, or when the motion ended meanwhile."""
-        await self._ask(Hold(motion=self.number), self._held)
+        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
+        self._asked += 1
+        await self._ask(Hold(motion=self.number, request=self._asked))
 
     async def resume(self) -> None:
-        """Go on along the path and return when moving, or when the motion ended meanwhile."""
-        await self._ask(Resume(motion=self.number), self._resumed)
+        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
+        self._asked += 1
+        await self._ask(Resume(motion=self.number, request=self._asked))
 
     def cancel(self) -> None:
         """Ask to decelerate on the path; `report` then returns CANCELED once at rest."""
         if not self._end.done():
             self._send(Cancel(motion=self.number))
 
-    async def _ask(self, command: AnyCommand, waiters: _Waiters) -> None:
+    async def _ask(self, command: Hold | Resume) -> None:
         if self._end.done():
             return
-        answer: asyncio.Future[None] = self._loop.create_future()
-        waiters.append(answer)
         self._send(command)
+        answer: asyncio.Future[None] = self._loop.create_future()
+        self._waiters.append((command.request, answer))
         await answer
 
     def take(self, event: AnyMotionEvent) -> None:
         """Record what happened in the world."""
         match event:
             case MotionHeld() | MotionResumed():
-                # Of a hold and a resume close together only the last is told; it answers both.
-                _answer(self._held)
-                _answer(self._resumed)
+                # Of a hold and a resume close together only the last is told; it answers both. What was
+                # asked since then is not answered: it is still on its way to the world.
+                self._answer(event.request)
             case MotionFinished():
                 self._last_progress = event.progress
                 self.finish(MotionReport(end=MotionEnd(event.end), reason=event.reason))
@@ -82,8 +82,13 @@ class SimMotion:
         """End it; a second end is ignored."""
         if not self._end.done():
             self._end.set_result(report)
-        _answer(self._held)
-        _answer(self._resumed)
+        self._answer(self._asked)
+
+    def _answer(self, up_to: int) -> None:
+        for request, waiter in self._waiters:
+            if request <= up_to and not waiter.done():
+                waiter.set_result(None)
+        self._waiters = [entry for entry in self._waiters if not entry[1].done()]
 
 
 class MotionBoard:
@@ -94,15 +99,19 @@ class MotionBoard:
         self._motions: dict[int, SimMotion] = {}
         self._last_number = 0
         self.lost_reason = ""
+        self.closed_reason = ""
+        """Why no motion may start for now, empty when they may."""
 
     def next_number(self) -> int:
         """Return a number that no motion has had.
 
         Raises:
-            RobotError: the world is gone.
+            RobotError: the world is gone, or no motion may start for now.
         """
         if self.lost_reason:
             raise RobotError(self.lost_reason, hint="connect the cell again")
+        if self.closed_reason:
+            raise RobotError(self.closed_reason, hint="wait a moment")
         self._last_number += 1
         return self._last_number
 
@@ -130,10 +139,3 @@ class MotionBoard:
         for motion in motions.values():
             motion.finish(MotionReport(end=MotionEnd.FAILED, reason=reason))
         self._on_lost(reason)
-
-
-def _answer(waiters: _Waiters) -> None:
-    for waiter in waiters:
-        if not waiter.done():
-            waiter.set_result(None)
-    waiters.clear()

@@ -33,6 +33,7 @@ class Physics:
         self._wrench = np.zeros(6)
         self.step_s = float(model.opt.timestep)
         self.dof_count = int(model.nv)
+        self.state_size = int(mujoco.mj_stateSize(model, self._state_kind))
         self.geom_body: list[int] = model.geom_bodyid.tolist()
         self.positions: Array = self._data.qpos
         self.velocities: Array = self._data.qvel
@@ -86,8 +87,20 @@ class Physics:
         """Return positions (m, 3) and quaternions w x y z (m, 4) of bodies at the start of the last step."""
         return self._xpos[bodies], self._xquat[bodies]
 
+    def read_state(self, out: Array) -> None:
+        """Write everything that the future depends on, shape (`state_size`,)."""
+        mujoco.mj_getState(self._model, self._data, out, self._state_kind)
+
+    def rest_at(self, state: Array) -> None:
+        """Go to where a state was read, and stand still there."""
+        # What is no part of the state but left over from before must not reach the future either.
+        mujoco.mj_resetData(self._model, self._data)
+        mujoco.mj_setState(self._model, self._data, state, self._state_kind)
+        self.velocities[:] = 0.0
+        self.refresh()
+
     def state_hash(self) -> str:
         """Return the SHA-256 of everything that the future depends on."""
-        state = np.zeros(mujoco.mj_stateSize(self._model, self._state_kind))
-        mujoco.mj_getState(self._model, self._data, state, self._state_kind)
+        state = np.zeros(self.state_size)
+        self.read_state(state)
         return hashlib.sha256(state.tobytes()).hexdigest()

@@ -8,25 +8,28 @@ import signal
 import socket
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Callable
 from pathlib import Path
 
 import msgspec
 
 from engine.errors import CellError, RobotError
-from robots.sim.commands import AnyCommand, Shutdown
+from robots.port import Array
+from robots.sim.commands import AnyCommand, Restore, Shutdown
 from robots.sim.framing import FrameReader, framed
 from robots.sim.host import HostListener
 from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers, new_shared_file
 from robots.sim.snapshot import CellSummary, Snapshot, SnapshotLayout
 from robots.sim.timing import SIZE, Timing, timing_of
-from robots.sim.world_report import AnyReport, WorldReady, WorldRefused
+from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
 
 _START = "from robots.sim.process_main import main; main()"
 _ROOT = str(Path(__file__).resolve().parents[2])
 _START_S = 30.0
 _END_S = 6.0
+_RESTORE_S = 5.0
 
 
 class ProcessHost:
@@ -62,6 +65,21 @@ class ProcessHost:
         layout, state = self._opened()
         return Snapshot(layout, state.read())
 
+    def image(self) -> Array:
+        """Everything that the future depends on, at most a few steps ago; the last when the process is gone."""
+        layout, state = self._opened()
+        return state.read()[layout.size :]
+
+    async def restore(self, image: Array) -> None:
+        """Go to where an image of this world was made; returns when the process has confirmed it."""
+        self.send(Restore.of(image))
+        assert self._wire is not None
+        restored = self._wire.next_restored()
+        try:
+            await asyncio.wait_for(restored, _RESTORE_S)
+        except TimeoutError as error:
+            raise RobotError(f"the world's process did not restore its state within {_RESTORE_S:g} s") from error
+
     def send(self, command: AnyCommand) -> None:
         """Give a command; raises RobotError when the process is gone."""
         if self._wire is None or self._wire.lost_reason:
@@ -77,6 +95,7 @@ class ProcessHost:
         descriptors = (theirs.fileno(), state_fd, timing_fd)
         try:
             self._process = _started(descriptors)
+            # Closed before the process can be gone, else its end would not be heard.
             theirs.close()
             loop = asyncio.get_running_loop()
             _, wire = await loop.create_connection(lambda: _Wire(listener, self._how_it_ended), sock=ours)
@@ -84,14 +103,22 @@ class ProcessHost:
             wire.send(msgspec.msgpack.encode(self._scene))
             ready = await self._answer(wire)
             self._layout = SnapshotLayout(ready.summary)
-            self._state = SharedNumbers(state_fd, self._layout.size)
+            self._state = SharedNumbers(state_fd, self._layout.size + ready.summary.image_size)
+            # Read once, so that there is something whole to go back to should the process die in mid-write.
+            self._state.read()
             self._timing = SharedNumbers(timing_fd, SIZE)
             self.fifo = ready.fifo
         except BaseException:
             # Whatever went wrong, cancellation included, no process may be left behind.
-            self._kill()
+            wire, self._wire = self._wire, None
+            if wire is None:
+                ours.close()
+            else:
+                wire.first.cancel()
+            self._kill(wire)
             raise
         finally:
+            theirs.close()
             os.close(state_fd)
             os.close(timing_fd)
 
@@ -107,18 +134,21 @@ class ProcessHost:
     async def close(self) -> None:
         """Let everything come to rest and end the process; kill it when it does not end."""
         wire, self._wire = self._wire, None
-        if wire is not None:
-            wire.closing = True
-            if not wire.lost_reason:
-                wire.send(msgspec.msgpack.encode(Shutdown()))
-                await asyncio.wait((wire.gone,), timeout=_END_S)
-            wire.close()
-        self._kill()
+        try:
+            if wire is not None:
+                wire.closing = True
+                if not wire.lost_reason:
+                    wire.send(msgspec.msgpack.encode(Shutdown()))
+                    await asyncio.wait((wire.gone,), timeout=_END_S)
+        finally:
+            # Also when this is cancelled while it waits, no process may be left behind.
+            self._kill(wire)
 
-    def _kill(self) -> None:
+    def _kill(self, wire: _Wire | None) -> None:
+        """End the process, gently if it is about to end by itself."""
+        if wire is not None:
+            wire.close()
         if self._process is not None and self._process.poll() is None:
-            if self._wire is not None:
-                self._wire.close()
             try:
                 self._process.wait(timeout=0.2)
             except subprocess.TimeoutExpired:
@@ -156,6 +186,7 @@ class _Wire(asyncio.Protocol):
         self.gone: asyncio.Future[None] = loop.create_future()
         self.lost_reason = ""
         self.closing = False
+        self._restores: deque[asyncio.Future[None]] = deque()
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
@@ -164,10 +195,24 @@ class _Wire(asyncio.Protocol):
     def data_received(self, data: bytes) -> None:
         for message in self._reader.feed(data):
             report = self._decode(message)
-            if isinstance(report, WorldReady | WorldRefused):
-                self.first.set_result(report)
-            else:
-                self._listener.happened(report)
+            match report:
+                case WorldReady() | WorldRefused():
+                    self.first.set_result(report)
+                case WorldRestored():
+                    self._restored_first_in_line()
+                case _:
+                    self._listener.happened(report)
+
+    def next_restored(self) -> asyncio.Future[None]:
+        """Return what is done once the world has carried out one more restore."""
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._restores.append(future)
+        return future
+
+    def _restored_first_in_line(self) -> None:
+        future = self._restores.popleft()
+        if not future.done():
+            future.set_result(None)
 
     def connection_lost(self, exc: Exception | None) -> None:
         if not self.gone.done():
@@ -176,6 +221,9 @@ class _Wire(asyncio.Protocol):
         self.lost_reason = reason
         if not self.first.done():
             self.first.set_exception(RobotError(f"{reason} before it was ready"))
+        for future in self._restores:
+            if not future.done():
+                future.set_exception(RobotError(reason, hint="connect the cell again"))
         self._listener.lost(reason)
 
     def send(self, payload: bytes) -> None:

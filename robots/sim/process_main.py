@@ -11,16 +11,17 @@ import time
 from types import FrameType
 
 import msgspec
+import numpy as np
 
 from engine.errors import CellError
 from robots.sim.cell_model import build_cell
-from robots.sim.commands import AnyCommand, Shutdown, StopAll
+from robots.sim.commands import AnyCommand, Restore, Shutdown, StopAll
 from robots.sim.framing import FrameReader, framed
 from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers
 from robots.sim.simulation import Simulation
 from robots.sim.timing import SIZE, TimingCounter
-from robots.sim.world_report import AnyReport, WorldReady, WorldRefused
+from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
 
 _FIFO_PRIORITY = 20
 _READ_BYTES = 65536
@@ -89,9 +90,11 @@ class WorldLoop:
     def __init__(self, simulation: Simulation, channel: CommandChannel, *, state_fd: int, timing_fd: int) -> None:
         self._simulation = simulation
         self._channel = channel
-        self._shared = SharedNumbers(state_fd, simulation.layout.size)
+        # What is measured, and behind it the image, so that both are of one instant.
+        self._values = np.zeros(simulation.layout.size + simulation.image_layout.size)
+        self._image = self._values[simulation.layout.size :]
+        self._shared = SharedNumbers(state_fd, len(self._values))
         self._shared_timing = SharedNumbers(timing_fd, SIZE)
-        self._values = simulation.layout.new_array()
         self._timing = TimingCounter()
         self._ending_at: float | None = None
         self.publish()
@@ -104,6 +107,7 @@ class WorldLoop:
     def publish(self) -> None:
         """Write the present state where the parent reads it."""
         self._simulation.write_snapshot(self._values)
+        self._simulation.write_image(self._image)
         self._shared.write(self._values)
 
     def run(self) -> None:
@@ -126,10 +130,7 @@ class WorldLoop:
 
     def _tick(self) -> None:
         for command in self._channel.commands():
-            if isinstance(command, Shutdown):
-                self.request_end()
-            else:
-                self._simulation.apply(command)
+            self._take(command)
         events = self._simulation.step()
         if events or self._simulation.steps % _SNAPSHOT_EVERY == 0:
             # The state is written before the event is told, so who hears of an end reads its state.
@@ -139,6 +140,15 @@ class WorldLoop:
         self._channel.flush()
         if self._simulation.steps % _TIMING_EVERY == 0:
             self._shared_timing.write(self._timing.values)
+
+    def _take(self, command: AnyCommand) -> None:
+        if isinstance(command, Shutdown):
+            self.request_end()
+            return
+        self._simulation.apply(command)
+        if isinstance(command, Restore):
+            self.publish()
+            self._channel.report(WorldRestored())
 
     def _next_due(self, due: float, step_s: float, late_s: float) -> float:
         now = time.monotonic()

@@ -30,9 +30,9 @@ class _OneMotion:
         return self._board.next_number()
 
     def start(self, motion: SimMotion, host: Host, command: AnyCommand) -> SimMotion:
-        """Give the command and keep the motion."""
-        self._board.add(motion)
+        """Give the command and keep the motion; what could not be sent is not under way."""
         host.send(command)
+        self._board.add(motion)
         self._motion = motion
         return motion
 

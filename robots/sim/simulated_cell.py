@@ -5,13 +5,12 @@ from __future__ import annotations
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.document.cell import Cell
-from engine.robot import Robot
 from robots.arm.arm_server import ArmServer
 from robots.gripper.gripper_server import GripperServer
 from robots.model.registry import model_by_name
 from robots.sim.cell_scene import scene_of
 from robots.sim.scene import ArmPlacement
-from robots.sim.world import SimWorld
+from robots.sim.world import SimRobot, SimWorld
 from robots.sim.world import new_world as new_sim_world
 
 
@@ -23,7 +22,7 @@ def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> 
     """
     scene = scene_of(cell.document, seed=seed)
 
-    def make_robots(world: SimWorld) -> tuple[Robot, ...]:
+    def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         return tuple(_arm(world, placement, bus.clock) for placement in scene.arms)
 
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots)

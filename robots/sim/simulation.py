@@ -5,15 +5,32 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_motion import ArmMotion
-from robots.control.finger_servo import FingerServo
+from robots.control.finger_servo import FingerCommand, FingerServo
 from robots.control.joint_impedance import ImpedanceGains, JointImpedance
 from robots.control.motion_event import AnyMotionEvent
 from robots.port import Array
 from robots.sim.cell_model import ArmIndices, CellModel, GripperIndices
-from robots.sim.commands import AnyCommand, Cancel, CloseTo, Follow, Hold, ResetParts, Resume, Shutdown, StopAll
+from robots.sim.commands import (
+    AnyCommand,
+    Cancel,
+    CloseTo,
+    Follow,
+    Hold,
+    ResetParts,
+    Restore,
+    Resume,
+    Shutdown,
+    StopAll,
+)
 from robots.sim.contacts import ContactReader
+from robots.sim.fingerprint import fingerprint
+from robots.sim.image_layout import ImageLayout
 from robots.sim.physics import Physics
 from robots.sim.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
+
+# A restored arm stands where it was measured. Its set point may be this far off, as much as a
+# payload takes, so that nothing sags; one that pressed on something lets go.
+_NEAR_RAD = 0.01
 
 
 class _Arm:
@@ -65,7 +82,9 @@ class Simulation:
         inertia = physics.inertia_diagonal()
         self._arms = {arm.name: _Arm(arm, self._contacts, inertia, self._qpos) for arm in cell.arms}
         self._fingers = {a.name: _Fingers(a.gripper, self._qpos) for a in cell.arms if a.gripper is not None}
-        self.summary = _summary(cell)
+        arms = _arm_summaries(cell)
+        self.image_layout = ImageLayout(arms, state_size=physics.state_size)
+        self.summary = _summary(cell, arms, image_size=self.image_layout.size)
         self.layout = SnapshotLayout(self.summary)
 
     @property
@@ -94,16 +113,18 @@ class Simulation:
                 )
             case Hold():
                 for device in self._devices():
-                    device.hold(command.motion)
+                    device.hold(command.motion, request=command.request)
             case Resume():
                 for device in self._devices():
-                    device.resume(command.motion)
+                    device.resume(command.motion, request=command.request)
             case Cancel():
                 for device in self._devices():
                     device.cancel(command.motion)
             case ResetParts():
                 self._qpos[self._cell.part_qpos] = self._start_poses
                 self._qvel[self._cell.part_dof] = 0.0
+            case Restore():
+                self._restore(command.image())
             case StopAll() | Shutdown():
                 for device in self._devices():
                     device.stop()
@@ -138,6 +159,30 @@ class Simulation:
         xyz, wxyz = self._physics.body_poses(self._cell.frame_bodies)
         values[layout.positions] = xyz.reshape(-1)
         values[layout.quaternions] = wxyz.reshape(-1)
+
+    def write_image(self, image: Array) -> None:
+        """Write everything that the future depends on into an array of `image_layout`'s size."""
+        layout = self.image_layout
+        image[layout.steps] = self.steps
+        self._physics.read_state(image[layout.physics])
+        for name, arm in self._arms.items():
+            image[layout.set_points[name]] = arm.motion.position
+        for name, fingers in self._fingers.items():
+            command = fingers.servo.command
+            image[layout.fingers[name]] = (command.set_m, command.target_m, command.speed_m_s, command.force_n)
+
+    def _restore(self, image: Array) -> None:
+        """Stand still where an image was made; what was gripped stays gripped."""
+        layout = self.image_layout
+        self.steps = int(image[layout.steps])
+        self._physics.rest_at(image[layout.physics])
+        for name, arm in self._arms.items():
+            measured = self._qpos[arm.qpos]
+            set_point = np.clip(image[layout.set_points[name]], measured - _NEAR_RAD, measured + _NEAR_RAD)
+            arm.motion.initialize(set_point)
+        for name, fingers in self._fingers.items():
+            set_m, target_m, speed_m_s, force_n = image[layout.fingers[name]].tolist()
+            fingers.servo.take_over(FingerCommand(set_m=set_m, target_m=target_m, speed_m_s=speed_m_s, force_n=force_n))
 
     def state_hash(self) -> str:
         """Return the SHA-256 of everything that the future of the physics depends on."""
@@ -197,18 +242,24 @@ class Simulation:
         )
 
 
-def _summary(cell: CellModel) -> CellSummary:
+def _arm_summaries(cell: CellModel) -> tuple[ArmSummary, ...]:
+    return tuple(
+        ArmSummary(
+            name=arm.name,
+            joints=arm.model.arm_joints,
+            gripper_width_m=arm.gripper.model.max_width_m if arm.gripper is not None else 0.0,
+        )
+        for arm in cell.arms
+    )
+
+
+def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, image_size: int) -> CellSummary:
     return CellSummary(
         step_s=cell.scene.step_s,
-        arms=tuple(
-            ArmSummary(
-                name=arm.name,
-                joints=arm.model.arm_joints,
-                gripper_width_m=arm.gripper.model.max_width_m if arm.gripper is not None else 0.0,
-            )
-            for arm in cell.arms
-        ),
+        arms=arms,
         frames=cell.frames,
         parts=cell.parts,
         bodies=cell.body_names,
+        model=fingerprint(cell.model),
+        image_size=image_size,
     )

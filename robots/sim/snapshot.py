@@ -24,7 +24,8 @@ class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     """What a built world consists of, as far as the outside needs it.
 
-    `bodies` are all names that a contact can have; `parts` are the last of `frames`.
+    `bodies` are all names that a contact can have; `parts` are the last of `frames`. `model` is the
+    fingerprint of the compiled world, `image_size` how many numbers an image of it has.
     """
 
     step_s: float
@@ -32,6 +33,8 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     frames: tuple[str, ...]
     parts: tuple[str, ...]
     bodies: tuple[str, ...]
+    model: str
+    image_size: int
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
 from engine.errors import RobotError, SkillFailed
 from engine.robot import DeviceStatus, Robot
 from engine.skills.world import PartsReset, ResetParts
+from robots.gripper.grip_judgement import Grip
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, GripperPort, MotionEnd
 from robots.sim.commands import ResetParts as ResetPartsCommand
@@ -24,13 +25,27 @@ from robots.sim.process_host import ProcessHost
 from robots.sim.publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
 from robots.sim.scene import Scene
 from robots.sim.scene_description import describe_scene
+from robots.sim.seal import WorldImage, sealed, unsealed
 from robots.sim.sim_ports import SimArmPort, SimGripperPort
 from robots.sim.snapshot import ArmSummary, Snapshot
 
-RobotMaker = Callable[["SimWorld"], tuple[Robot, ...]]
+
+class SimRobot(Robot, Protocol):
+    """A robot of a simulated world, which tells what it must know again after a restore."""
+
+    def grips(self) -> dict[str, Grip]:
+        """What its grippers were told to grasp and hold, by their names."""
+        ...
+
+    def recall(self, grips: Mapping[str, Grip]) -> None:
+        """Know from now on what `grips` of an earlier life told, other robots' included."""
+        ...
 
 
-def no_robots(_world: SimWorld) -> tuple[Robot, ...]:
+RobotMaker = Callable[["SimWorld"], tuple[SimRobot, ...]]
+
+
+def no_robots(_world: SimWorld) -> tuple[SimRobot, ...]:
     """Make no skill servers: for who uses the ports directly."""
     return ()
 
@@ -97,9 +112,32 @@ class SimWorld:
         """The port of the gripper on one arm."""
         return self._gripper_ports[name]
 
-    def snapshot(self) -> Snapshot:
-        """The newest state of everything."""
+    def measured(self) -> Snapshot:
+        """The newest measurement of everything."""
         return self._host.snapshot()
+
+    def snapshot(self) -> bytes:
+        """Everything needed to go on from here later, in this process or another: see `restore`."""
+        grips = {name: grip for robot in self._robots for name, grip in robot.grips().items()}
+        return sealed(WorldImage.of(self._host.image(), grips), model=self._host.summary.model)
+
+    async def restore(self, snapshot: bytes) -> None:
+        """Bring everything to where a snapshot was made, at rest: set points are held, grippers keep their grip.
+
+        Raises:
+            RobotError: something moves, the world is gone, or the snapshot is none of this very world.
+        """
+        if self._board.under_way():
+            raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
+        summary = self._host.summary
+        image = unsealed(snapshot, model=summary.model, size=summary.image_size)
+        self._board.closed_reason = "the world is being restored"
+        try:
+            await self._host.restore(image.array())
+        finally:
+            self._board.closed_reason = ""
+        for robot in self._robots:
+            robot.recall(image.grips)
 
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
@@ -146,19 +184,23 @@ class SimWorld:
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            await asyncio.wait((self._timer,))
-            self._timer = None
         try:
+            await self._stop_publishing()
             if self._status is DeviceStatus.READY:
                 await self.stop()
         finally:
+            # Also when this is cancelled while it waits, the world ends.
             loop = asyncio.get_running_loop()
             if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
                 loop.detach(self)
-            await self._host.close()
             self._status = DeviceStatus.DISCONNECTED
+            await self._host.close()
+
+    async def _stop_publishing(self) -> None:
+        timer, self._timer = self._timer, None
+        if timer is not None:
+            timer.cancel()
+            await asyncio.wait((timer,))
 
     @property
     def busy(self) -> bool:

@@ -23,4 +23,8 @@ class WorldRefused(msgspec.Struct, frozen=True, kw_only=True, tag_field="event",
     hint: str = ""
 
 
-AnyReport = WorldReady | WorldRefused | MotionFinished | MotionHeld | MotionResumed
+class WorldRestored(msgspec.Struct, frozen=True, kw_only=True, tag_field="event", tag="restored"):
+    """The world is where the image was made, and its state can be read."""
+
+
+AnyReport = WorldReady | WorldRefused | WorldRestored | MotionFinished | MotionHeld | MotionResumed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
-from robots.port import ArmPort, Array, JointTrajectory, MotionReport, Tolerance
+from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 from robots.sim.world import SimWorld, new_world
 
@@ -59,6 +59,23 @@ async def move(arm: ArmPort, goal: Array, duration_s: float = 1.0) -> MotionRepo
     return await motion.report()
 
 
+async def grasp(world: SimWorld, *, force_n: float = 20.0) -> None:
+    """Reach for the part and close the fingers."""
+    arm = world.arm("left")
+    assert (await move(arm, ABOVE_PART, 1.2)).end is MotionEnd.REACHED
+    assert (await move(arm, AT_PART, 0.8)).end is MotionEnd.REACHED
+    report = await world.gripper("left").close_to(width_m=0.0, speed_m_s=0.05, force_n=force_n).report()
+    assert report.end is MotionEnd.REACHED
+
+
+async def until(condition: Callable[[], bool], *, within_s: float = 10.0) -> None:
+    """Return once `condition` holds, in the time of the loop; raises TimeoutError when it never does."""
+    async with asyncio.timeout(within_s):
+        # What is measured tells nobody that it has changed: it can only be looked at.
+        while not condition():  # noqa: ASYNC110
+            await asyncio.sleep(0.002)
+
+
 @asynccontextmanager
 async def opened(scene: Scene) -> AsyncGenerator[SimWorld]:
     """Open a world in lockstep on a virtual loop, in its own process on a real one."""
@@ -70,5 +87,5 @@ async def opened(scene: Scene) -> AsyncGenerator[SimWorld]:
 
 def part_xyz(world: SimWorld, name: str) -> Vector3:
     """Return where a part is now."""
-    xyz, _ = world.snapshot().frames()
+    xyz, _ = world.measured().frames()
     return xyz[world.host.summary.frames.index(name)]

@@ -1,4 +1,7 @@
-"""Friction alone holds a part: lifted, carried, released, or lost when it is too heavy."""
+"""Friction alone holds a part: lifted, carried, released, or lost when it is too heavy.
+
+All in virtual time: a sleep lets simulated seconds pass, in which what is held must not slip.
+"""
 
 from __future__ import annotations
 
@@ -10,17 +13,19 @@ import pytest
 
 from engine.messages import Pose
 from robots.port import MotionEnd
-from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import ABOVE_PART, AT_PART, LIFTED, PART_XYZ, box, move, one_arm, opened, part_xyz
-
-
-async def grasp(world: SimWorld, *, force_n: float = 20.0) -> None:
-    """Reach for the part and close the fingers."""
-    arm = world.arm("left")
-    assert (await move(arm, ABOVE_PART, 1.2)).end is MotionEnd.REACHED
-    assert (await move(arm, AT_PART, 0.8)).end is MotionEnd.REACHED
-    report = await world.gripper("left").close_to(width_m=0.0, speed_m_s=0.05, force_n=force_n).report()
-    assert report.end is MotionEnd.REACHED
+from tests.robots.sim.sim_cell import (
+    ABOVE_PART,
+    AT_PART,
+    LIFTED,
+    PART_XYZ,
+    box,
+    grasp,
+    move,
+    one_arm,
+    opened,
+    part_xyz,
+    until,
+)
 
 
 @pytest.mark.virtual
@@ -40,8 +45,7 @@ async def test_a_grasped_part_is_lifted_held_and_falls_when_released() -> None:
         assert z == pytest.approx(PART_XYZ[2] + 0.178, abs=0.002)
 
         assert (await gripper.close_to(width_m=0.08, speed_m_s=0.2, force_n=20.0).report()).end is MotionEnd.REACHED
-        await asyncio.sleep(1.0)
-        assert part_xyz(world, "part")[2] < 0.035
+        await until(lambda: part_xyz(world, "part")[2] < 0.035)
         assert gripper.sample().contacts == ("", "")
 
 
@@ -102,11 +106,11 @@ async def test_without_a_part_the_fingers_close_on_nothing() -> None:
 async def test_the_fingers_open_to_a_width_at_a_speed() -> None:
     async with opened(one_arm()) as world:
         gripper = world.gripper("left")
-        start = world.snapshot().time_s
+        start = world.measured().time_s
         report = await gripper.close_to(width_m=0.03, speed_m_s=0.1, force_n=30.0).report()
         assert report.end is MotionEnd.REACHED
         assert gripper.sample().width_m == pytest.approx(0.03, abs=0.001)
-        assert 0.5 < world.snapshot().time_s - start < 0.8
+        assert 0.5 < world.measured().time_s - start < 0.8
 
 
 @pytest.mark.virtual
@@ -114,7 +118,7 @@ async def test_fingers_cancelled_on_their_way_stop_there() -> None:
     async with opened(one_arm()) as world:
         gripper = world.gripper("left")
         motion = gripper.close_to(width_m=0.0, speed_m_s=0.05, force_n=30.0)
-        await asyncio.sleep(0.6)
+        await until(lambda: gripper.sample().width_m < 0.05)
         motion.cancel()
         assert (await motion.report()).end is MotionEnd.CANCELED
         assert gripper.sample().width_m == pytest.approx(0.05, abs=0.005)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
+import select
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
+from engine.bus import SkillBus
+from engine.clock import new_clock
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
@@ -19,7 +22,7 @@ from robots.port import MotionEnd, Tolerance
 from robots.sim.process_host import ProcessHost
 from robots.sim.scene import FixtureBody, Scene
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import HOME, one_arm, smooth
+from tests.robots.sim.sim_cell import HOME, one_arm, smooth, until
 
 ROOT = Path(__file__).parents[3]
 
@@ -54,10 +57,53 @@ async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() ->
     host = ProcessHost(one_arm())
     async with SimWorld(one_arm(), host=host) as world:
         motion = world.arm("left").follow(smooth(HOME, HOME + 0.5, 1.0), tolerance=Tolerance())
-        await asyncio.sleep(0.4)
+        await until(lambda: motion.progress > 0.3)
         pid = host.pid
     assert (await motion.report()).end is MotionEnd.CANCELED
     assert not alive(pid)
+
+
+async def test_a_closing_that_is_cancelled_leaves_no_process() -> None:
+    """Though the process is frozen and hears nothing."""
+    host = ProcessHost(one_arm())
+    await SimWorld(one_arm(), host=host).__aenter__()
+    os.kill(host.pid, signal.SIGSTOP)
+    closing = asyncio.create_task(host.close())
+    await asyncio.sleep(0)
+    closing.cancel()
+    await asyncio.wait((closing,))
+    assert (closing.cancelled(), alive(host.pid)) == (True, False)
+
+
+async def test_leaving_a_world_that_is_cancelled_again_and_again_leaves_no_process() -> None:
+    """It waits for its publisher, for rest, for the process: whichever wait is cut short, the rest is done."""
+    for cancels in (1, 2, 3):
+        host = ProcessHost(one_arm())
+        world = SimWorld(one_arm(), host=host)
+        await world.__aenter__()
+        world.register(SkillBus(new_clock()))
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.3, 2.0), tolerance=Tolerance())
+        os.kill(host.pid, signal.SIGSTOP)
+        leaving = asyncio.create_task(world.__aexit__(None, None, None))
+        for _ in range(cancels):
+            await asyncio.sleep(0)
+            leaving.cancel()
+        if cancels == 1:
+            await asyncio.sleep(0)
+            leaving.cancel()
+        await asyncio.wait((leaving,))
+        assert (leaving.cancelled(), alive(host.pid), world.status) == (True, False, DeviceStatus.DISCONNECTED)
+        assert (await motion.report()).reason == "the world was closed"
+
+
+async def test_a_process_that_does_not_start_is_an_error_and_leaves_nothing_open(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A socket left open would be a warning, and so a failure."""
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    with pytest.raises(RobotError, match="the world's process does not start"):
+        await SimWorld(one_arm(), host=ProcessHost(one_arm())).__aenter__()
+    gc.collect()
 
 
 async def test_a_world_that_cannot_be_built_says_why() -> None:
@@ -78,7 +124,7 @@ async def test_punctuality_is_counted() -> None:
         assert 0.0 < timing.late_p50_s <= timing.late_p99_s
         assert timing.late_max_s > 0.0
         assert 0 <= timing.overruns <= timing.steps
-        assert world.snapshot().time_s > 0.1
+        assert world.measured().time_s > 0.1
 
 
 def test_the_world_ends_when_its_parent_is_killed() -> None:
@@ -91,17 +137,17 @@ def test_the_world_ends_when_its_parent_is_killed() -> None:
         "    host = ProcessHost(Scene())\n"
         "    async with SimWorld(Scene(), host=host):\n"
         "        print(host.pid, flush=True)\n"
-        "        await asyncio.sleep(60)\n"
+        "        await asyncio.Event().wait()\n"
         "asyncio.run(main())\n"
     )
     parent = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, cwd=ROOT)
     assert parent.stdout is not None
     with parent.stdout:
         world = int(parent.stdout.readline())
-    assert alive(world)
+    process = os.pidfd_open(world)
     parent.kill()
     parent.wait()
-    deadline = time.monotonic() + 5.0
-    while alive(world) and time.monotonic() < deadline:
-        os.sched_yield()
-    assert not alive(world)
+    # The descriptor can be read once the process has ended.
+    ended, _, _ = select.select([process], [], [], 5.0)
+    os.close(process)
+    assert ended

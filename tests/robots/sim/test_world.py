@@ -1,4 +1,7 @@
-"""A world's ports, the same over both hosts: follow, hold, resume, cancel, refuse, stop."""
+"""A world's ports, the same over both hosts: follow, hold, resume, cancel, refuse, stop.
+
+On the virtual loop a sleep lets simulated time pass, and nothing else.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import pytest
 from engine.errors import RobotError
 from engine.robot import DeviceStatus
 from robots.port import MotionEnd, Tolerance
-from tests.robots.sim.sim_cell import ABOVE_PART, HOME, PANDA, move, one_arm, opened, smooth, two_arms
+from tests.robots.sim.sim_cell import ABOVE_PART, HOME, PANDA, move, one_arm, opened, smooth, two_arms, until
 
 both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
@@ -30,7 +33,7 @@ async def test_two_arms_move_at_the_same_time(host: str) -> None:
     async with opened(two_arms()) as world:
         reports = await asyncio.gather(*(move(world.arm(name), HOME + 0.2, 0.5) for name in ("left", "right")))
         assert [report.end for report in reports] == [MotionEnd.REACHED] * 2
-        assert world.snapshot().time_s < 1.5
+        assert world.measured().time_s < 1.5
 
 
 @both_hosts
@@ -38,7 +41,7 @@ async def test_a_cancelled_motion_ends_at_rest_on_its_path_and_the_next_is_accep
     async with opened(one_arm()) as world:
         arm = world.arm("left")
         motion = arm.follow(smooth(HOME, HOME + 0.6, 1.0), tolerance=Tolerance())
-        await asyncio.sleep(0.5)
+        await until(lambda: motion.progress > 0.45)
         motion.cancel()
         report = await motion.report()
         sample = arm.sample()
@@ -55,11 +58,11 @@ async def test_a_held_motion_rests_until_it_is_resumed_and_then_reaches_its_goal
     async with opened(one_arm()) as world:
         arm = world.arm("left")
         motion = arm.follow(smooth(HOME, HOME + 0.3, 0.8), tolerance=Tolerance())
-        await asyncio.sleep(0.4)
+        await until(lambda: motion.progress > 0.45)
         await motion.hold()
         held = motion.progress
         at = arm.sample()
-        await asyncio.sleep(0.2)
+        await until(lambda: world.measured().time_s > at.time_s + 0.2)
         assert np.abs(arm.sample().position_rad - at.position_rad).max() < 0.002
         assert motion.progress == held < 1.0
         await motion.resume()
@@ -79,7 +82,7 @@ async def test_a_second_motion_is_refused_while_one_runs(host: str) -> None:
 async def test_stopping_the_world_cancels_what_runs_and_leaves_it_at_rest(host: str) -> None:
     async with opened(one_arm()) as world:
         motion = world.arm("left").follow(smooth(HOME, HOME + 0.5, 1.0), tolerance=Tolerance())
-        await asyncio.sleep(0.5)
+        await until(lambda: motion.progress > 0.45)
         assert world.status is DeviceStatus.MOVING
         await world.stop()
         assert (await motion.report()).end is MotionEnd.CANCELED
@@ -152,8 +155,8 @@ async def test_cancelling_a_fast_motion_keeps_within_the_joints_accelerations() 
 @pytest.mark.virtual
 async def test_nothing_passes_in_lockstep_unless_time_does() -> None:
     async with opened(one_arm()) as world:
-        before = world.snapshot().time_s
+        before = world.measured().time_s
         await asyncio.sleep(0)
-        assert world.snapshot().time_s == before
+        assert world.measured().time_s == before
         await asyncio.sleep(0.25)
-        assert world.snapshot().time_s == pytest.approx(before + 0.25)
+        assert world.measured().time_s == pytest.approx(before + 0.25)

@@ -1,0 +1,44 @@
+"""What is active in a run right now: nodes with their visits, and the task that carries each branch."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+class Activity:
+    """Belongs to one run, used on the loop thread."""
+
+    def __init__(self) -> None:
+        self.nodes: dict[str, int] = {}
+        """Visit of each node that was entered and not yet left, by path."""
+        self._branches: dict[str, asyncio.Task[Any]] = {}
+
+    def branch(self, path: str, work: Coroutine[Any, Any, T], *, body: bool = False) -> asyncio.Task[T]:
+        """Start a task that carries the node at `path`, or with `body` only what is inside it."""
+        key = f"{path}/" if body else path
+        task = asyncio.create_task(work, name=path)
+        self._branches[key] = task
+        task.add_done_callback(lambda done: self._forget(key, done))
+        return task
+
+    def task_of(self, path: str) -> asyncio.Task[Any] | None:
+        """Return the task in which the node at `path` is performed: that of its innermost branch."""
+        found: str | None = None
+        for key in self._branches:
+            within = path == key or path.startswith(key if key.endswith("/") else f"{key}/")
+            if within and (found is None or len(key) > len(found)):
+                found = key
+        return self._branches[found] if found is not None else None
+
+    def branch_of(self, path: str) -> str:
+        """Return the path of that branch, empty for the whole run."""
+        task = self.task_of(path)
+        return task.get_name() if task is not None else ""
+
+    def _forget(self, key: str, task: asyncio.Task[Any]) -> None:
+        if self._branches.get(key) is task:
+            del self._branches[key]

@@ -1,0 +1,28 @@
+"""A moment of a run from which it, or another run, can go on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from engine.point import Point
+
+
+@dataclass(frozen=True, kw_only=True)
+class Checkpoint:
+    """Everything of a run that its events up to `seq` tell; values are plain data."""
+
+    run: str
+    seq: int
+    time_s: float
+    userdata: Mapping[str, object]
+    """The values of the behavior's own scope."""
+    points: Mapping[str, Point]
+    visits: Mapping[str, int]
+    parameters: Mapping[str, object] = field(default_factory=dict[str, object])
+    seed: int = 0
+    epoch: int = 1
+    rerun: tuple[str, ...] = ()
+    """The states that are entered again."""
+    taken: Mapping[str, str] = field(default_factory=dict[str, str])
+    """The states that are left with an outcome instead, by path."""

@@ -1,0 +1,248 @@
+"""The gate of a run: every node asks here before its entry and between its outcome and the transition.
+
+While nothing is asked of it, `armed` is False and nodes pass without calling it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from engine.cause import cause_of, describe
+from engine.control.autonomy import AutonomyLevel, passes
+from engine.control.breakpoint import Breakpoint, GatePoint
+from engine.control.step import Step
+from engine.errors import FlexcellError
+from engine.event import GatePassed, GateReached, Logged, OutcomeRequested, OutcomeWithdrawn
+from engine.recorder import Recorder
+from engine.suspension import Suspensions
+from engine.userdata import Scope
+
+PAUSE = "pause"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What the operator wants of a node: end with `outcome`, or, without one, run again."""
+
+    outcome: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waiting:
+    """A node that waits at the gate: where, since which visit, and for what."""
+
+    path: str
+    visit: int
+    point: GatePoint
+    outcome: str = ""
+    reasons: tuple[str, ...] = ()
+
+
+class Gate:
+    """Holds nodes back; belongs to one run, used on the loop thread."""
+
+    def __init__(self, recorder: Recorder, suspensions: Suspensions) -> None:
+        self.armed = False
+        self.waiting: dict[str, Waiting] = {}
+        self.locks: set[str] = set()
+        self.breakpoints: tuple[Breakpoint, ...] = ()
+        self.autonomy: AutonomyLevel = "full"
+        self.asks = False
+        """Whether rules of autonomy are on: an operator is there, or demanded."""
+        self._hits: dict[Breakpoint, int] = {}
+        self._orders: dict[str, Order] = {}
+        self._answers: set[str] = set()
+        self._accepted: dict[str, tuple[int, str]] = {}
+        self._step: Step | None = None
+        self._paused = False
+        self._recorder = recorder
+        self._suspensions = suspensions
+
+    @property
+    def paused(self) -> bool:
+        """Whether the operator (or a breakpoint) has paused the run."""
+        return self._paused
+
+    @property
+    def stepping(self) -> bool:
+        """Whether a step is under way."""
+        return self._step is not None
+
+    def arm(self) -> None:
+        """Work out anew whether nodes have to ask; due after every change, wakes those that wait."""
+        self.armed = bool(
+            self._paused
+            or self._suspensions.active
+            or self.locks
+            or self.asks
+            or self._orders
+            or any(each.enabled for each in self.breakpoints)
+        )
+        self._suspensions.wake()
+
+    def pause(self) -> None:
+        """Hold every branch."""
+        self._paused, self._step = True, None
+        self._suspensions.hold(PAUSE, self._covers)
+        self.arm()
+
+    def resume(self) -> None:
+        """Let every branch go on."""
+        self._paused, self._step = False, None
+        self._suspensions.release(PAUSE)
+        self.arm()
+
+    def step(self, step: Step) -> None:
+        """Let one branch go on to the next place where the step ends."""
+        self._step = step
+        self._suspensions.hold(PAUSE, self._covers)
+        self.arm()
+
+    def order(self, path: str, order: Order) -> None:
+        """Have a node, at the gate or just preempted, end so."""
+        self._orders[path] = order
+        self.arm()
+
+    def has_order(self, path: str) -> bool:
+        """Tell whether something was ordered of a node."""
+        return path in self._orders
+
+    def taken_order(self, path: str) -> Order | None:
+        """Return what was ordered of a node, once."""
+        return self._orders.pop(path, None)
+
+    def answer(self, path: str) -> None:
+        """Let the requested outcome of a node pass."""
+        self._answers.add(path)
+        self.arm()
+
+    async def before(self, path: str, visit: int, scope: Scope) -> Order | None:
+        """Return when the node may be entered, or what was ordered instead."""
+        self._arrive(path, "before", "", scope)
+        return await self._wait(Waiting(path=path, visit=visit, point="before"), required=None)
+
+    async def after(self, path: str, visit: int, outcome: str, required: str, scope: Scope) -> Order | None:
+        """Return when the outcome may be followed, or what was ordered instead.
+
+        Args:
+            path: The node.
+            visit: Its activation.
+            outcome: How it ended; empty when it was diverted by timeout, guard or on_error.
+            required: The level of autonomy from which on the outcome does not pass by itself.
+            scope: Where conditions of breakpoints read.
+        """
+        self._arrive(path, "after", outcome, scope)
+        accepted = self._accepted.pop(path, None) == (visit, outcome)
+        waiting = Waiting(path=path, visit=visit, point="after", outcome=outcome)
+        return await self._wait(waiting, required=None if accepted or not outcome else required)
+
+    async def offer(self, path: str, visit: int, outcome: str, required: str) -> None:
+        """Ask the operator for an outcome that a state only offers yet; being cancelled withdraws it."""
+        if not self.asks or passes(required, self.autonomy):
+            return
+        waiting = Waiting(path=path, visit=visit, point="after", outcome=outcome)
+        if await self._wait(waiting, required=required) is None:
+            self._accepted[path] = (visit, outcome)
+
+    async def _wait(self, waiting: Waiting, *, required: str | None) -> Order | None:
+        path = waiting.path
+        asked = required is not None and self._still_asks(required)
+        if required is not None and asked:
+            self._tell(OutcomeRequested, waiting, required=required)
+        try:
+            while (order := self._orders.pop(path, None)) is None:
+                unanswered = asked and path not in self._answers and self._still_asks(required)
+                reasons = self._reasons(waiting, asked=unanswered)
+                if not reasons:
+                    break
+                self._show(replace(waiting, reasons=reasons))
+                await self._suspensions.changed()
+            return order
+        finally:
+            self._answers.discard(path)
+            if asked:
+                self._tell(OutcomeWithdrawn, waiting)
+            if self.waiting.pop(path, None) is not None:
+                recorder = self._recorder
+                recorder.record(
+                    GatePassed(
+                        seq=recorder.next_seq(),
+                        time_s=recorder.now_s(),
+                        path=path,
+                        visit=waiting.visit,
+                        point=waiting.point,
+                    )
+                )
+
+    def _still_asks(self, required: str | None) -> bool:
+        return self.asks and required is not None and not passes(required, self.autonomy)
+
+    def _reasons(self, waiting: Waiting, *, asked: bool) -> tuple[str, ...]:
+        reasons = list(self._suspensions.reasons(waiting.path))
+        if waiting.point == "after" and waiting.path in self.locks:
+            reasons.append("lock")
+        if asked:
+            reasons.append("autonomy")
+        return tuple(reasons)
+
+    def _arrive(self, path: str, point: GatePoint, outcome: str, scope: Scope) -> None:
+        """Pause where a breakpoint or the end of a step says so."""
+        if self._step is not None and self._step.ends_at(path, point):
+            self.pause()
+            return
+        for each in self.breakpoints:
+            if each.matches(path, point, outcome) and self._due(each, path, scope):
+                self._log(path, f"breakpoint {point} {each.path}")
+                self.pause()
+                return
+
+    def _due(self, due: Breakpoint, path: str, scope: Scope) -> bool:
+        try:
+            if not due.holds(lambda name: scope.read(name, reader=path)):
+                return False
+        except FlexcellError as error:
+            # A condition that cannot be evaluated must not end the run; it must be seen, so it pauses.
+            self._log(path, f"breakpoint {due.path}: {describe(cause_of(error))}")
+            return True
+        hits = self._hits[due] = self._hits.get(due, 0) + 1
+        return hits >= due.hits
+
+    def _show(self, waiting: Waiting) -> None:
+        known = self.waiting.get(waiting.path)
+        self.waiting[waiting.path] = waiting
+        if known is not None and known.reasons == waiting.reasons:
+            return
+        recorder = self._recorder
+        recorder.record(
+            GateReached(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=waiting.path,
+                visit=waiting.visit,
+                point=waiting.point,
+                reasons=waiting.reasons,
+                outcome=waiting.outcome,
+            )
+        )
+
+    def _tell(self, kind: type[OutcomeRequested | OutcomeWithdrawn], waiting: Waiting, **more: str) -> None:
+        recorder = self._recorder
+        recorder.record(
+            kind(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=waiting.path,
+                visit=waiting.visit,
+                outcome=waiting.outcome,
+                **more,
+            )
+        )
+
+    def _log(self, path: str, message: str) -> None:
+        recorder = self._recorder
+        recorder.record(
+            Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level="info", message=message)
+        )
+
+    def _covers(self, path: str) -> bool:
+        return self._step is None or not self._step.frees(path)

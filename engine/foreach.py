@@ -1,0 +1,125 @@
+"""The foreach container: its child once for each item of a list, or a number of times."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import cast
+
+from engine.document.expression import Template
+from engine.document.node import FOREACH_OUTCOMES
+from engine.errors import StateError, UserdataError
+from engine.event import Transitioned
+from engine.execution import Execution
+from engine.node import Entry, Left, Node, explain
+from engine.state import Outcome
+from engine.userdata import Scope
+
+_ITEMS = "items"
+_FAIRNESS = 256
+EXHAUSTED, BROKEN = FOREACH_OUTCOMES
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForEach:
+    """Rounds over what `items` evaluates to: a list, or with `counted` a number of rounds."""
+
+    child: Node
+    items: Template
+    counted: bool
+    item: str
+    index: str | None
+    next: frozenset[str]
+    collect: Mapping[str, str]
+    userdata: Mapping[str, object] = field(default_factory=dict[str, object])
+    position: str = ""
+
+    @property
+    def kind(self) -> str:
+        """The key of this container in documents."""
+        return "foreach"
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The child that is run in each round."""
+        return {"child": self.child}
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """All done, or not."""
+        return FOREACH_OUTCOMES
+
+    @cached_property
+    def nominal(self) -> frozenset[str]:
+        """Coming to the end is what it is for."""
+        return frozenset((EXHAUSTED,))
+
+    def enter(self, scope: Scope) -> Entry:
+        """Evaluate the items once, for all rounds."""
+        value = self.items.evaluate({name: scope.read(name, reader=self.position) for name in self.items.names})
+        if self.counted:
+            if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+                raise StateError(
+                    f"`times` gave {value!r}", where=self.position, hint="it must be a whole number, 0 or more"
+                )
+            items: list[object] = list(range(value))
+        elif isinstance(value, list | tuple):
+            items = list(cast("list[object]", value))
+        else:
+            kind = type(value).__name__
+            raise StateError(f"`items` gave a {kind}", where=self.position, hint="it must be a list")
+        return Entry(None, {_ITEMS: items}, {_ITEMS: items})
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Run the child in round after round, each in a scope of its own."""
+        point = entry.point
+        items = cast("list[object]", entry.inputs[_ITEMS])
+        first = point.round if point is not None else 0
+        loop = self
+        for number in range(first, len(items)):
+            resumed = point is not None and number == first and point.values
+            own = point.values if point is not None and resumed else loop._round(number, items[number])
+            inner = Scope(f"{path}#{number}", own, scope)
+            left = await loop.child.perform(inner, execution)
+            loop = execution.latest(path, loop)
+            goes_on = (left.target or left.outcome) in loop.next
+            last = number == len(items) - 1
+            self._record(execution, path, left, (EXHAUSTED if last else "child") if goes_on else BROKEN)
+            if not goes_on:
+                return Outcome(BROKEN, cause=explain(loop.child, left))
+            loop._collect(inner, scope, path, execution)
+            if number % _FAIRNESS == 0:
+                await asyncio.sleep(0)
+        return Outcome(EXHAUSTED)
+
+    def _record(self, execution: Execution, path: str, left: Left, target: str) -> None:
+        recorder = execution.recorder
+        recorder.record(
+            Transitioned(
+                seq=recorder.next_seq(),
+                time_s=recorder.now_s(),
+                path=path,
+                source="child",
+                outcome=left.outcome,
+                target=target,
+            )
+        )
+
+    def _round(self, number: int, item: object) -> dict[str, object]:
+        own = {**self.userdata, self.item: item}
+        return own if self.index is None else {**own, self.index: number}
+
+    def _collect(self, inner: Scope, scope: Scope, path: str, execution: Execution) -> None:
+        for key, target in self.collect.items():
+            value = inner.read(key, reader=self.position)
+            empty: list[object] = []
+            gathered = scope.read(target, reader=self.position) if scope.has(target) else empty
+            if not isinstance(gathered, list):
+                kind = type(gathered).__name__
+                raise UserdataError(
+                    f"`collect` appends to {target!r}, which is a {kind}", where=self.position, hint="begin with []"
+                )
+            together = [*cast("list[object]", gathered), value]
+            execution.record_write(path, scope.write(target, together), target, together)

@@ -1,0 +1,45 @@
+"""Where a run stood, node by node: what is needed to go on from there instead of from the start."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from engine.event import Cause
+
+
+@dataclass(frozen=True, kw_only=True)
+class Point:
+    """One node of a run that is to be gone on with.
+
+    A node that has `left` (an outcome) is only asked for its transition; with `passed` the gate has
+    let it go already. An active container goes on with the children that have points of their
+    own; an active state is entered again.
+    """
+
+    visit: int
+    left: str | None = None
+    diverted: str | None = None
+    """The target, where it was left by timeout, guard or on_error."""
+    cause: Cause | None = None
+    passed: bool = False
+    attempt: int = 1
+    elapsed_s: float = 0.0
+    """How long it had been performed, for its timeout."""
+    current: str | None = None
+    """The child that a machine is at, or is about to enter."""
+    inputs: Mapping[str, object] = field(default_factory=dict[str, object])
+    """What it was entered with, as plain data."""
+    values: Mapping[str, object] = field(default_factory=dict[str, object])
+    """The userdata of a container's own scope."""
+    branches: Mapping[str, Mapping[str, object]] = field(default_factory=dict[str, Mapping[str, object]])
+    """What the children of a concurrency container had written into scopes of their own."""
+    round: int = 0
+    """The round that a foreach container is in, from 0."""
+    done: tuple[tuple[str, str], ...] = ()
+    """(path, outcome) of what had ended in a tree, in order."""
+
+    @property
+    def active(self) -> bool:
+        """Whether it had been entered and not left."""
+        return self.left is None and self.diverted is None

@@ -1,0 +1,52 @@
+"""Runs a behavior in virtual time while an operator, told when to do what, controls it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from textwrap import dedent
+
+from engine.bus import SkillBus
+from engine.clock import new_clock, run_virtual
+from engine.document import parse_behavior
+from engine.event import Event
+from engine.plan import new_plan
+from engine.run import Run
+from engine.supervision import Supervision
+from tests.engine.control.turntable import TurnTable
+from tests.engine.fake_states import CATALOGUE
+from tests.engine.run_document import HEAD, Told
+
+Act = Callable[[Run], object]
+
+
+def operate(
+    text: str,
+    acts: Mapping[float, Act],
+    *,
+    supervision: Supervision | None = None,
+    inputs: Mapping[str, object] | None = None,
+    prepare: Callable[[SkillBus], object] = lambda bus: None,
+) -> Told:
+    """Run a document; at each time in seconds do what `acts` says with the run."""
+    body = dedent(text)
+    plan = new_plan(
+        parse_behavior(body if "flexcell:" in body else HEAD + body, file="test.yaml"),
+        {**CATALOGUE, "test.TurnTable": TurnTable},
+    )
+
+    async def main() -> Told:
+        bus = SkillBus(new_clock())
+        events: list[Event] = []
+        async with bus:
+            prepare(bus)
+            run = Run(plan, run="r1", bus=bus, supervision=supervision, inputs=inputs)
+            run.watch(events.append)
+            loop = asyncio.get_running_loop()
+            timers = [loop.call_at(at_s, act, run) for at_s, act in acts.items()]
+            result = await run.execute()
+            for timer in timers:
+                timer.cancel()
+        return Told(result, tuple(events))
+
+    return run_virtual(main())
