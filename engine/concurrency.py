@@ -63,6 +63,10 @@ class Concurrency:
     def _rank(self) -> dict[str, int]:
         return {name: rank for rank, name in enumerate(self.children)}
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """The values its scope begins with."""
+        return self.userdata
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING

@@ -44,6 +44,8 @@ class Execution:
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, Point] = field(default_factory=dict[str, Point])
     """Where nodes stood that are gone on with; each is taken once."""
+    goes_on: bool = False
+    """Whether the points are those of this very run, whose events tell how they were reached."""
 
     replaced: dict[str, object] = field(default_factory=dict[str, object])
     """Containers by path whose definition a hot change has replaced."""

@@ -56,6 +56,10 @@ class ForEach:
         """Coming to the end is what it is for."""
         return frozenset((EXHAUSTED,))
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """Nothing: each round has a scope of its own."""
+        return {}
+
     def enter(self, scope: Scope) -> Entry:
         """Evaluate the items once, for all rounds."""
         value = self.items.evaluate({name: scope.read(name, reader=self.position) for name in self.items.names})
@@ -77,19 +81,22 @@ class ForEach:
         point = entry.point
         items = cast("list[object]", entry.inputs[_ITEMS])
         first = point.round if point is not None else 0
+        if point is not None and point.current in FOREACH_OUTCOMES:
+            return Outcome(point.current, cause=point.cause)
         loop = self
         for number in range(first, len(items)):
             resumed = point is not None and number == first and point.values
-            own = point.values if point is not None and resumed else loop._round(number, items[number])
+            own = point.values if point is not None and resumed else loop.round_values(number, items[number])
             inner = Scope(f"{path}#{number}", own, scope)
             left = await loop.child.perform(inner, execution)
             loop = execution.latest(path, loop)
             goes_on = (left.target or left.outcome) in loop.next
             last = number == len(items) - 1
+            if goes_on:
+                loop._collect(inner, scope, path, execution)
             self._record(execution, path, left, (EXHAUSTED if last else "child") if goes_on else BROKEN)
             if not goes_on:
                 return Outcome(BROKEN, cause=explain(loop.child, left))
-            loop._collect(inner, scope, path, execution)
             if number % _FAIRNESS == 0:
                 await asyncio.sleep(0)
         return Outcome(EXHAUSTED)
@@ -107,7 +114,8 @@ class ForEach:
             )
         )
 
-    def _round(self, number: int, item: object) -> dict[str, object]:
+    def round_values(self, number: int, item: object) -> dict[str, object]:
+        """Return the values that the scope of a round begins with."""
         own = {**self.userdata, self.item: item}
         return own if self.index is None else {**own, self.index: number}
 

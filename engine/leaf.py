@@ -62,6 +62,10 @@ class Leaf:
         given = self.parameters.evaluate({})
         return Entry(self._instance(given), {}, _plain(given))
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """Nothing: it has no scope of its own."""
+        return {}
+
     def enter(self, scope: Scope) -> Entry:
         """Evaluate the parameters and read the inputs."""
         if self._constant is not None:

@@ -50,6 +50,10 @@ class Machine:
                 due += [child.guard.target] if child.guard is not None else []
         return frozenset(reached - set(self.children))
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """The values its scope begins with."""
+        return self.userdata
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING
@@ -60,6 +64,8 @@ class Machine:
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
         name = point.current if point is not None and point.current is not None else self.initial
         went_wrong: Cause | None = point.cause if point is not None else None
+        if name not in self.children:
+            return Outcome(name, cause=None if name in self.nominal else went_wrong)
         instants = 0
         waits = execution.waits
         machine = self

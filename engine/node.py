@@ -98,6 +98,10 @@ class Work(Protocol):
         """All outcomes it can have."""
         ...
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """Return the values that its own scope begins with when it is entered with `inputs`."""
+        ...
+
     def enter(self, scope: Scope) -> Entry:
         """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
         ...
@@ -145,8 +149,13 @@ class Node:
         """
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
+        if point is not None and point.failed:
+            # It had ended with this error, and nobody had handled it when the engine died.
+            raise StateError(point.cause.message if point.cause is not None else "failed", where=self.path)
         if point is not None and not point.active:
             left = Left(point.left or "", point.diverted, point.cause)
+            if not execution.goes_on:
+                self._record_diverted(execution, "start", point.left or point.diverted or "", point.cause)
             if point.passed or not gate.armed:
                 return left
             order = await self._after(left, scope, execution)
@@ -279,12 +288,11 @@ class Node:
     async def _attempt(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         recorder = execution.recorder
         path = self.path
-        resumed = point is not None and self.work.kind != "state"
-        visit = point.visit if point is not None and resumed else execution.visit(path)
-        if point is not None and resumed:
-            entry, refused = Entry(None, point.inputs, {}, point), None
-        else:
-            entry, refused = self._entered(scope)
+        if point is not None and not (point.entered and self.work.children):
+            point = None
+        visit = point.visit if point is not None and execution.goes_on else execution.visit(path)
+        entry, refused = self._entered(scope) if point is None else (Entry(None, point.inputs, {}, point), None)
+        if point is None or not execution.goes_on:
             recorder.record(
                 Entered(
                     seq=recorder.next_seq(),
@@ -292,9 +300,12 @@ class Node:
                     path=path,
                     visit=visit,
                     kind=self.work.kind,
-                    inputs=entry.shown,
+                    inputs=entry.shown if point is None else dict(point.inputs),
                 )
             )
+            if point is not None:
+                for key, value in point.values.items():
+                    execution.record_write(path, path, key, value)
         execution.activity.nodes[path] = visit
         try:
             if refused is not None:

@@ -18,18 +18,22 @@ class Point:
     """
 
     visit: int
+    entered: bool = True
+    """False between two attempts: the node is to be entered, and has been before."""
     left: str | None = None
     diverted: str | None = None
     """The target, where it was left by timeout, guard or on_error."""
+    failed: bool = False
+    """It ended with the error `cause`, which nobody had handled yet."""
     cause: Cause | None = None
     passed: bool = False
     attempt: int = 1
     elapsed_s: float = 0.0
     """How long it had been performed, for its timeout."""
-    current: str | None = None
-    """The child that a machine is at, or is about to enter."""
     inputs: Mapping[str, object] = field(default_factory=dict[str, object])
     """What it was entered with, as plain data."""
+    current: str | None = None
+    """The child that a machine is at, or is about to enter, or the outcome that it is about to have."""
     values: Mapping[str, object] = field(default_factory=dict[str, object])
     """The userdata of a container's own scope."""
     branches: Mapping[str, Mapping[str, object]] = field(default_factory=dict[str, Mapping[str, object]])
@@ -37,9 +41,9 @@ class Point:
     round: int = 0
     """The round that a foreach container is in, from 0."""
     done: tuple[tuple[str, str], ...] = ()
-    """(path, outcome) of what had ended in a tree, in order."""
+    """(path, outcome) of the leaves that had ended in a tree, in order."""
 
     @property
     def active(self) -> bool:
         """Whether it had been entered and not left."""
-        return self.left is None and self.diverted is None
+        return self.left is None and self.diverted is None and not self.failed

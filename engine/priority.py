@@ -40,6 +40,10 @@ class Priority:
         """Those of its machine."""
         return self.machine.nominal
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """The values its scope begins with."""
+        return self.machine.userdata
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING

@@ -74,6 +74,10 @@ class Reference:
         """The outcomes its document calls success; all of them where it does not say."""
         return frozenset(self.target.success or self.target.outcomes)
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """The values its scope begins with."""
+        return {**self.target.userdata, **inputs}
+
     def enter(self, scope: Scope) -> Entry:
         """Evaluate its parameters and read what flows in."""
         variables = {name: scope.read(name, reader=self.position) for name in self.parameters.names}
@@ -84,7 +88,7 @@ class Reference:
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run the other behavior to one of its outcomes and copy out what `outputs` names."""
-        values = entry.point.values if entry.point is not None else {**self.target.userdata, **entry.inputs}
+        values = entry.point.values if entry.point is not None else self.initial_values(entry.inputs)
         inner = Scope(path, values)
         left = await self.target.root.perform(inner, execution)
         name = left.target or left.outcome

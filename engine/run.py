@@ -20,7 +20,7 @@ from engine.journal import NullRunJournal, RunJournal
 from engine.node import Left, explain, log
 from engine.plan import Plan
 from engine.recorder import Recorder, Watcher
-from engine.skill_port import BusPort, SkillPort
+from engine.skill_port import AttendingPort, BusPort, SkillPort
 from engine.supervision import Supervision
 from engine.suspension import Suspensions
 from engine.userdata import Scope
@@ -106,7 +106,9 @@ class Run:
         )
         if checkpoint is not None:
             self._execution.points = dict(checkpoint.points)
-            self._execution.visits = dict(checkpoint.visits)
+            self._execution.goes_on = self._goes_on
+            if self._goes_on:
+                self._execution.visits = dict(checkpoint.visits)
         self._task: asyncio.Task[Left] | None = None
         self._stop_reason: str | None = None
         self._begun = False
@@ -115,6 +117,8 @@ class Run:
         self._given_up: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._patience: asyncio.TimerHandle | None = None
         self._control = self._new_control()
+        if isinstance(skills, AttendingPort):
+            skills.begin(self._recorder)
 
     @property
     def control(self) -> Control:
@@ -177,6 +181,8 @@ class Run:
         success = outcome in self.plan.success
         if left is not None and not success:
             cause = explain(self.plan.root, left)
+        if isinstance(self._execution.skills, AttendingPort):
+            self._execution.skills.end()
         self._ended = True
         self._control.close()
         cause = await self._record_end(status, outcome, cause)

@@ -33,6 +33,7 @@ F = TypeVar("F")
 S = TypeVar("S", bound=msgspec.Struct)
 
 _NO_OUTPUT: Mapping[str, object] = {}
+_ALWAYS_WRITTEN: Mapping[str, tuple[str, ...]] = {}
 
 
 class Outcome(msgspec.Struct, frozen=True):
@@ -119,6 +120,10 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Outcomes that mean SUCCESS to a behavior tree; the others mean FAILURE."""
     resume: ClassVar[str] = "rerun"
     """What to do after a crash in mid-state: rerun, ask, or an outcome."""
+    instant: ClassVar[bool] = False
+    """True when it waits for nothing, and parameters and inputs alone decide its outcome; loops of them are found."""
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = _ALWAYS_WRITTEN
+    """Outcome → output keys that are not written with it; the check takes all others for written."""
 
     def resources(self) -> tuple[str, ...]:
         """Names of the robots and devices this state commands; leased while it runs."""

@@ -1,0 +1,326 @@
+"""Reads the events of a run in order and knows at each moment where the run stands.
+
+It is what resuming after a crash, starting from a chosen moment and the timeline of a debugger
+have in common. It needs the plan: initial userdata is in the document, not in the events.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import cast
+
+from engine.checkpoint import Checkpoint
+from engine.control.autonomy import AutonomyLevel
+from engine.document.node import FOREACH_OUTCOMES
+from engine.errors import DocumentError
+from engine.event import (
+    Cause,
+    Commanded,
+    Diverted,
+    Entered,
+    Event,
+    Exited,
+    GatePassed,
+    Retried,
+    RunEnded,
+    RunStarted,
+    Transitioned,
+    UserdataWritten,
+)
+from engine.foreach import ForEach
+from engine.nearness import near_names
+from engine.node import Node
+from engine.plan import Plan
+from engine.point import Point
+
+BY_OUTCOME = ("operator", "start")
+"""`Diverted.by` whose target is an outcome and not a place to go to."""
+
+
+@dataclass
+class _Open:
+    """A node that was entered and not left."""
+
+    visit: int
+    inputs: Mapping[str, object]
+    since_s: float
+    attempt: int = 1
+    entered: bool = True
+    current: str | None = None
+    cause: Cause | None = None
+    round: int = 0
+    done: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+
+
+@dataclass(frozen=True)
+class _Left:
+    """A node that was left, and whose container has not gone on yet."""
+
+    visit: int
+    outcome: str | None
+    diverted: str | None
+    cause: Cause | None
+    passed: bool = False
+    attempt: int = 1
+    since_s: float = 0.0
+
+
+class History:
+    """One run as its events tell it, up to the last one taken."""
+
+    def __init__(self, plan: Plan, *, run: str) -> None:
+        self.run = run
+        self.seq = 0
+        self.time_s = 0.0
+        self.ended = False
+        self.paused = False
+        self.autonomy: AutonomyLevel | None = None
+        self.locks: set[str] = set()
+        self.visits: dict[str, int] = {}
+        self.seed = 0
+        self.document = ""
+        self.parameters: dict[str, object] = {}
+        self._plan = plan
+        self._open: dict[str, _Open] = {}
+        self._left: dict[str, _Left] = {}
+        self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
+        self._pending: dict[str, list[UserdataWritten]] = {}
+
+    def read(self, events: Iterable[Event], *, until_seq: int | None = None) -> History:
+        """Take events in order, up to and with `until_seq`; returns itself."""
+        for event in events:
+            if until_seq is not None and event.seq > until_seq:
+                break
+            self.take(event)
+        return self
+
+    def take(self, event: Event) -> None:
+        """Take the next event."""
+        self.seq, self.time_s = event.seq, event.time_s
+        match event:
+            case RunStarted():
+                self.seed, self.document, self.parameters = event.seed, event.document, event.parameters
+                self._scopes[""].update(event.inputs)
+            case Entered():
+                self._enter(event)
+            case Exited():
+                self._exit(event)
+            case Diverted():
+                self._divert(event)
+            case Retried():
+                self._retry(event)
+            case Transitioned():
+                self._transition(event)
+            case UserdataWritten():
+                self._write(event)
+            case GatePassed() if event.point == "after" and event.path in self._left:
+                self._left[event.path] = replace(self._left[event.path], passed=True)
+            case Commanded():
+                self._command(event)
+            case RunEnded():
+                self.ended = True
+            case _:
+                pass
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """The paths of the nodes that are active, in order of entry."""
+        return tuple(path for path, node in self._open.items() if node.entered)
+
+    @property
+    def active_states(self) -> tuple[str, ...]:
+        """The states among them."""
+        return tuple(path for path in self.active if not self._node(path).work.children)
+
+    def userdata(self, scope: str = "") -> Mapping[str, object]:
+        """Return the values of one scope."""
+        return dict(self._scopes.get(scope, {}))
+
+    def scopes(self) -> Mapping[str, Mapping[str, object]]:
+        """Return all scopes by the path of their container."""
+        return {path: dict(values) for path, values in self._scopes.items()}
+
+    def visit(self, path: str) -> int:
+        """Return the number of the last activation of a node."""
+        return self.visits.get(path, 0)
+
+    def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
+        """Return the present moment as something to go on from; states in mid-work are to be entered again."""
+        points: dict[str, Point] = {}
+        for path, node in self._open.items():
+            points[path] = self._open_point(path, node)
+        for path, left in self._left.items():
+            points[path] = Point(
+                visit=left.visit,
+                left=left.outcome,
+                diverted=left.diverted,
+                failed=left.outcome is None and left.diverted is None,
+                cause=left.cause,
+                passed=left.passed,
+            )
+        return Checkpoint(
+            run=self.run,
+            seq=self.seq,
+            time_s=self.time_s,
+            userdata=self.userdata(),
+            points=points,
+            visits=dict(self.visits),
+            parameters=self.parameters,
+            seed=self.seed,
+            epoch=epoch,
+            rerun=self.active_states,
+        )
+
+    def _open_point(self, path: str, node: _Open) -> Point:
+        work = self._node(path).work
+        scope = f"{path}#{node.round}" if isinstance(work, ForEach) else path
+        branches = {
+            name: self._scopes[f"{path}/{name}*"] for name in work.children if f"{path}/{name}*" in self._scopes
+        }
+        return Point(
+            visit=node.visit,
+            entered=node.entered,
+            attempt=node.attempt,
+            elapsed_s=self.time_s - node.since_s,
+            inputs=node.inputs,
+            current=node.current,
+            cause=node.cause,
+            values=dict(self._scopes.get(scope, {})),
+            branches=branches,
+            round=node.round,
+            done=tuple(node.done),
+        )
+
+    def _node(self, path: str) -> Node:
+        node = self._plan.nodes.get(path)
+        if node is None:
+            raise DocumentError(
+                "the events speak of a node that the behavior does not have",
+                where=path,
+                hint=f"the document has changed since; {near_names(path, self._plan.nodes)}",
+            )
+        return node
+
+    def _enter(self, event: Entered) -> None:
+        path = event.path
+        self.visits[path] = event.visit
+        again = self._open.pop(path, None)
+        self._left.pop(path, None)
+        self._pending.pop(path, None)
+        between = again is not None and not again.entered
+        self._open[path] = _Open(
+            visit=event.visit,
+            inputs=event.inputs,
+            since_s=again.since_s if again is not None else event.time_s,
+            attempt=again.attempt if again is not None and between else 1,
+        )
+        container = self._open.get(path.rpartition("/")[0])
+        if container is not None:
+            container.current = path.rpartition("/")[2]
+        work = self._node(path).work
+        own = dict(work.initial_values(event.inputs))
+        if isinstance(work, ForEach):
+            self._begin_round(path, work, event.inputs, 0)
+        else:
+            self._scopes[path] = own
+
+    def _begin_round(self, path: str, work: ForEach, inputs: Mapping[str, object], number: int) -> None:
+        items = cast("list[object]", inputs.get("items", []))
+        self._scopes.pop(f"{path}#{number - 1}", None)
+        if number < len(items):
+            self._scopes[f"{path}#{number}"] = work.round_values(number, items[number])
+
+    def _write(self, event: UserdataWritten) -> None:
+        """What a node writes counts from its end on: one that is entered again writes again."""
+        if event.path in self._open and not event.path == event.scope:
+            self._pending.setdefault(event.path, []).append(event)
+        else:
+            self._scopes.setdefault(event.scope, {})[event.key] = event.value
+
+    def _commit_writes(self, path: str) -> None:
+        for event in self._pending.pop(path, ()):
+            self._scopes.setdefault(event.scope, {})[event.key] = event.value
+
+    def _exit(self, event: Exited) -> None:
+        path = event.path
+        self._commit_writes(path)
+        node = self._open.pop(path, None)
+        self._forget_inside(path)
+        if event.preempted:
+            return
+        outcome = event.outcome or None
+        self._left[path] = _Left(
+            event.visit,
+            outcome,
+            None,
+            event.cause,
+            attempt=node.attempt if node is not None else 1,
+            since_s=node.since_s if node is not None else event.time_s,
+        )
+        if outcome is not None:
+            self._done_in_tree(path, outcome)
+
+    def _divert(self, event: Diverted) -> None:
+        path = event.path
+        self._open.pop(path, None)
+        self._forget_inside(path)
+        by_outcome = event.by in BY_OUTCOME
+        outcome, target = (event.target, None) if by_outcome else (None, event.target)
+        self._left[path] = _Left(event.visit, outcome, target, event.cause)
+        self._done_in_tree(path, event.target)
+
+    def _retry(self, event: Retried) -> None:
+        left = self._left.pop(event.path, None)
+        since_s = left.since_s if left is not None else event.time_s
+        self._open[event.path] = _Open(self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False)
+
+    def _transition(self, event: Transitioned) -> None:
+        left = self._left.pop(f"{event.path}/{event.source}", None)
+        self._commit_writes(event.path)
+        container = self._open.get(event.path)
+        if container is None:
+            return
+        container.current = event.target
+        if left is not None and left.cause is not None:
+            container.cause = left.cause
+        work = self._node(event.path).work
+        if isinstance(work, ForEach):
+            if event.target not in FOREACH_OUTCOMES:
+                container.round += 1
+                self._begin_round(event.path, work, container.inputs, container.round)
+
+    def _done_in_tree(self, path: str, outcome: str) -> None:
+        """Tell the tree around a leaf that it has ended."""
+        above = path
+        while above := above.rpartition("/")[0]:
+            node = self._open.get(above)
+            if node is None:
+                continue
+            if self._node(above).work.kind == "tree":
+                node.done.append((path, outcome))
+            return
+
+    def _command(self, event: Commanded) -> None:
+        match event.command:
+            case "pause":
+                self.paused = True
+            case "resume":
+                self.paused = False
+            case "lock":
+                self.locks.add(event.path)
+            case "unlock":
+                self.locks.discard(event.path)
+            case "autonomy":
+                self.autonomy = cast("AutonomyLevel", event.arguments["level"])
+            case _:
+                pass
+
+    def _forget_inside(self, path: str) -> None:
+        """What was inside a node that was left is over."""
+        self._scopes.pop(path, None)
+        below = f"{path}/"
+        rounds = f"{path}#"
+        for table in (self._open, self._left, self._scopes):
+            for inner in [key for key in table if key.startswith((below, rounds))]:
+                del table[inner]
