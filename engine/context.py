@@ -97,7 +97,7 @@ class RunningContext:
         self._calls += 1
         call = f"{self.path}#{self._visit}.c{self._calls}"
         self._record_called(call, request, f"{to}/{request.skill_name()}")
-        await execution.recorder.commit()
+        await execution.commit()
         try:
             answer = await execution.skills.call(request, to=to, holder=self._holder)
         except FlexcellError as error:
@@ -116,7 +116,7 @@ class RunningContext:
         goal_id = f"{self.path}#{self._visit}.{self._goals}"
         self._record_sent(goal_id, goal, f"{to}/{goal.skill_name()}")
         try:
-            await execution.recorder.commit()
+            await execution.commit()
             sent = execution.skills.send_goal(goal, to=to, holder=self._holder, goal_id=goal_id)
         except FlexcellError as error:
             self._record_finished(GoalEnd(GoalStatus.REJECTED, None, cause_of(error)), goal_id)

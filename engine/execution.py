@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import random
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -44,6 +45,8 @@ class Execution:
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, Point] = field(default_factory=dict[str, Point])
     """Where nodes stood that are gone on with; each is taken once."""
+    world: Callable[[], Awaitable[bytes | None]] | None = None
+    """Gives the state of the simulated world, to be kept with every commit."""
     goes_on: bool = False
     """Whether the points are those of this very run, whose events tell how they were reached."""
 
@@ -64,6 +67,18 @@ class Execution:
         recorder.record(Abandoned(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, waited_s=waited_s))
         if task is not None:
             self.abandoned[path] = task
+
+    async def commit(self) -> None:
+        """Make everything so far durable, the simulated world included; due before any effect.
+
+        Raises:
+            JournalError: it cannot be written; the run must stop.
+        """
+        if self.world is not None:
+            state = await self.world()
+            if state is not None:
+                self.recorder.keep_world(state)
+        await self.recorder.commit()
 
     def point(self, path: str) -> Point | None:
         """Take the point at which the node is to be gone on with, if any."""

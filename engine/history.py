@@ -233,7 +233,7 @@ class History:
 
     def _write(self, event: UserdataWritten) -> None:
         """What a node writes counts from its end on: one that is entered again writes again."""
-        if event.path in self._open and not event.path == event.scope:
+        if event.path in self._open and event.path != event.scope:
             self._pending.setdefault(event.path, []).append(event)
         else:
             self._scopes.setdefault(event.scope, {})[event.key] = event.value
@@ -285,10 +285,9 @@ class History:
         if left is not None and left.cause is not None:
             container.cause = left.cause
         work = self._node(event.path).work
-        if isinstance(work, ForEach):
-            if event.target not in FOREACH_OUTCOMES:
-                container.round += 1
-                self._begin_round(event.path, work, container.inputs, container.round)
+        if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
+            container.round += 1
+            self._begin_round(event.path, work, container.inputs, container.round)
 
     def _done_in_tree(self, path: str, outcome: str) -> None:
         """Tell the tree around a leaf that it has ended."""

@@ -62,6 +62,11 @@ class Leaf:
         given = self.parameters.evaluate({})
         return Entry(self._instance(given), {}, _plain(given))
 
+    @cached_property
+    def commands_hardware(self) -> bool:
+        """Whether its class leases anything while it runs."""
+        return self.state.resources is not State.resources
+
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Nothing: it has no scope of its own."""
         return {}

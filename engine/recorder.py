@@ -59,6 +59,10 @@ class Recorder:
         """Stop calling it."""
         self._watchers = tuple(w for w in self._watchers if w is not watcher)
 
+    def keep_world(self, state: bytes) -> None:
+        """Keep the simulated world as it is now with the next commit."""
+        self._journal.keep_world(state)
+
     async def commit(self) -> None:
         """Make what was recorded durable; due before any effect leaves the engine."""
         await self._journal.commit()

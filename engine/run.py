@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import msgspec
@@ -56,6 +56,7 @@ class Run:
         skills: Stands in for the bus where robots are recorded, or faults injected.
         supervision: Operator, autonomy, breakpoints, time-outs.
         checkpoint: The moment to go on from; of this run after a crash, or of another one.
+        world: Gives the state of the simulated world, kept in the journal with every commit.
         instant_limit: Transitions in a row in which nothing is waited for before a loop is reported.
 
     Raises:
@@ -75,6 +76,7 @@ class Run:
         skills: SkillPort | None = None,
         supervision: Supervision | None = None,
         checkpoint: Checkpoint | None = None,
+        world: Callable[[], Awaitable[bytes | None]] | None = None,
         instant_limit: int = 10_000,
     ) -> None:
         self.id = run
@@ -103,6 +105,7 @@ class Run:
             gate=Gate(self._recorder, suspensions),
             instant_limit=instant_limit,
             abandon_after_s=self._supervision.abandon_after_s,
+            world=world,
         )
         if checkpoint is not None:
             self._execution.points = dict(checkpoint.points)
@@ -367,7 +370,7 @@ class Run:
             )
         )
         try:
-            await self._recorder.commit()
+            await self._execution.commit()
         except JournalError as error:
             return cause_of(error)
         return cause

@@ -118,8 +118,9 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     """Output key → type."""
     success: ClassVar[tuple[str, ...]] = ()
     """Outcomes that mean SUCCESS to a behavior tree; the others mean FAILURE."""
-    resume: ClassVar[str] = "rerun"
-    """What to do after a crash in mid-state: rerun, ask, or an outcome."""
+    resume: ClassVar[str] = ""
+    """What to do after a crash in mid-state: rerun, ask, or an outcome; by default ask where it commands
+    hardware and an operator is demanded, else rerun."""
     instant: ClassVar[bool] = False
     """True when it waits for nothing, and parameters and inputs alone decide its outcome; loops of them are found."""
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = _ALWAYS_WRITTEN

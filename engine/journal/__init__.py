@@ -4,11 +4,12 @@
 plain cheap call and `await commit()` returns when all of it is on the disk.
 """
 
+from engine.journal.batch import WorldState
 from engine.journal.codec import decode_event, encode_event, encode_event_log
 from engine.journal.journal import Journal, SqliteRunJournal, journal_path
 from engine.journal.null import NullJournal, NullRunJournal
-from engine.journal.port import JournalPort, RunJournal, RunRecord
-from engine.journal.reader import list_runs, read_events
+from engine.journal.port import JournalPort, RunJournal, RunOrigin, RunRecord
+from engine.journal.reader import list_runs, read_events, read_origin, read_world
 
 __all__ = [
     "Journal",
@@ -16,12 +17,16 @@ __all__ = [
     "NullJournal",
     "NullRunJournal",
     "RunJournal",
+    "RunOrigin",
     "RunRecord",
     "SqliteRunJournal",
+    "WorldState",
     "decode_event",
     "encode_event",
     "encode_event_log",
     "journal_path",
     "list_runs",
     "read_events",
+    "read_origin",
+    "read_world",
 ]

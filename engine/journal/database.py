@@ -6,12 +6,16 @@ import sqlite3
 from collections.abc import Sequence
 from pathlib import Path
 
+import msgspec
+
 from engine.errors import JournalError
 from engine.event import Event, RunEnded
+from engine.journal.batch import Batch
 from engine.journal.codec import encode_event
+from engine.journal.port import RunOrigin
 from engine.sqlite_file import advice, open_sqlite
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS run(
     id TEXT PRIMARY KEY, behavior TEXT NOT NULL, hash TEXT NOT NULL, status TEXT NOT NULL,
@@ -19,6 +23,8 @@ CREATE TABLE IF NOT EXISTS run(
 CREATE TABLE IF NOT EXISTS event(
     run TEXT NOT NULL, seq INTEGER NOT NULL, time_s REAL NOT NULL, epoch INTEGER NOT NULL, data TEXT NOT NULL,
     PRIMARY KEY (run, seq)) STRICT, WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS origin(run TEXT PRIMARY KEY, data TEXT NOT NULL) STRICT;
+CREATE TABLE IF NOT EXISTS world(run TEXT PRIMARY KEY, seq INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
 """
 _INSERT_EVENT = "INSERT INTO event(run, seq, time_s, epoch, data) VALUES (?, ?, ?, ?, ?)"
 
@@ -43,17 +49,27 @@ class JournalDatabase:
             raise journal_fault("cannot be opened", path, error) from error
         return cls(path, connection)
 
-    def insert_run(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> int:
+    def insert_run(
+        self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None
+    ) -> int:
         """Store a new run as running; return its epoch."""
         try:
+            self._connection.execute("BEGIN IMMEDIATE")
             self._connection.execute(
                 "INSERT INTO run(id, behavior, hash, status, epoch, started) VALUES (?, ?, ?, 'running', 1, ?)",
                 (run_id, behavior, document, started_unix_s),
             )
+            if origin is not None:
+                text = msgspec.json.encode(origin).decode()
+                self._connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
+            self._connection.execute("COMMIT")
         except sqlite3.IntegrityError as error:
             raise JournalError(f"run {run_id} is there already", where=self.path, hint="resume it") from error
         except sqlite3.Error as error:
             raise journal_fault("cannot be written", self.path, error) from error
+        finally:
+            if self._connection.in_transaction:
+                self._connection.rollback()
         return 1
 
     def take_over_run(self, run_id: str) -> int:
@@ -68,21 +84,22 @@ class JournalDatabase:
             raise JournalError(f"there is no run {run_id}", where=self.path, hint="`flexcell runs` lists them")
         return int(row[0])
 
-    def store(self, batches: Sequence[tuple[str, int, Sequence[Event]]]) -> None:
-        """Write the events of several runs, (run, epoch, events) each, in one durable transaction.
+    def store(self, batches: Sequence[Batch]) -> None:
+        """Write what several runs have, in one durable transaction.
 
         Raises:
             RunRefused: one run may not write or gave an event twice; nothing was written.
             JournalError: the file cannot be written; nothing was.
         """
-        rows = [(run, epoch, _rows(run, epoch, events)) for run, epoch, events in batches]
+        rows = [(each.run, each.epoch, _rows(each.run, each.epoch, each.events)) for each in batches]
         try:
             self._connection.execute("BEGIN IMMEDIATE")
             for run, epoch, events in rows:
                 self._check_fence(run, epoch)
                 self._insert_events(run, events)
-            for run, _, events in batches:
-                self._store_status(run, events)
+            for each in batches:
+                self._store_status(each.run, each.events)
+                self._store_world(each)
             self._connection.execute("COMMIT")
         except sqlite3.Error as error:
             raise journal_fault("cannot be written", self.path, error) from error
@@ -110,6 +127,11 @@ class JournalDatabase:
             self._connection.executemany(_INSERT_EVENT, rows)
         except sqlite3.IntegrityError as error:
             raise RunRefused(f"an event from seq {rows[0][1]} on is stored already: {error}", where=run) from error
+
+    def _store_world(self, batch: Batch) -> None:
+        if batch.world is not None:
+            row = (batch.run, batch.world.seq, batch.world.data)
+            self._connection.execute("INSERT OR REPLACE INTO world(run, seq, data) VALUES (?, ?, ?)", row)
 
     def _store_status(self, run: str, events: Sequence[Event]) -> None:
         for event in events:

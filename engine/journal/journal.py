@@ -9,7 +9,9 @@ from typing import Self
 
 from engine.errors import JournalError
 from engine.event import Event
+from engine.journal.batch import WorldState
 from engine.journal.database import JournalDatabase
+from engine.journal.port import RunOrigin
 from engine.journal.writer import WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
 
 JOURNAL_FILE = "journal.db"
@@ -42,9 +44,14 @@ class SqliteRunJournal:
     def append(self, event: Event) -> None:
         """Take an event; it is encoded and written by the next commit of any run."""
         self._ledger.appended += 1
+        self._ledger.last_seq = event.seq
         self._queue.append((self._ledger, event))
         if len(self._queue) >= WAKE_AT_EVENTS:
             self._writer.wake()
+
+    def keep_world(self, state: bytes) -> None:
+        """Take the state of the simulated world; the next commit stores it together with the events so far."""
+        self._queue.append((self._ledger, WorldState(self._ledger.last_seq, state)))
 
     async def commit(self) -> None:
         """Return once everything appended before is on the disk.
@@ -100,7 +107,9 @@ class Journal:
             writer.start()
         return cls(database, writer)
 
-    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> SqliteRunJournal:
+    def begin(
+        self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
+    ) -> SqliteRunJournal:
         """Enter a new run durably (one disk sync, on the calling thread) and return its journal.
 
         Raises:
@@ -109,7 +118,7 @@ class Journal:
         self._refuse_unusable()
         with self._writer.lock:
             epoch = self._database.insert_run(
-                run_id, behavior=behavior, document=document, started_unix_s=started_unix_s
+                run_id, behavior=behavior, document=document, started_unix_s=started_unix_s, origin=origin
             )
         return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from engine.event import Event
+from engine.journal.port import RunOrigin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,6 +18,9 @@ class NullRunJournal:
     def append(self, event: Event) -> None:
         """Forget the event."""
 
+    def keep_world(self, state: bytes) -> None:
+        """Forget it."""
+
     async def commit(self) -> None:
         """Return at once; nothing is durable."""
 
@@ -24,7 +28,9 @@ class NullRunJournal:
 class NullJournal:
     """Begins and resumes any run and writes nothing."""
 
-    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> NullRunJournal:
+    def begin(
+        self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
+    ) -> NullRunJournal:
         """Return a journal that forgets."""
         return NullRunJournal(run_id=run_id)
 

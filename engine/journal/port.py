@@ -25,6 +25,18 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     last_seq: int
 
 
+class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """How a run was started, for whoever resumes it; paths are absolute."""
+
+    behavior: str
+    cell: str | None = None
+    store: str | None = None
+    seed: int | None = None
+    clock: str = "real"
+    autonomy: str = "full"
+    demand_operator: bool = False
+
+
 class RunJournal(Protocol):
     """The part of a journal that belongs to one run; used on the run's event loop."""
 
@@ -46,6 +58,10 @@ class RunJournal(Protocol):
         """
         ...
 
+    def keep_world(self, state: bytes) -> None:
+        """Take the state of the simulated world as of now; the next commit stores it with the events."""
+        ...
+
     async def commit(self) -> None:
         """Return once everything appended before is on the disk.
 
@@ -58,7 +74,9 @@ class RunJournal(Protocol):
 class JournalPort(Protocol):
     """Where runs are journaled."""
 
-    def begin(self, run_id: str, *, behavior: str, document: str, started_unix_s: float) -> RunJournal:
+    def begin(
+        self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
+    ) -> RunJournal:
         """Enter a new run durably and return its journal; `document` is the behavior's content hash.
 
         Raises:

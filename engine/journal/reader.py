@@ -7,12 +7,15 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
+import msgspec
+
 from engine.errors import JournalError
 from engine.event import AnyEvent
+from engine.journal.batch import WorldState
 from engine.journal.codec import decode_event
 from engine.journal.database import journal_fault
 from engine.journal.journal import journal_path
-from engine.journal.port import RunRecord
+from engine.journal.port import RunOrigin, RunRecord
 from engine.nearness import near_names
 from engine.sqlite_file import read_sqlite
 
@@ -55,6 +58,33 @@ def read_events(place: Path | str, run_id: str) -> tuple[AnyEvent, ...]:
             raise JournalError(f"there is no run {run_id}", where=journal_path(place), hint=near_names(run_id, known))
         rows = connection.execute("SELECT data FROM event WHERE run = ? ORDER BY seq", (run_id,))
         return tuple(decode_event(str(row[0])) for row in rows)
+
+
+def read_origin(place: Path | str, run_id: str) -> RunOrigin | None:
+    """Return how a run was started; None where the journal does not know.
+
+    Raises:
+        JournalError: the journal cannot be read, or the entry is damaged.
+    """
+    with _reading(place) as connection:
+        row = connection.execute("SELECT data FROM origin WHERE run = ?", (run_id,)).fetchone()
+    if row is None:
+        return None
+    try:
+        return msgspec.json.decode(str(row[0]), type=RunOrigin)
+    except msgspec.DecodeError as error:
+        raise JournalError(f"the origin of run {run_id} is damaged: {error}", where=journal_path(place)) from error
+
+
+def read_world(place: Path | str, run_id: str) -> WorldState | None:
+    """Return the simulated world as the last commit of a run left it; None where there was none.
+
+    Raises:
+        JournalError: the journal cannot be read.
+    """
+    with _reading(place) as connection:
+        row = connection.execute("SELECT seq, data FROM world WHERE run = ?", (run_id,)).fetchone()
+    return WorldState(int(row[0]), bytes(row[1])) if row is not None else None
 
 
 @contextmanager

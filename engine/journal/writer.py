@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from engine.errors import JournalError
 from engine.event import Event
+from engine.journal.batch import Batch, WorldState
 from engine.journal.database import JournalDatabase, RunRefused
 
 WAKE_AT_EVENTS = 4096
@@ -24,7 +25,14 @@ class Ledger:
     epoch: int
     appended: int = 0
     durable: int = 0
+    last_seq: int = 0
     failure: JournalError | None = None
+
+
+@dataclass(eq=False)
+class _Group:
+    events: list[Event] = field(default_factory=list[Event])
+    world: WorldState | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +59,7 @@ class Waiter:
             self.future.set_exception(error)
 
 
-Item = tuple[Ledger, Event] | Waiter
+Item = tuple[Ledger, Event | WorldState] | Waiter
 
 
 class GroupWriter:
@@ -121,13 +129,15 @@ class GroupWriter:
             self._wake.clear()
             self.flush()
 
-    def _write(self, groups: dict[Ledger, list[Event]]) -> None:
+    def _write(self, groups: dict[Ledger, _Group]) -> None:
         while True:
-            ready = {ledger: events for ledger, events in groups.items() if ledger.failure is None}
+            ready = {ledger: group for ledger, group in groups.items() if ledger.failure is None}
             if not ready or self.failure is not None:
                 return
             try:
-                self._database.store([(ledger.run_id, ledger.epoch, events) for ledger, events in ready.items()])
+                self._database.store(
+                    [Batch(ledger.run_id, ledger.epoch, group.events, group.world) for ledger, group in ready.items()]
+                )
             except RunRefused as error:
                 refused = next(ledger for ledger in ready if ledger.run_id == error.where)
                 refused.failure = JournalError(error.message, where=self._database.path, hint=error.hint)
@@ -135,16 +145,22 @@ class GroupWriter:
             except JournalError as error:
                 self.failure = error
                 return
-            for ledger, events in ready.items():
-                ledger.durable += len(events)
+            for ledger, group in ready.items():
+                ledger.durable += len(group.events)
             return
 
 
-def _by_ledger(items: Sequence[Item]) -> dict[Ledger, list[Event]]:
-    groups: dict[Ledger, list[Event]] = {}
+def _by_ledger(items: Sequence[Item]) -> dict[Ledger, _Group]:
+    groups: dict[Ledger, _Group] = {}
     for item in items:
-        if not isinstance(item, Waiter):
-            groups.setdefault(item[0], []).append(item[1])
+        if isinstance(item, Waiter):
+            continue
+        ledger, what = item
+        group = groups.setdefault(ledger, _Group())
+        if isinstance(what, WorldState):
+            group.world = what
+        else:
+            group.events.append(what)
     return groups
 
 

@@ -1,0 +1,186 @@
+"""Going on with a run whose engine died, or from a chosen moment of any run.
+
+What had ended is not done again. A state in mid-work follows its policy: the node's `resume`, else
+that of its class, else `ask` where it commands hardware and an operator is demanded, else `rerun`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from engine.checkpoint import Checkpoint
+from engine.control.step import inside
+from engine.errors import ControlError, DocumentError
+from engine.event import Cause, Entered, Event, RunResumed
+from engine.history import History
+from engine.leaf import Leaf
+from engine.nearness import near_names
+from engine.node import Node
+from engine.plan import Plan
+from engine.point import Point
+
+RERUN, ASK = "rerun", "ask"
+
+
+class NeedsAnswers(ControlError):
+    """States in mid-work ask what to do with them; `questions` names them with their outcomes."""
+
+    def __init__(self, questions: Sequence[Question]) -> None:
+        self.questions = tuple(questions)
+        asked = "; ".join(f"{each.path} (rerun, {', '.join(each.outcomes)})" for each in questions)
+        super().__init__(
+            f"the run was in the middle of what must be decided: {asked}",
+            hint="look at the cell, then answer each with `--answer PATH=rerun` or `--answer PATH=OUTCOME`",
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """A state that was in mid-work and asks."""
+
+    path: str
+    outcomes: tuple[str, ...]
+
+
+def effective(events: Iterable[Event]) -> list[Event]:
+    """Return the events that count: a resumed run may have begun again before its last ones."""
+    kept: list[Event] = []
+    for event in events:
+        if isinstance(event, RunResumed):
+            while kept and kept[-1].seq > event.after_seq:
+                kept.pop()
+        kept.append(event)
+    return kept
+
+
+def read_history(plan: Plan, run: str, events: Iterable[Event], *, until_seq: int | None = None) -> History:
+    """Return where a run stood at its end, or at one of its events.
+
+    Raises:
+        DocumentError: the events speak of nodes that the plan does not have.
+    """
+    return History(plan, run=run).read(effective(events), until_seq=until_seq)
+
+
+def resumed(
+    history: History,
+    plan: Plan,
+    *,
+    answers: Mapping[str, str],
+    demanded: bool = False,
+    last_seq: int,
+    epoch: int = 1,
+) -> Checkpoint:
+    """Return the moment to go on from, every state in mid-work decided.
+
+    Args:
+        history: Where the run stood.
+        plan: The behavior.
+        answers: rerun, or an outcome, for states that ask; they also override the policy of others.
+        demanded: Whether the run demands an operator.
+        last_seq: The number of the last event that the journal holds; new ones come after it.
+        epoch: Which engine of this run it is.
+
+    Raises:
+        NeedsAnswers: states ask and have no answer.
+        ControlError: an answer names no such state or outcome, or the run is over.
+    """
+    if history.ended:
+        raise ControlError("this run is over", where=history.run, hint="start a new one")
+    for path in answers:
+        if path not in history.active_states:
+            hint = near_names(path, history.active_states)
+            raise ControlError("this state was not in mid-work", where=path, hint=hint)
+    policies = {path: answers.get(path) or policy_of(plan.nodes[path], demanded) for path in history.active_states}
+    questions = [
+        Question(path=path, outcomes=tuple(plan.outcomes_of(path) or ()))
+        for path, policy in policies.items()
+        if policy == ASK
+    ]
+    if questions:
+        raise NeedsAnswers(questions)
+    checkpoint = history.checkpoint(epoch=epoch)
+    points = dict(checkpoint.points)
+    taken = {path: policy for path, policy in policies.items() if policy != RERUN}
+    for path, outcome in taken.items():
+        known = plan.outcomes_of(path) or ()
+        if outcome not in known:
+            raise ControlError(f"there is no outcome {outcome!r}", where=path, hint=near_names(outcome, known))
+        said = f"the engine died in the middle of it; taken as {outcome}"
+        cause = Cause(message=said, where=path, kind="Resumed")
+        points[path] = Point(visit=points[path].visit, left=outcome, cause=cause)
+    return replace(
+        checkpoint,
+        seq=last_seq,
+        points=points,
+        taken=taken,
+        rerun=tuple(path for path, policy in policies.items() if policy == RERUN),
+    )
+
+
+def policy_of(node: Node, demanded: bool) -> str:
+    """Return what becomes of a state that a crash found in mid-work: rerun, ask, or an outcome."""
+    if node.resume is not None:
+        return node.resume
+    work = node.work
+    if not isinstance(work, Leaf):
+        return RERUN
+    if work.state.resume:
+        return work.state.resume
+    return ASK if demanded and work.commands_hardware else RERUN
+
+
+def started_from(history: History, plan: Plan, path: str) -> Checkpoint:
+    """Return the moment of `history` as the start of a new run that begins with the node at `path`.
+
+    Containers around it have the userdata of that moment, or their initial values where they were
+    not active. Branches beside it go on as they stood.
+
+    Raises:
+        ControlError: there is no such node, or it is inside a referred behavior that was not active.
+    """
+    if path not in plan.nodes:
+        raise ControlError("there is no such node", where=path, hint=near_names(path, plan.nodes))
+    moment = history.checkpoint()
+    points: dict[str, Point] = {}
+    around = [above for above in plan.nodes if above != path and inside(above, path)]
+    for above in around:
+        node = plan.nodes[above]
+        name = path.removeprefix(f"{above}/").partition("/")[0]
+        known = moment.points.get(above)
+        if known is None or not known.active:
+            if node.work.kind == "behavior":
+                raise ControlError("the behavior around it was not active then", where=above, hint="start before it")
+            known = Point(visit=1, values=node.work.initial_values({}))
+        points[above] = replace(known, current=name, attempt=1, elapsed_s=0.0)
+        if node.work.kind == "concurrency":
+            points |= _beside(moment, above, name)
+    return replace(moment, points=points, rerun=(path,))
+
+
+def _beside(moment: Checkpoint, container: str, name: str) -> dict[str, Point]:
+    """Return the points of the other branches of a concurrency container."""
+    own = f"{container}/{name}"
+    return (
+        {path: point for path, point in moment.points.items() if inside(container, path) and not inside(own, path)}
+        if container in moment.points
+        else {}
+    )
+
+
+def last_entered(events: Iterable[Event], seq: int) -> str:
+    """Return the state that was entered last at event `seq`.
+
+    Raises:
+        DocumentError: none was entered yet.
+    """
+    found = ""
+    for event in events:
+        if event.seq > seq:
+            break
+        if isinstance(event, Entered) and event.kind == "state":
+            found = event.path
+    if not found:
+        raise DocumentError(f"no state was entered before event {seq}", hint="choose a later one")
+    return found
