@@ -10,10 +10,13 @@ from engine.point import Point
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """Everything of a run that its events up to `seq` tell; values are plain data."""
+    """Everything of a run that its events up to `read_seq` tell; values are plain data."""
 
     run: str
     seq: int
+    """The number of the last event that is kept; new ones are numbered from the next."""
+    read_seq: int
+    """The last event that counts; those between, if any, tell of what is done anew."""
     time_s: float
     userdata: Mapping[str, object]
     """The values of the behavior's own scope."""

@@ -104,7 +104,7 @@ class Concurrency:
             for name in sorted(arrived, key=self._rank.__getitem__):
                 finished[name] = _as_outcome(tasks[name].result())
             arrived.clear()
-            for condition in execution.latest(path, self).conditions:
+            for condition in execution.latest(f"{path}/", self).conditions:
                 if condition.holds(finished):
                     return Outcome(condition.outcome, cause=self._cause(condition.outcome, finished))
         return self._uncovered(path, finished)

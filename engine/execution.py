@@ -20,7 +20,7 @@ from engine.recorder import Recorder
 from engine.skill_port import SkillPort
 from engine.suspension import Suspensions
 
-W = TypeVar("W")
+N = TypeVar("N")
 
 
 @dataclass(kw_only=True)
@@ -51,7 +51,7 @@ class Execution:
     """Whether the points are those of this very run, whose events tell how they were reached."""
 
     replaced: dict[str, object] = field(default_factory=dict[str, object])
-    """Containers by path whose definition a hot change has replaced."""
+    """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
 
@@ -84,12 +84,12 @@ class Execution:
         """Take the point at which the node is to be gone on with, if any."""
         return self.points.pop(path, None) if self.points else None
 
-    def latest(self, path: str, work: W) -> W:
-        """Return the present definition of a container: another one after a hot change."""
+    def latest(self, path: str, node: N) -> N:
+        """Return the present definition of a node: another one after a hot change."""
         if not self.replaced:
-            return work
+            return node
         found = self.replaced.get(path)
-        return found if isinstance(found, type(work)) else work
+        return found if isinstance(found, type(node)) else node
 
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
         """Record that the node at `path` wrote `key` into `scope`."""

@@ -89,7 +89,7 @@ class ForEach:
             own = point.values if point is not None and resumed else loop.round_values(number, items[number])
             inner = Scope(f"{path}#{number}", own, scope)
             left = await loop.child.perform(inner, execution)
-            loop = execution.latest(path, loop)
+            loop = execution.latest(f"{path}/", loop)
             goes_on = (left.target or left.outcome) in loop.next
             last = number == len(items) - 1
             if goes_on:

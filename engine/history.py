@@ -162,6 +162,7 @@ class History:
         return Checkpoint(
             run=self.run,
             seq=self.seq,
+            read_seq=self.seq,
             time_s=self.time_s,
             userdata=self.userdata(),
             points=points,

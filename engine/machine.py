@@ -72,7 +72,7 @@ class Machine:
         while True:
             left = await machine.children[name].perform(inner, execution)
             # After a hot change the transitions are those of the new version.
-            machine = execution.latest(path, machine)
+            machine = execution.latest(f"{path}/", machine)
             child = machine.children[name]
             if left.cause is not None or (left.outcome and left.outcome not in child.work.nominal):
                 went_wrong = explain(child, left)

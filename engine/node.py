@@ -170,10 +170,11 @@ class Node:
                 if gate.armed and point is None:
                     order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
                 if order is None:
-                    if self._plain:
-                        left = await self._attempt(scope, execution, point)
+                    node = execution.latest(self.path, self)
+                    if node._plain:
+                        left = await node._attempt(scope, execution, point)
                     else:
-                        left = await self._guarded(scope, execution, point)
+                        left = await node._guarded(scope, execution, point)
             except asyncio.CancelledError:
                 order = self._ordered(execution)
                 if order is None:
@@ -191,7 +192,7 @@ class Node:
 
     async def _after(self, left: Left, scope: Scope, execution: Execution) -> Order | None:
         visit = execution.visits.get(self.path, 0)
-        required = self.autonomy.get(left.outcome, "off")
+        required = execution.latest(self.path, self).autonomy.get(left.outcome, "off")
         return await execution.gate.after(self.path, visit, left.outcome, required, scope)
 
     def _ordered(self, execution: Execution) -> Order | None:

@@ -21,6 +21,7 @@ from engine.priority import Priority
 from engine.reference import Reference
 from engine.registry import state_by_path
 from engine.state import State
+from engine.tree import new_tree
 
 Catalogue = Mapping[str, type[State]]
 
@@ -106,6 +107,7 @@ class _Planner:
             "concurrency": self._concurrency,
             "priority": self._priority,
             "foreach": self._foreach,
+            "tree": self._tree,
             "behavior": self._reference,
         }
         if node.kind not in makers:
@@ -156,6 +158,9 @@ class _Planner:
             userdata=rounds.userdata,
             position=str(self.behavior.position(inside)),
         )
+
+    def _tree(self, inside: str, node: nodes.Node) -> Work:
+        return new_tree(inside, node, base=self.base, behavior=self.behavior, plan=self.node)
 
     def _concurrency(self, inside: str, node: nodes.Node) -> Work:
         container = node.concurrency

@@ -54,7 +54,7 @@ class Priority:
         execution.suspensions.hold(reason, lambda other: not inside(path, other) and not inside(other, path))
         execution.gate.arm()
         try:
-            return await execution.latest(path, self).machine.run(entry, path, visit, scope, execution)
+            return await self.machine.run(entry, path, visit, scope, execution)
         finally:
             execution.suspensions.release(reason)
             execution.gate.arm()

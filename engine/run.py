@@ -7,19 +7,19 @@ import random
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import msgspec
-
 from engine.bus import SkillBus
 from engine.cause import cause_of, under
 from engine.checkpoint import Checkpoint
 from engine.control import Control, Gate
-from engine.errors import FlexcellError, JournalError, NotStopped
-from engine.event import Cause, Commanded, Exited, RunEnded, RunResumed, RunStarted, StopRequested
+from engine.errors import ControlError, FlexcellError, JournalError, NotStopped
+from engine.event import Cause
 from engine.execution import Execution
+from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
-from engine.node import Left, explain, log
+from engine.node import Left, Node, explain, log
 from engine.plan import Plan
 from engine.recorder import Recorder, Watcher
+from engine.run_log import RunLog
 from engine.skill_port import AttendingPort, BusPort, SkillPort
 from engine.supervision import Supervision
 from engine.suspension import Suspensions
@@ -83,6 +83,7 @@ class Run:
         self.plan = plan
         self.seed = seed
         self.parameters = plan.checked_parameters(parameters or {})
+        self._parameters = Scope("parameters", self.parameters)
         self._inputs = plan.checked_inputs(inputs or {})
         self._supervision = supervision or Supervision()
         self._checkpoint = checkpoint
@@ -112,6 +113,7 @@ class Run:
             self._execution.goes_on = self._goes_on
             if self._goes_on:
                 self._execution.visits = dict(checkpoint.visits)
+        self._log = RunLog(self._recorder)
         self._task: asyncio.Task[Left] | None = None
         self._stop_reason: str | None = None
         self._begun = False
@@ -162,12 +164,35 @@ class Run:
         first = self._stop_reason is None
         self._stop_reason = self._stop_reason or reason
         if self._task is not None:
-            self._record_stop(reason)
+            self._log.stop_requested(reason)
             if first:
                 self._task.cancel()
                 # A little longer than any container inside waits for its children.
                 patience_s = self._supervision.abandon_after_s + 2.5
                 self._patience = self._task.get_loop().call_later(patience_s, self._give_up)
+
+    def change(self, plan: Plan) -> ChangeReport:
+        """Let a new version of the behavior take the place of the running one, which must be paused or locked.
+
+        Raises:
+            ControlError: the run cannot go on in the new version; it goes on as it is.
+        """
+        gate = self._execution.gate
+        active = {path: self.plan.nodes[path] for path in self._execution.activity.nodes}
+        waiting = {each.path: each.outcome for each in gate.waiting.values()}
+        report = plan_change(
+            self.plan, plan, active=active, waiting=waiting, still=gate.paused or _locked(active, waiting, gate.locks)
+        )
+        if report.refusals:
+            raise ControlError("; ".join(report.refusals), hint="the run goes on with the old version")
+        kept = {name: value for name, value in self.parameters.items() if name in plan.parameters}
+        for key, value in plan.checked_parameters(kept).items():
+            self._parameters.write(key, value)
+        self._execution.replaced = dict(definitions(plan))
+        self.plan = plan
+        self._log.changed(plan.document_hash, report.changes)
+        gate.arm()
+        return report
 
     async def execute(self) -> RunResult:
         """Run to the end and report it; never raises for what happens inside the behavior.
@@ -177,7 +202,7 @@ class Run:
         started_s = self._execution.clock.now_s()
         self._begin()
         before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
-        scope = Scope("", {**before, **self._inputs}, Scope("parameters", self.parameters))
+        scope = Scope("", {**before, **self._inputs}, self._parameters)
         status, left, cause = await self._perform(scope)
         await self._release()
         outcome = (left.target or left.outcome) if left is not None else None
@@ -205,7 +230,7 @@ class Run:
 
     async def _perform(self, scope: Scope) -> tuple[str, Left | None, Cause | None]:
         if self._stop_reason is not None:
-            self._record_stop(self._stop_reason)
+            self._log.stop_requested(self._stop_reason)
             return "stopped", None, self._stopped()
         root = self.plan.root
         self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
@@ -296,81 +321,25 @@ class Run:
         self._begun = True
         checkpoint = self._checkpoint
         if checkpoint is not None and self._goes_on:
-            self._record_resumed(checkpoint)
+            self._log.resumed(checkpoint)
         else:
-            self._record_start()
+            virtual = self._execution.clock.virtual
+            self._log.started(self.plan, self.parameters, self._inputs, seed=self.seed, virtual=virtual)
             if checkpoint is not None:
-                arguments: dict[str, object] = {"run": checkpoint.run, "seq": checkpoint.seq}
-                self._command("start_from", list(checkpoint.rerun), arguments)
+                self._log.started_from(checkpoint)
         if self._supervision.start_paused:
             self._control.pause()
 
-    def _command(self, command: str, paths: Sequence[str], arguments: dict[str, object]) -> None:
-        recorder = self._recorder
-        recorder.record(
-            Commanded(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                command=command,
-                path=", ".join(paths),
-                arguments=arguments,
-            )
-        )
-
-    def _record_start(self) -> None:
-        self._recorder.record(
-            RunStarted(
-                seq=self._recorder.next_seq(),
-                time_s=self._recorder.now_s(),
-                behavior=self.plan.name,
-                document=self.plan.document_hash,
-                parameters=msgspec.to_builtins(dict(self.parameters)),
-                inputs=msgspec.to_builtins(self._inputs),
-                seed=self.seed,
-                clock="virtual" if self._execution.clock.virtual else "real",
-            )
-        )
-
-    def _record_resumed(self, checkpoint: Checkpoint) -> None:
-        recorder = self._recorder
-        recorder.record(
-            RunResumed(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                after_seq=checkpoint.seq,
-                epoch=checkpoint.epoch,
-                rerun=checkpoint.rerun,
-            )
-        )
-        for path, outcome in checkpoint.taken.items():
-            recorder.record(
-                Exited(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    visit=checkpoint.visits.get(path, 0),
-                    outcome=outcome,
-                    cause=checkpoint.points[path].cause,
-                )
-            )
-
-    def _record_stop(self, reason: str) -> None:
-        self._recorder.record(
-            StopRequested(seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), reason=reason)
-        )
-
     async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> Cause | None:
-        self._recorder.record(
-            RunEnded(
-                seq=self._recorder.next_seq(),
-                time_s=self._recorder.now_s(),
-                status=status,
-                outcome=outcome,
-                cause=cause,
-            )
-        )
+        self._log.ended(status, outcome, cause)
         try:
             await self._execution.commit()
         except JournalError as error:
             return cause_of(error)
         return cause
+
+
+def _locked(active: Mapping[str, Node], waiting: Mapping[str, str], locks: set[str]) -> bool:
+    """Tell whether every active state waits behind a lock, its own or one around it."""
+    leaves = [path for path, node in active.items() if not node.work.children]
+    return not leaves and any(path in locks for path in waiting)
