@@ -123,6 +123,23 @@ class Stubborn(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
+class Deaf(State, frozen=True, kw_only=True):
+    """Never stop by itself: swallow every cancel and wait on."""
+
+    state_name: ClassVar[str] = "test.Deaf"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+    for_s: float = 1000.0
+
+    async def run(self, ctx: Context) -> Outcome:
+        due_s = ctx.clock.now_s() + self.for_s
+        while ctx.clock.now_s() < due_s:
+            try:
+                await ctx.clock.sleep(due_s - ctx.clock.now_s())
+            except asyncio.CancelledError:
+                continue
+        return Outcome("done")
+
+
 class Messy(State, frozen=True, kw_only=True):
     """Fail in the clean-up."""
 
@@ -148,5 +165,5 @@ class Stray(State, frozen=True, kw_only=True):
 
 
 CATALOGUE: dict[str, type[State]] = {
-    state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Messy, Stray)
+    state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Deaf, Messy, Stray)
 }

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import pytest
 
 from engine.bus import SkillBus
@@ -39,11 +37,13 @@ BEHAVIORS = {
                         initial: one
                         states:
                           one: {state: test.Write, with: {value: 1, after_s: 1}, transitions: {done: two}}
-                          two: {state: test.Write, with: {value: 2, after_s: 1}, out: {value: other}, transitions: {done: out}}
+                          two: {state: test.Write, with: {value: 2, after_s: 1}, out: {value: other},
+                                transitions: {done: out}}
                     right: {state: test.Write, with: {value: 3, after_s: 3}}
                   conditions: [{fine: {left: out, right: done}}]
                 transitions: {fine: last}
-              last: {state: test.Write, with: {value: "${value + other}"}, out: {value: other}, transitions: {done: good}}
+              last: {state: test.Write, with: {value: "${value + other}"}, out: {value: other},
+                     transitions: {done: good}}
         """,
     "retry, timeout, guard and foreach": """
         userdata: {sum: [], last: 0}
@@ -74,7 +74,8 @@ BEHAVIORS = {
                     machine:
                       initial: write
                       states:
-                        write: {state: test.Write, with: {value: "${item * 10}", after_s: 1}, out: {value: last}, transitions: {done: next}}
+                        write: {state: test.Write, with: {value: "${item * 10}", after_s: 1}, out: {value: last},
+                                transitions: {done: next}}
                         next: {state: test.Give, with: {after_s: 0.5}, transitions: {a: done, b: done, c: failed}}
                   next: [done]
                 transitions: {exhausted: good, broken: bad}
@@ -127,5 +128,3 @@ def test_many_crashes_in_a_row_change_nothing(name: str) -> None:
     assert rest.result.outcome == "good"
     assert rest.result.userdata == whole.result.userdata
 
-
-_ = asyncio
