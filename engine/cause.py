@@ -15,7 +15,8 @@ def cause_of(error: BaseException) -> Cause:
     if isinstance(error, FlexcellError):
         hint = f" ({error.hint})" if error.hint else ""
         where = str(error.where) if error.where is not None else ""
-        return Cause(message=error.message + hint, where=where, kind=type(error).__name__, because=because)
+        kind = type(error).__name__
+        return Cause(message=error.message + hint, where=where, kind=kind, because=because, nodes=error.nodes)
     text = str(error) or type(error).__name__
     return Cause(message=text, where=_raised_at(error), kind=type(error).__name__, because=because)
 

@@ -31,6 +31,8 @@ class FlexcellError(Exception):
         self.message = message
         self.where = where
         self.hint = hint
+        self.nodes: tuple[str, ...] = ()
+        """The nodes of a behavior that it came through, `path at file:line:column`, innermost first."""
 
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where is not None else ""

@@ -10,12 +10,16 @@ import msgspec
 
 
 class Cause(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One link of the chain that explains a failure; `because` is the link below it."""
+    """One link of the chain that explains a failure; `because` is the link below it.
+
+    `nodes` is the way an error took through the behavior, `path at file:line:column`, innermost first.
+    """
 
     message: str
     where: str = ""
     kind: str = ""
     because: Cause | None = None
+    nodes: tuple[str, ...] = ()
 
     def chain(self) -> tuple[Cause, ...]:
         """Return the links from the outermost to the root cause."""

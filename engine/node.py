@@ -320,6 +320,8 @@ class Node:
             self._record_exit(execution, visit, "", cause=cause_of(error))
             raise error from stray
         except Exception as error:
+            if isinstance(error, FlexcellError):
+                error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
             self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")

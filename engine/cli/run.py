@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Coroutine
-from contextlib import ExitStack
+from contextlib import AbstractAsyncContextManager, ExitStack, nullcontext
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -23,11 +23,13 @@ from engine.check import Finding
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior, read_cell, read_inputs, read_parameters
 from engine.cli.progress import Progress
+from engine.cli.run_junit import write_run_junit
 from engine.clock import run_virtual
 from engine.document.cell import Cell
 from engine.event import Event
 from engine.journal import Journal, NullJournal, encode_event_log
 from engine.plan import Plan, new_plan
+from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, RunRecording, collect_documents
 from engine.registry import load_states
 from engine.run import Run, RunResult
 from engine.run_id import new_run_id
@@ -49,6 +51,7 @@ class _Order:
     timeout_s: float | None
     virtual: bool
     quiet: bool
+    recording: RecordingOrder | None = None
 
 
 def run(
@@ -73,6 +76,17 @@ def run(
     store: Annotated[str | None, typer.Option(help="Use this store file instead of the cell's.")] = None,
     events: Annotated[Path | None, typer.Option(help="Write the event log here, one JSON object a line.")] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
+    record: Annotated[
+        Path | None, typer.Option(help="Record the run in this MCAP file, for Foxglove and `flexcell replay`.")
+    ] = None,
+    record_rate: Annotated[
+        float, typer.Option(help="At most that many messages of a topic a second are recorded; 0: events only.", min=0)
+    ] = DEFAULT_RATE_HZ,
+    record_topic: Annotated[
+        list[str] | None,
+        typer.Option(help="Record only topics with this name, may hold `*`; may be repeated."),
+    ] = None,
+    junit: Annotated[Path | None, typer.Option(help="Write the result here as JUnit XML.")] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Show no progress.")] = False,
 ) -> None:
@@ -84,9 +98,10 @@ def run(
     catalogue = load_states()
     behavior, findings = read_behavior(file, catalogue)
     _refuse_errors(findings)
+    opened = read_cell(cell, behavior)
     order = _Order(
         plan=new_plan(behavior, catalogue),
-        cell=read_cell(cell, behavior),
+        cell=opened,
         parameters=read_parameters(parameter or [], behavior.parameters),
         inputs=read_inputs(input_ or []),
         seed=seed,
@@ -95,12 +110,22 @@ def run(
         timeout_s=timeout,
         virtual=clock == "virtual",
         quiet=quiet or json,
+        recording=RecordingOrder(
+            path=record,
+            documents=collect_documents(behavior, opened),
+            rate_hz=record_rate,
+            topics=tuple(record_topic or ("*",)),
+        )
+        if record is not None
+        else None,
     )
     log: list[Event] = []
     result, interrupted = _on_clock(_execute(order, log), virtual=order.virtual)
     encoded = encode_event_log(log)
     if events is not None:
         events.write_bytes(encoded)
+    if junit is not None:
+        write_run_junit(junit, file, order.plan, result, seed=seed, clock=clock)
     if json:
         _print_json(result, encoded, len(log))
     else:
@@ -147,8 +172,14 @@ async def _execute(order: _Order, log: list[Event]) -> tuple[RunResult, bool]:
             loop.add_signal_handler(number, interruption.signal, number.name)
             stack.callback(loop.remove_signal_handler, number)
         journal = _journal(order, stack)
-        async with OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell:
+        async with (
+            _recording(order) as recording,
+            OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell,
+        ):
+            started_unix_s = time.time()
             run = _new_run(order, cell, journal)
+            if recording is not None:
+                recording.attach(run, cell.bus, started_unix_s=started_unix_s, inputs=order.inputs)
             run.watch(log.append)
             if not order.quiet:
                 run.watch(Progress(Console(stderr=True)).show)
@@ -184,6 +215,12 @@ async def _within(timeout_s: float | None, execution: Run) -> RunResult:
         timer.cancel()
 
 
+def _recording(order: _Order) -> AbstractAsyncContextManager[RunRecording | None]:
+    if order.recording is None:
+        return nullcontext()
+    return RunRecording.open(order.recording, inline=order.virtual)
+
+
 def _journal(order: _Order, stack: ExitStack) -> Journal | NullJournal:
     if order.journal == "none":
         return NullJournal()
@@ -206,7 +243,7 @@ def _print_json(result: RunResult, encoded: bytes, count: int) -> None:
         "status": result.status,
         "outcome": result.outcome,
         "success": result.success,
-        "cause": [{"message": link.message, "where": link.where, "kind": link.kind} for link in chain],
+        "cause": [{"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes} for link in chain],
         "duration_s": result.duration_s,
         "events": count,
         "events_sha256": sha256(encoded).hexdigest(),
@@ -223,6 +260,8 @@ def _print_result(result: RunResult) -> None:
     if result.cause is not None and not result.success:
         for depth, link in enumerate(result.cause.chain()):
             console.print(f"{'  ' * depth}because {describe_link(link)}", markup=False, highlight=False, soft_wrap=True)
+            for node in link.nodes:
+                console.print(f"{'  ' * depth}        in {node}", markup=False, highlight=False, soft_wrap=True)
 
 
 def describe_link(link: Any) -> str:

@@ -45,7 +45,7 @@ def resume(run: Run) -> None:
 
 B = "before root"
 WAYS: dict[str, tuple[tuple[StepMode, ...], list[str]]] = {
-    "into": (("into",) * 5, [B, f"{B}/one", f"{B}/two", f"{B}/two/left", f"{B}/two/right", f"{B}/three"]),
+    "into": (("into", "into", "into", "into", "into"), [B, f"{B}/one", f"{B}/two", f"{B}/two/left", f"{B}/two/right", f"{B}/three"]),
     "over": (("into", "over", "over"), [B, f"{B}/one", f"{B}/two", f"{B}/three"]),
     "out": (("into", "into", "into", "out"), [B, f"{B}/one", f"{B}/two", f"{B}/two/left", "after root/two"]),
 }

@@ -120,6 +120,7 @@ def test_many_crashes_in_a_row_change_nothing(name: str) -> None:
     plan = plan_of(BEHAVIORS[name])
     whole = run_virtual(_run(plan, None))
     known = _plain(list(whole.events[:1]))
+    rest = whole
     for _ in range(500):
         rest = run_virtual(_run(plan, known))
         if len(rest.events) <= 3:
