@@ -9,15 +9,15 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable, Mapping
-from contextlib import AsyncExitStack
+from contextlib import AsyncExitStack, suppress
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries import load_entries
-from engine.errors import CellError, FlexcellError, RobotError
+from engine.errors import CellError, FlexcellError, NotStopped, RobotError
 from engine.preemption import Overdue, preempt
 from engine.registry import DRIVERS, WORLDS, load_maker
 from engine.robot import Robot, World
@@ -56,6 +56,17 @@ class OpenCell:
         """The name of the cell, empty without a document."""
         return self.document.name if self.document is not None else ""
 
+    @property
+    def has_world(self) -> bool:
+        """Whether there is a simulated world, which can be brought back to where it was."""
+        return self.document is not None and self.document.document.world is not None
+
+    @property
+    def store_path(self) -> str | None:
+        """The file of its store, None without one."""
+        store = self.document.document.store if self.document is not None else None
+        return (self._store_path or store.path) if store is not None else None
+
     async def __aenter__(self) -> Self:
         try:
             await self._open()
@@ -81,8 +92,9 @@ class OpenCell:
         devices: tuple[Robot, ...] = tuple(self.robots.values())
         if self._world is not None:
             devices += (self._world,)
-        ends = await asyncio.gather(*(_stopped(device) for device in devices))
-        failures = [failure for failure in ends if failure is not None]
+        stops = {asyncio.create_task(device.stop(), name=f"stop {device.name}"): device for device in devices}
+        await _carried_through(tuple(stops))
+        failures = [failure for task, device in stops.items() if (failure := _failure(task, device)) is not None]
         if failures:
             raise RobotError(
                 "; ".join(str(failure) for failure in failures), where=self.name, hint="use the emergency stop"
@@ -114,9 +126,9 @@ class OpenCell:
     async def _close_bus(self) -> None:
         """Cancel what still runs; a handler that does not end keeps no robot from coming to rest."""
         closing = asyncio.create_task(self.bus.__aexit__(None, None, None), name="closing the bus")
-        failure = await _carried_through(closing)
-        if failure is not None and not isinstance(failure, _Overdue):
-            raise failure
+        await _carried_through((closing,))
+        if closing.done() and not closing.cancelled():
+            closing.result()
         for goal in self.bus.goals():
             _log.error("the handler of %s does not end; its robot is stopped without it", goal.address)
 
@@ -159,40 +171,38 @@ class OpenCell:
         return maker(cell, name=name, bus=self.bus)
 
 
-class _Overdue(Exception):
-    """Something takes longer than anybody waits for it."""
+async def _carried_through(tasks: tuple[asyncio.Task[None], ...]) -> None:
+    """Wait until the tasks have ended; cancel those that take too long.
 
-
-async def _stopped(device: Robot) -> BaseException | None:
-    """Stop a device and return why it is not known to rest; one that hangs holds up no other."""
-    failure = await _carried_through(asyncio.create_task(device.stop(), name=f"stop {device.name}"))
-    if isinstance(failure, _Overdue):
-        return RobotError(f"it does not confirm that it rests within {_PATIENCE_S:g} s", where=device.name)
-    return failure
-
-
-async def _carried_through(task: asyncio.Task[None]) -> BaseException | None:
-    """Return why a task failed, None if it did not, `_Overdue` if it was cancelled for taking too long.
-
-    Cancelling the caller does not interrupt it: once begun, a stop is carried through.
+    Cancelling the caller does not interrupt them: once begun, a stop is carried through.
     """
     loop = asyncio.get_running_loop()
     deadline_s = loop.time() + _PATIENCE_S
     cancelled: asyncio.CancelledError | None = None
-    while not task.done() and loop.time() < deadline_s:
+    left = set(tasks)
+    while left and loop.time() < deadline_s:
         try:
-            await asyncio.wait((task,), timeout=deadline_s - loop.time())
+            _, left = await asyncio.wait(left, timeout=deadline_s - loop.time())
         except asyncio.CancelledError as error:
             cancelled = error
-    overdue = not task.done()
-    if overdue:
-        await preempt((task,), Overdue(tell=_say_overdue))
+    # One that lets no cancel pass is left behind and named in the log.
+    with suppress(NotStopped):
+        late = [task for task in tasks if task in left]
+        await preempt(late, Overdue(tell=_say_overdue, abandon=_say_abandoned, abandon_after_s=_PATIENCE_S))
     if cancelled is not None:
         raise cancelled
-    if overdue:
-        return _Overdue()
-    return asyncio.CancelledError() if task.cancelled() else task.exception()
+
+
+def _failure(stop: asyncio.Task[None], device: Robot) -> BaseException | None:
+    """Return why a device is not known to rest; None when it is."""
+    if stop.done() and not stop.cancelled():
+        return stop.exception()
+    return RobotError(f"it does not confirm that it rests within {_PATIENCE_S:g} s", where=device.name)
 
 
 def _say_overdue(name: str, waited_s: float) -> None:
     _log.error("%s has not ended %g s after it was cancelled", name, waited_s)
+
+
+def _say_abandoned(task: asyncio.Task[Any], waited_s: float) -> None:
+    _log.error("%s was abandoned %g s after it was cancelled", task.get_name(), waited_s)

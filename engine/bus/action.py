@@ -143,11 +143,7 @@ class GoalHandle(Generic[R, F]):
         Raises:
             GoalRejected: it refused; the message says why.
         """
-        waiter = asyncio.ensure_future(self._goal.accepted.wait())
-        try:
-            await asyncio.wait({waiter, self._task}, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            waiter.cancel()
+        await self._begun()
         if self._task.done() and self._task.result().status is GoalStatus.REJECTED:
             cause = self._task.result().cause
             raise GoalRejected(cause.message if cause else "refused", where=self.address)
@@ -176,9 +172,13 @@ class GoalHandle(Generic[R, F]):
     async def hold(self) -> None:
         """Bring the work to rest and keep the goal; returns when the server confirms.
 
+        A goal that is still being prepared is held as soon as it has been accepted.
+
         Raises:
             BusError: this skill cannot be held.
         """
+        if self._goal.status is GoalStatus.PENDING:
+            await self._begun()
         if self._task.done() or self._goal.status is not GoalStatus.ACTIVE:
             return
         if self._goal.hold_callback is None:
@@ -194,6 +194,14 @@ class GoalHandle(Generic[R, F]):
         self._goal.status = GoalStatus.ACTIVE
         if self._goal.resume_callback is not None:
             await self._goal.resume_callback()
+
+    async def _begun(self) -> None:
+        """Wait until the server has accepted or the goal has ended."""
+        waiter = asyncio.ensure_future(self._goal.accepted.wait())
+        try:
+            await asyncio.wait({waiter, self._task}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            waiter.cancel()
 
 
 async def carry_out(

@@ -78,7 +78,9 @@ class ProcessHost:
         try:
             await asyncio.wait_for(restored, _RESTORE_S)
         except TimeoutError as error:
-            raise RobotError(f"the world's process did not restore its state within {_RESTORE_S:g} s") from error
+            raise RobotError(
+                f"the world's process did not restore its state within {_RESTORE_S:g} s", hint="connect the cell again"
+            ) from error
 
     def send(self, command: AnyCommand) -> None:
         """Give a command; raises RobotError when the process is gone."""

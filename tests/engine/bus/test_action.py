@@ -95,6 +95,18 @@ async def test_a_cancel_has_happened_only_when_the_server_confirms() -> None:
     assert (end.status, end.result, gripper.log) == (GoalStatus.CANCELED, HELD, ["at rest"])
 
 
+async def test_a_goal_that_is_not_yet_accepted_is_held_as_soon_as_it_is() -> None:
+    """A pause that comes while the server still plans must not let the device start."""
+    bus, gripper = _bus()
+    handle = bus.send_goal(GRASP, to="left/gripper", holder=ONE)
+    assert handle.status is GoalStatus.PENDING
+    await handle.hold()
+    assert (handle.status, gripper.log) == (GoalStatus.HELD, ["held"])
+    await handle.resume()
+    gripper.finish.set()
+    assert ((await handle.result()).status, gripper.log) == (GoalStatus.SUCCEEDED, ["held", "resumed"])
+
+
 async def test_a_rejection_gives_the_reason_before_anything_moves() -> None:
     """Rejected goals raise at the client with the server's words."""
     bus, _ = _bus()

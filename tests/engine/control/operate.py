@@ -31,7 +31,7 @@ def operate(
     """Run a document; at each time in seconds do what `acts` says with the run."""
     body = dedent(text)
     plan = new_plan(
-        parse_behavior(body if "flexcell:" in body else HEAD + body, file="test.yaml"),
+        parse_behavior(body if "flexcell" in body else HEAD + body, file="test.yaml"),
         {**CATALOGUE, "test.TurnTable": TurnTable},
     )
 

@@ -43,11 +43,13 @@ def resume(run: Run) -> None:
     run.control.resume()
 
 
+INTO: tuple[StepMode, ...] = ("into", "into", "into", "into", "into")
 B = "before root"
+DEEP = [B, f"{B}/one", f"{B}/two", f"{B}/two/left"]
 WAYS: dict[str, tuple[tuple[StepMode, ...], list[str]]] = {
-    "into": (("into", "into", "into", "into", "into"), [B, f"{B}/one", f"{B}/two", f"{B}/two/left", f"{B}/two/right", f"{B}/three"]),
+    "into": (INTO, [*DEEP, f"{B}/two/right", f"{B}/three"]),
     "over": (("into", "over", "over"), [B, f"{B}/one", f"{B}/two", f"{B}/three"]),
-    "out": (("into", "into", "into", "out"), [B, f"{B}/one", f"{B}/two", f"{B}/two/left", "after root/two"]),
+    "out": (("into", "into", "into", "out"), [*DEEP, "after root/two"]),
 }
 
 

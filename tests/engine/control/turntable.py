@@ -38,6 +38,7 @@ class Turntable:
 
     async def turn(self, goal: Turn, handle: ActiveGoal[Turned]) -> Turned:
         handle.accept()
+        self._held = False
         self.goals.append(handle.id)
         if self._holdable:
             handle.on_hold(self._hold)

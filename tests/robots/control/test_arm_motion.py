@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from robots.control.arm_motion import ArmMotion
-from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
 from robots.port import Array, JointTrajectory, Tolerance
 
 START = np.zeros(2)
@@ -96,3 +96,21 @@ def test_a_hold_is_not_confirmed_while_the_arm_still_moves() -> None:
     motion.hold(7)
     assert run(motion, lambda desired: desired.copy(), limit=1500, moving=True)[0] == []
     assert run(motion, lambda desired: desired.copy())[0] == [MotionHeld(motion=7)]
+
+
+def test_an_arm_that_is_initialized_forgets_its_motion_and_holds_the_position() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    run(motion, lambda desired: desired.copy(), limit=200)
+    motion.initialize(np.array([0.3, 0.4]))
+    assert (motion.number, motion.position.tolist(), motion.velocity.tolist()) == (0, [0.3, 0.4], [0.0, 0.0])
+    assert run(motion, lambda desired: desired.copy(), limit=1000)[0] == []
+
+
+def test_of_a_hold_and_a_resume_the_newest_is_told_with_its_number() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    motion.hold(7, request=1)
+    motion.resume(7, request=2)
+    motion.hold(7, request=3)
+    assert run(motion, lambda desired: desired.copy())[0] == [MotionHeld(motion=7, request=3)]
+    motion.resume(7, request=4)
+    assert run(motion, lambda desired: desired.copy())[0] == [MotionResumed(motion=7, request=4)]

@@ -84,6 +84,30 @@ def test_a_stronger_grip_takes_over_without_letting_go() -> None:
     assert fingers.servo.force_n == pytest.approx(-50.0)
 
 
+def test_a_servo_that_takes_over_from_another_presses_on_with_the_same_force() -> None:
+    before, after = Fingers(wall_m=0.03), Fingers(wall_m=0.03)
+    before.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=before.width_m)
+    before.until_told()
+    after.width_m = before.width_m
+    after.servo.take_over(before.servo.command)
+    for _ in range(500):
+        after.step()
+        assert after.servo.force_n == pytest.approx(-25.0)
+    assert after.servo.command == before.servo.command
+
+
+def test_a_servo_that_takes_over_in_mid_way_stops_there_and_tells_nothing() -> None:
+    before, after = Fingers(wall_m=0.0), Fingers(wall_m=0.0)
+    before.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=25.0, now_m=before.width_m)
+    for _ in range(600):
+        before.step()
+    after.width_m = before.width_m
+    after.servo.close_to(2, width_m=0.08, speed_m_s=0.05, force_n=25.0, now_m=after.width_m)
+    after.servo.take_over(before.servo.command)
+    assert [after.step() for _ in range(500)] == [()] * 500
+    assert (after.servo.number, after.width_m) == (0, pytest.approx(before.width_m, abs=0.0005))
+
+
 def test_fingers_that_never_rest_fail_in_words() -> None:
     fingers = Fingers(wall_m=0.0)
     fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.1, force_n=20.0, now_m=fingers.width_m)

@@ -51,6 +51,11 @@ async def test_a_killed_world_fails_its_motions_and_refuses_the_next_instead_of_
             world.gripper("left").close_to(width_m=0.0, speed_m_s=0.1, force_n=10.0)
         with pytest.raises(RobotError, match="SIGKILL"):
             await world.stop()
+        last = world.snapshot()
+        with pytest.raises(RobotError, match="SIGKILL"):
+            await world.restore(last)
+    async with SimWorld(one_arm(), host=ProcessHost(one_arm())) as world:
+        await world.restore(last)
 
 
 async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() -> None:
@@ -61,6 +66,26 @@ async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() ->
         pid = host.pid
     assert (await motion.report()).end is MotionEnd.CANCELED
     assert not alive(pid)
+
+
+async def test_a_world_that_is_killed_or_frozen_while_it_is_restored_is_told_and_not_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("robots.sim.process_host._RESTORE_S", 0.1)
+    host = ProcessHost(one_arm())
+    async with SimWorld(one_arm(), host=host) as world:
+        snapshot = world.snapshot()
+        os.kill(host.pid, signal.SIGSTOP)
+        with pytest.raises(RobotError, match=r"did not restore its state within 0\.1 s"):
+            await world.restore(snapshot)
+        monkeypatch.undo()
+        restoring = asyncio.create_task(world.restore(snapshot))
+        await asyncio.sleep(0)
+        os.kill(host.pid, signal.SIGKILL)
+        with pytest.raises(RobotError, match="SIGKILL"):
+            await restoring
+        with pytest.raises(RobotError, match="SIGKILL"):
+            await world.stop()
 
 
 async def test_a_closing_that_is_cancelled_leaves_no_process() -> None:
@@ -75,25 +100,23 @@ async def test_a_closing_that_is_cancelled_leaves_no_process() -> None:
     assert (closing.cancelled(), alive(host.pid)) == (True, False)
 
 
-async def test_leaving_a_world_that_is_cancelled_again_and_again_leaves_no_process() -> None:
-    """It waits for its publisher, for rest, for the process: whichever wait is cut short, the rest is done."""
-    for cancels in (1, 2, 3):
-        host = ProcessHost(one_arm())
-        world = SimWorld(one_arm(), host=host)
-        await world.__aenter__()
+@pytest.mark.parametrize("publishing", [True, False])
+async def test_leaving_a_world_that_is_cancelled_again_and_again_leaves_no_process(publishing: bool) -> None:
+    """It waits for its publisher, for rest, for the process: whichever wait is cut short, the world ends."""
+    host = ProcessHost(one_arm())
+    world = SimWorld(one_arm(), host=host)
+    await world.__aenter__()
+    if publishing:
         world.register(SkillBus(new_clock()))
-        motion = world.arm("left").follow(smooth(HOME, HOME + 0.3, 2.0), tolerance=Tolerance())
-        os.kill(host.pid, signal.SIGSTOP)
-        leaving = asyncio.create_task(world.__aexit__(None, None, None))
-        for _ in range(cancels):
-            await asyncio.sleep(0)
-            leaving.cancel()
-        if cancels == 1:
-            await asyncio.sleep(0)
-            leaving.cancel()
-        await asyncio.wait((leaving,))
-        assert (leaving.cancelled(), alive(host.pid), world.status) == (True, False, DeviceStatus.DISCONNECTED)
-        assert (await motion.report()).reason == "the world was closed"
+    motion = world.arm("left").follow(smooth(HOME, HOME + 0.3, 2.0), tolerance=Tolerance())
+    os.kill(host.pid, signal.SIGSTOP)
+    leaving = asyncio.create_task(world.__aexit__(None, None, None))
+    # One turn of the loop each, so that every wait is met.
+    while not leaving.done():
+        await asyncio.sleep(0)
+        leaving.cancel()
+    assert (leaving.cancelled(), alive(host.pid), world.status) == (True, False, DeviceStatus.DISCONNECTED)
+    assert (await motion.report()).reason == "the world was closed"
 
 
 async def test_a_process_that_does_not_start_is_an_error_and_leaves_nothing_open(

@@ -1,0 +1,181 @@
+"""Whatever the operator does and when: every clean-up once, no deadlock, always a reported end."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from engine.control import Breakpoint
+from engine.errors import ControlError
+from engine.event import (
+    Entered,
+    Exited,
+    GatePassed,
+    GateReached,
+    GoalFinished,
+    GoalSent,
+    OutcomeRequested,
+    OutcomeWithdrawn,
+    RunEnded,
+)
+from engine.run import Run
+from engine.supervision import Supervision
+from tests.engine.control.operate import Act, operate
+from tests.engine.control.turntable import Turntable
+
+TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
+MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
+Node = dict[str, Any]
+
+
+def _leaf(after_s: float, outcome: str) -> Node:
+    return {"state": "test.Give", "with": {"after_s": after_s, "outcome": outcome}}
+
+
+LEAVES = st.builds(_leaf, TIMES, st.sampled_from("abc")) | st.just(
+    {"state": "test.TurnTable", "with": {"for_s": 0.5}, "on_error": "c"}
+)
+
+
+def _machine(children: list[Node], *, kind: str) -> Node:
+    """One child after the other; every way out of the last one is `a`."""
+    states: Node = {}
+    for index, child in enumerate(children):
+        following = f"s{index + 1}" if index + 1 < len(children) else "a"
+        outs = ("a", "b", "c", "turned", "failed", "exhausted", "broken")
+        transitions = {out: following for out in outs if out in _outs(child)}
+        divert = {"on_error": following} if "on_error" in child else {}
+        states[f"s{index}"] = {**child, "transitions": transitions, **divert}
+    return {kind: {"initial": "s0", "states": states}}
+
+
+def _concurrency(children: list[Node]) -> Node:
+    states = {f"c{index}": child for index, child in enumerate(children)}
+    first = [{"a": {"c0": out}} for out in _outs(children[0])]
+    return {"concurrency": {"states": states, "conditions": first, "otherwise": "a"}}
+
+
+def _foreach(child: Node) -> Node:
+    return {"foreach": {"times": 2, "child": child, "next": [*_outs(child)]}}
+
+
+def _outs(node: Node) -> tuple[str, ...]:
+    if node.get("state") == "test.TurnTable":
+        return ("turned", "failed", "c")
+    if "state" in node:
+        return ("a", "b", "c")
+    return ("exhausted", "broken") if "foreach" in node else ("a",)
+
+
+TREES = st.recursive(
+    LEAVES,
+    lambda inner: (
+        st.lists(inner, min_size=1, max_size=3).map(partial(_machine, kind="machine"))
+        | st.lists(inner, min_size=1, max_size=2).map(partial(_machine, kind="priority"))
+        | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
+        | inner.map(_foreach)
+    ),
+    max_leaves=6,
+)
+
+Order = Callable[[Run, float], object]
+ORDERS: list[Order] = [
+    lambda run, at: run.control.pause(),
+    lambda run, at: run.control.resume(),
+    lambda run, at: run.control.step("into"),
+    lambda run, at: run.control.step("over"),
+    lambda run, at: run.control.step("out"),
+    lambda run, at: run.control.lock(_some(run, at)),
+    lambda run, at: run.control.unlock(_some(run, at)),
+    lambda run, at: run.control.force(_some(run, at), (run.outcomes(_some(run, at)) or ("a",))[0]),
+    lambda run, at: run.control.repeat(_some(run, at)),
+    lambda run, at: run.control.answer(_some(run, at)),
+    lambda run, at: run.control.set_autonomy("off"),
+    lambda run, at: run.control.set_autonomy("full"),
+    lambda run, at: run.control.attach_operator(),
+    lambda run, at: run.control.detach_operator(),
+    lambda run, at: run.control.lose_operator(),
+    lambda run, at: run.control.set_breakpoints([Breakpoint(path="*", when="after")]),
+    lambda run, at: run.control.set_breakpoints([]),
+    lambda run, at: run.stop("chance"),
+]
+
+
+def _some(run: Run, at_s: float) -> str:
+    """Return one of the nodes that are active or wait, else any."""
+    view = run.control.view()
+    paths = [*view.active, *(each.path for each in view.waiting)] or list(run.paths())
+    return paths[int(at_s * 8) % len(paths)]
+
+
+def _act(order: Order, at_s: float) -> Act:
+    def act(run: Run) -> None:
+        try:
+            order(run, at_s)
+        except ControlError:
+            return  # what does not fit the moment is refused, and must change nothing
+
+    return act
+
+
+def _let_go(run: Run) -> None:
+    """Undo whatever holds the run."""
+    run.control.set_breakpoints([])
+    run.control.detach_operator()
+    for path in run.control.view().locks:
+        run.control.unlock(path)
+    run.control.resume()
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    root=TREES,
+    orders=st.lists(st.tuples(MOMENTS, st.sampled_from(range(len(ORDERS)))), max_size=8, unique_by=lambda o: o[0]),
+    demanded=st.booleans(),
+)
+def test_any_commands_at_any_instants(root: Node, orders: list[tuple[float, int]], demanded: bool) -> None:
+    document = {
+        "flexcell": 1,
+        "name": "random",
+        "outcomes": ["end"],
+        "root": _machine([root], kind="machine"),
+    }
+    text = json.dumps(_ending(document))
+    acts: dict[float, Act] = {at_s: _act(ORDERS[which], at_s) for at_s, which in orders}
+    for moment in (100.0, 150.0, 200.0, 250.0):
+        acts[moment] = _let_go
+    at = Supervision(autonomy="low", demand_operator=demanded, loss_policy="hold")
+    if demanded:
+        for moment in range(300, 400):
+            acts[float(moment)] = lambda run: run.control.set_autonomy("full")
+        acts[401.0] = lambda run: run.stop("it demands an operator and has none")
+    told = operate(text, acts, supervision=at, prepare=Turntable)
+    assert told.result.status in {"finished", "stopped", "errored"}
+    entered = Counter((e.path, e.visit) for e in told.events if isinstance(e, Entered))
+    exited = Counter((e.path, e.visit) for e in told.events if isinstance(e, Exited))
+    assert entered == exited
+    assert set(entered.values()) <= {1}
+    sent = Counter(e.goal for e in told.events if isinstance(e, GoalSent))
+    assert sent == Counter(e.goal for e in told.events if isinstance(e, GoalFinished))
+    assert _count(told.events, GateReached) >= _count(told.events, GatePassed)
+    assert _count(told.events, OutcomeRequested) == _count(told.events, OutcomeWithdrawn)
+    assert [e.seq for e in told.events] == list(range(1, len(told.events) + 1))
+    assert isinstance(told.events[-1], RunEnded)
+
+
+def _count(events: tuple[object, ...], kind: type[object]) -> int:
+    return sum(isinstance(event, kind) for event in events)
+
+
+def _ending(document: Node) -> Node:
+    for state in document["root"]["machine"]["states"].values():
+        state["transitions"] = dict.fromkeys(state["transitions"], "end")
+        if "on_error" in state:
+            state["on_error"] = "end"
+    return document
