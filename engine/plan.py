@@ -9,10 +9,10 @@ from functools import cached_property
 from engine import concurrency, machine
 from engine.document import behavior as document
 from engine.document import node as nodes
-from engine.document.expression import compile_template
+from engine.document.expression import Template, compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
-from engine.errors import DocumentError
+from engine.errors import DocumentError, ExpressionError
 from engine.foreach import ForEach
 from engine.leaf import Leaf
 from engine.nearness import near_names
@@ -121,11 +121,23 @@ class _Planner:
             timeout=_timeout(node.timeout),
             retry=_retry(node.retry) if node.retry else None,
             on_error=node.on_error,
-            guard=_guard(node.guard),
+            guard=self._guard(inside, node.guard),
             autonomy=node.autonomy,
             resume=node.resume,
             position=str(self.behavior.position(inside)),
         )
+
+    def _guard(self, inside: str, guard: nodes.Guard | None) -> Guard | None:
+        if guard is None or guard.to is None:
+            return None
+        return Guard(when=self._template(inside, guard.when, "guard", "when"), target=guard.to)
+
+    def _template(self, inside: str, value: object, *keys: str) -> Template:
+        try:
+            return compile_template(value)
+        except ExpressionError as error:
+            where = self.behavior.position(inside, *keys)
+            raise DocumentError(error.message, where=where, hint=error.hint) from None
 
     def _children(self, inside: str, node: nodes.Node) -> dict[str, Node]:
         return {name: self.node(name, f"{inside}/{name}", child) for name, child in node.children.items()}
@@ -149,7 +161,7 @@ class _Planner:
         child = self._children(inside, node)["child"]
         return ForEach(
             child=child,
-            items=compile_template(rounds.items if rounds.items is not None else rounds.times),
+            items=self._template(inside, rounds.items if rounds.items is not None else rounds.times, "foreach"),
             counted=rounds.items is None,
             item=rounds.item,
             index=rounds.index,
@@ -177,7 +189,7 @@ class _Planner:
         return Leaf(
             state=state,
             signature=read_signature(state),
-            parameters=compile_template(node.parameters),
+            parameters=self._template(inside, node.parameters, "with"),
             inputs=node.inputs,
             outputs=node.outputs,
             autonomy=node.autonomy,
@@ -200,7 +212,7 @@ class _Planner:
         below = self.base + inside.removeprefix("root")
         return Reference(
             target=new_plan(target, self.catalogue, path=f"{below}/root"),
-            parameters=compile_template(node.parameters),
+            parameters=self._template(inside, node.parameters, "with"),
             inputs=node.inputs,
             outputs=node.outputs,
             position=str(self.behavior.position(inside)),
@@ -211,12 +223,6 @@ def _timeout(timeout: nodes.Timeout | None) -> Timeout | None:
     if timeout is None or timeout.to is None:
         return None
     return Timeout(after_s=timeout.after_s, target=timeout.to)
-
-
-def _guard(guard: nodes.Guard | None) -> Guard | None:
-    if guard is None or guard.to is None:
-        return None
-    return Guard(when=compile_template(guard.when), target=guard.to)
 
 
 def _retry(retry: nodes.Retry) -> Retry:
