@@ -1,0 +1,282 @@
+"""Decorators that py_trees lacks, or has with another clock or without a wake-up of their own.
+
+In every `tick` the last thing yielded is the decorator itself: the composite above stops listening
+there, so nothing may be left to do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from py_trees import decorators
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator
+
+from engine.cause import cause_of
+from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.event import Cause
+from engine.tree.alarms import Alarms
+
+WHERE_NOTHING_WAKES_S = 0.1
+"""How often a part is ticked by default that is RUNNING while nothing that could wake it runs below."""
+
+
+class Timeout(Decorator):
+    """Fails when its child has not ended in time; a child that ends at that very moment has."""
+
+    def __init__(self, path: str, child: Behaviour, after_s: float, alarms: Alarms) -> None:
+        super().__init__(path, child)
+        self.refusal = ""
+        """Why it failed of itself."""
+        self._after_s = after_s
+        self._alarms = alarms
+
+    def initialise(self) -> None:
+        """Begin to count when this tick is carried out."""
+        self._alarms.set(self.name, self._after_s)
+
+    def update(self) -> Status:
+        """Stop the child when time is up."""
+        self.refusal = ""
+        if self.decorated.status is Status.RUNNING and not self._alarms.pending(self.name):
+            self.decorated.stop(Status.INVALID)
+            self.refusal = f"no end within {self._after_s:g} s"
+            return Status.FAILURE
+        return self.decorated.status
+
+    def terminate(self, new_status: Status) -> None:
+        """Count no longer."""
+        self._alarms.drop(self.name)
+
+
+class Cooldown(Decorator):
+    """Fails without ticking its child until a time has passed since the child last ended or was halted."""
+
+    def __init__(self, path: str, child: Behaviour, after_s: float, alarms: Alarms) -> None:
+        super().__init__(path, child)
+        self.refusal = ""
+        """Why it failed of itself."""
+        self._after_s = after_s
+        self._alarms = alarms
+        self._busy = False
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Tick the child, or fail while cooling down."""
+        if not self._alarms.pending(self.name):
+            self._busy = True
+            yield from super().tick()
+            return
+        self.refusal = f"cooling down, {self._after_s:g} s in all"
+        self.stop(Status.FAILURE)
+        yield self
+
+    def update(self) -> Status:
+        """Tell what the child says."""
+        self.refusal = ""
+        return self.decorated.status
+
+    def terminate(self, new_status: Status) -> None:
+        """Cool down if the child was at work."""
+        if self._busy:
+            self._busy = False
+            self._alarms.set(self.name, self._after_s)
+
+
+class Guard(Decorator):
+    """Ticks its child only while a condition holds; stops it with FAILURE when it does not.
+
+    Args:
+        path: Its node path.
+        child: What is guarded.
+        keys: The userdata keys and parameters that the condition reads.
+        holds: Evaluates the condition; may raise FlexcellError.
+        text: The condition as written.
+    """
+
+    def __init__(
+        self, path: str, child: Behaviour, *, keys: frozenset[str], holds: Callable[[], bool], text: str
+    ) -> None:
+        super().__init__(path, child)
+        self.refusal = ""
+        """Why it failed of itself."""
+        self.keys = keys
+        self.holds = holds
+        self.said: bool | None = None
+        """What the condition was in the tick under way, or in the last one; None where it was not asked."""
+        self._text = text
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Ask, then tick the child or stop it."""
+        self.said = self.holds()
+        if self.said:
+            yield from super().tick()
+            return
+        self.refusal = f"{self._text} is false"
+        self.stop(Status.FAILURE)
+        yield self
+
+    def update(self) -> Status:
+        """Tell what the child says."""
+        self.refusal = ""
+        return self.decorated.status
+
+
+class Repeat(decorators.Repeat):
+    """py_trees' Repeat, which has the tree ticked again at once where py_trees waits for a next tick."""
+
+    def __init__(self, path: str, child: Behaviour, times: int, alarms: Alarms) -> None:
+        super().__init__(path, child, times)
+        self._alarms = alarms
+
+    def update(self) -> Status:
+        """Count, and go on at once."""
+        status = super().update()
+        if status is Status.RUNNING and self.decorated.status is Status.SUCCESS:
+            self._alarms.call_again(self.name)
+        return status
+
+    def terminate(self, new_status: Status) -> None:
+        """Go on no more."""
+        self._alarms.drop(self.name)
+
+
+class Retry(Decorator):
+    """Runs its child again after FAILURE, and after errors below when `errors`, waiting in between.
+
+    Args:
+        path: Its node path.
+        child: What is tried.
+        times: How often it is tried again.
+        backoff_s: The first wait; it doubles each time.
+        errors: Whether an error of a leaf below is a failed attempt.
+        alarms: Where waits are set.
+        clear: Brings a subtree to rest whose tick was torn by an error.
+        tell: Told the number of the attempt that comes, the wait, and the error before it, if it was one.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        child: Behaviour,
+        *,
+        times: int,
+        backoff_s: float,
+        errors: bool,
+        alarms: Alarms,
+        clear: Callable[[Behaviour], None],
+        tell: Callable[[int, float, Cause | None], None],
+    ) -> None:
+        super().__init__(path, child)
+        self.attempt = 1
+        self._times = times
+        self._backoff_s = backoff_s
+        self._errors = errors
+        self._alarms = alarms
+        self._clear = clear
+        self._tell = tell
+
+    def initialise(self) -> None:
+        """Begin with the first attempt."""
+        self.attempt = 1
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Tick the child, or wait for the next attempt to begin."""
+        if self.status is not Status.RUNNING:
+            self.initialise()
+        elif self._alarms.pending(self.name):
+            yield self
+            return
+        try:
+            yield from self.decorated.tick()
+        except (JournalError, NotStopped):
+            raise
+        except FlexcellError as error:
+            if not self._errors or self.attempt > self._times:
+                raise
+            self._clear(self.decorated)
+            self._try_again(cause_of(error))
+            self.status = Status.RUNNING
+            yield self
+            return
+        status = self.update()
+        if status is not Status.RUNNING:
+            self.stop(status)
+        self.status = status
+        yield self
+
+    def update(self) -> Status:
+        """Try again after a failure as long as attempts are left."""
+        if self.decorated.status is Status.FAILURE and self.attempt <= self._times:
+            self._try_again(None)
+            return Status.RUNNING
+        return self.decorated.status
+
+    def terminate(self, new_status: Status) -> None:
+        """Wait no longer."""
+        self._alarms.drop(self.name)
+
+    def _try_again(self, error: Cause | None) -> None:
+        wait_s = self._backoff_s * 2 ** (self.attempt - 1)
+        self.attempt += 1
+        self._tell(self.attempt, wait_s, error)
+        if wait_s > 0:
+            self._alarms.set(self.name, wait_s)
+        else:
+            self._alarms.call_again(self.name)
+
+
+class Remap(Decorator):
+    """Shows another status than its child has; ticked from time to time where it hides an end."""
+
+    def __init__(
+        self, path: str, child: Behaviour, shown: Mapping[Status, Status], every_s: float, alarms: Alarms
+    ) -> None:
+        super().__init__(path, child)
+        self.refusal = ""
+        """Why it failed of itself."""
+        self._shown = shown
+        self._every_s = every_s
+        self._alarms = alarms
+
+    def update(self) -> Status:
+        """Show what is to be shown."""
+        actual = self.decorated.status
+        shown = self._shown[actual]
+        self.refusal = ""
+        if shown is not actual and shown is Status.FAILURE:
+            self.refusal = f"{actual.value} counts as FAILURE"
+        _wake_up(self._alarms, self.name, self._every_s, hidden=shown is Status.RUNNING and shown is not actual)
+        return shown
+
+    def terminate(self, new_status: Status) -> None:
+        """Be ticked no longer."""
+        self._alarms.drop(self.name)
+
+
+class Condition(decorators.Condition):
+    """py_trees' Condition, ticked from time to time while its child has ended otherwise."""
+
+    def __init__(self, path: str, child: Behaviour, status: Status, every_s: float, alarms: Alarms) -> None:
+        super().__init__(path, child, status)
+        self._every_s = every_s
+        self._alarms = alarms
+
+    def update(self) -> Status:
+        """Wait for the status."""
+        status = super().update()
+        ended = self.decorated.status is not Status.RUNNING
+        _wake_up(self._alarms, self.name, self._every_s, hidden=status is Status.RUNNING and ended)
+        return status
+
+    def terminate(self, new_status: Status) -> None:
+        """Be ticked no longer."""
+        self._alarms.drop(self.name)
+
+
+def _wake_up(alarms: Alarms, path: str, every_s: float, *, hidden: bool) -> None:
+    """Have a part ticked soon that is RUNNING though its child has ended: nothing below will wake it."""
+    if hidden:
+        alarms.set(path, every_s)
+    else:
+        alarms.drop(path)

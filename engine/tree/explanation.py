@@ -1,0 +1,50 @@
+"""Why a tree failed: from the part that failed down to the leaf and its own cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator, Inverter
+
+from engine.cause import under
+from engine.event import Cause
+from engine.node import explain
+from engine.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
+from engine.tree.leaf import TreeLeaf
+from engine.tree.part import Part
+
+
+def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
+    """Return why a behaviour is FAILURE, the outermost part first."""
+    part = parts[behaviour]
+    if isinstance(behaviour, TreeLeaf):
+        if behaviour.left is None:
+            return Cause(message=f"{part.name} failed", where=part.path)
+        return explain(behaviour.plan.node, behaviour.left)
+    if isinstance(behaviour, Timeout | Cooldown | Guard | Remap) and behaviour.refusal:
+        return Cause(message=behaviour.refusal, where=part.path, kind=type(behaviour).__name__)
+    if part.foreign is not None:
+        said = f": {behaviour.feedback_message}" if behaviour.feedback_message else ""
+        return Cause(message=f"{part.name} failed{said}", where=part.path)
+    if isinstance(behaviour, Inverter):
+        return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
+    below = _culprit(behaviour)
+    because = reason(below, parts) if below is not None else None
+    if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
+        return under(f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path)
+    if isinstance(behaviour, Retry) and behaviour.attempt > 1:
+        return under(f"failed {behaviour.attempt} times", because, where=part.path)
+    return because or Cause(message=f"{part.name} had failed before", where=part.path)
+
+
+def _culprit(behaviour: Behaviour) -> Behaviour | None:
+    if isinstance(behaviour, Decorator):
+        candidates = [behaviour.decorated]
+    elif isinstance(behaviour, composites.Selector):
+        candidates = behaviour.children[::-1]
+    else:
+        candidates = behaviour.children
+    return next((child for child in candidates if child.status is Status.FAILURE), None)

@@ -1,0 +1,226 @@
+"""The leaves of one tree that are active: asked for and halted inside a tick, begun and stopped around it.
+
+py_trees halts in the middle of a tick and cannot wait. So a tick only notes what it halts and what
+it begins; what it begins starts after everything it has halted has confirmed its clean-up. A leaf
+that is a check starts inside the tick, which is held up until it is clear whether the check ends
+at once; what was halted before it in the tick has confirmed by then.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable
+from functools import partial
+
+from engine.control.step import inside
+from engine.event import Answered, Called, Event
+from engine.execution import Execution
+from engine.node import Left, overdue
+from engine.preemption import preempt
+from engine.settle import settle
+from engine.tree.part import LeafPlan
+from engine.tree.place import Place
+
+CHECK_S = 1.0
+"""How long a tick waits for a check that has asked a service, before the check counts as RUNNING."""
+
+
+class Activation:
+    """One activation of a leaf, from the tick that asks for it to the tick that reads how it ended.
+
+    Args:
+        plan: The leaf.
+        place: Where it reads and writes.
+        rank: Its place in the document.
+        caught: Whether a decorator around it takes its errors.
+    """
+
+    __slots__ = ("caught", "place", "plan", "rank", "task")
+
+    def __init__(self, plan: LeafPlan, place: Place, *, rank: int, caught: bool) -> None:
+        self.plan = plan
+        self.place = place
+        self.rank = rank
+        self.caught = caught
+        self.task: asyncio.Task[Left] | None = None
+
+    @property
+    def path(self) -> str:
+        """The leaf's node path."""
+        return self.plan.node.path
+
+    @property
+    def left(self) -> Left | None:
+        """How it ended; None while it has not.
+
+        Raises:
+            FlexcellError: it ended with this error.
+        """
+        return self.task.result() if self.task is not None and self.task.done() else None
+
+    @property
+    def error(self) -> BaseException | None:
+        """The error it ended with, if any."""
+        if self.task is None or not self.task.done() or self.task.cancelled():
+            return None
+        return self.task.exception()
+
+
+class Leaves:
+    """The active leaves of one activation of the tree at `path`.
+
+    Args:
+        execution: The run.
+        path: The tree.
+        wake: Called when a leaf has ended that the next tick has to read.
+    """
+
+    def __init__(self, execution: Execution, path: str, wake: Callable[[], None]) -> None:
+        self._execution = execution
+        self._path = path
+        self._wake = wake
+        self._asked: list[Activation] = []
+        self._running: set[Activation] = set()
+        self._halted: list[Activation] = []
+        self._unread: set[Activation] = set()
+        self._probed: Activation | None = None
+        self._calls = 0
+        self._answered: asyncio.Future[None] | None = None
+        self.begun: list[str] = []
+        """Paths of the leaves begun since `begun` was last cleared."""
+
+    @property
+    def halting(self) -> bool:
+        """Whether something was halted in this tick that has not confirmed yet."""
+        return bool(self._halted)
+
+    @property
+    def unread(self) -> frozenset[Activation]:
+        """Those that have ended and that no tick has read."""
+        return frozenset(self._unread)
+
+    def ask(self, activation: Activation) -> None:
+        """Have a leaf begin when the tick is carried out."""
+        self._asked.append(activation)
+
+    def read(self, activation: Activation) -> Left | None:
+        """Return how it ended and forget it; None while it runs.
+
+        Raises:
+            FlexcellError: it ended with this error.
+        """
+        if activation.task is None or not activation.task.done():
+            return None
+        self._running.discard(activation)
+        self._unread.discard(activation)
+        return activation.left
+
+    def halt(self, activation: Activation) -> None:
+        """Have a leaf stopped before anything else begins; one that has not begun never does.
+
+        How it ended no longer matters, unless with an error that nothing in the tree takes.
+        """
+        if activation in self._asked:
+            self._asked.remove(activation)
+            return
+        self._running.discard(activation)
+        self._unread.discard(activation)
+        ended = activation.task is not None and activation.task.done()
+        if not ended or (activation.error is not None and not activation.caught):
+            self._halted.append(activation)
+
+    def forget(self, seen: Iterable[Activation]) -> None:
+        """Do not wake for these any more: a tick has followed."""
+        self._unread.difference_update(seen)
+
+    async def confirm(self) -> None:
+        """Stop what was halted, in document order, and return when all clean-up is done.
+
+        Raises:
+            FlexcellError: a clean-up failed, or did not end in time.
+        """
+        if not self._halted:
+            return
+        halted = self._take_halted()
+        tasks = [each.task for each in halted if each.task is not None]
+        await preempt(tasks, overdue(self._execution, self._path))
+        for each in halted:
+            if each.error is not None:
+                raise each.error
+
+    async def begin(self) -> None:
+        """Carry out the tick: stop what it halted, then begin what it asked for."""
+        await self.confirm()
+        asked, self._asked = self._asked, []
+        for activation in asked:
+            self._start(activation)
+
+    async def probe(self, activation: Activation) -> None:
+        """Begin a check at once and return when it has ended, or waits for something."""
+        self._asked.remove(activation)
+        self._probed, self._calls = activation, 0
+        try:
+            task = self._start(activation)
+            # Most checks end in the first turn of the loop, which costs far less than settling.
+            await asyncio.sleep(0)
+            waited_s = 0.0
+            while not task.done():
+                await settle(depth=self._path.count("/"))
+                if self._execution.suspensions.held(activation.path):
+                    await self._execution.suspensions.until_free(activation.path)
+                elif task.done() or self._calls == 0 or waited_s >= CHECK_S:
+                    break
+                else:
+                    waited_s += await self._answer(task, CHECK_S - waited_s)
+        finally:
+            self._probed = None
+
+    async def stop(self) -> None:
+        """Stop everything and return when all clean-up is done; errors of clean-ups are not raised.
+
+        Raises:
+            NotStopped: a clean-up did not end in time.
+        """
+        self._asked.clear()
+        self._halted += self._running
+        self._running.clear()
+        self._unread.clear()
+        halted = self._take_halted()
+        await preempt([each.task for each in halted if each.task is not None], overdue(self._execution, self._path))
+
+    def hear(self, event: Event) -> None:
+        """Take an event of the run: the tick waits while a check asks a service."""
+        if self._probed is None or not isinstance(event, Called | Answered):
+            return
+        if inside(self._probed.path, event.path):
+            self._calls += 1 if isinstance(event, Called) else -1
+            if self._answered is not None and not self._answered.done():
+                self._answered.set_result(None)
+
+    def _start(self, activation: Activation) -> asyncio.Task[Left]:
+        work = activation.plan.node.perform(activation.place.scope, self._execution)
+        task = activation.task = self._execution.activity.branch(activation.path, work)
+        self._running.add(activation)
+        self.begun.append(activation.path)
+        task.add_done_callback(partial(self._end, activation))
+        return task
+
+    def _end(self, activation: Activation, _: asyncio.Task[Left]) -> None:
+        if activation in self._running and activation is not self._probed:
+            self._unread.add(activation)
+            self._wake()
+
+    def _take_halted(self) -> list[Activation]:
+        halted, self._halted = sorted(self._halted, key=lambda each: each.rank), []
+        return halted
+
+    async def _answer(self, task: asyncio.Task[Left], timeout_s: float) -> float:
+        """Wait until the check has an answer or has ended; return how long that took."""
+        clock = self._execution.clock
+        since_s = clock.now_s()
+        self._answered = asyncio.get_running_loop().create_future()
+        try:
+            await asyncio.wait({task, self._answered}, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._answered = None
+        return clock.now_s() - since_s

@@ -1,0 +1,63 @@
+"""A behavior tree as planned: its parts with everything compiled, shared by any number of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from py_trees.behaviour import Behaviour
+
+from engine.document import node as nodes
+from engine.document.expression import Template
+from engine.node import Node
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeafPlan:
+    """A state or container as a leaf.
+
+    `success` names the outcomes that mean SUCCESS. A `check` commands no device: it may begin
+    while others are still being stopped, and what it says at once counts in the same tick.
+    """
+
+    node: Node
+    success: frozenset[str]
+    check: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForeignPlan:
+    """A py_trees behaviour as a leaf: its class, its arguments, and which blackboard keys are userdata.
+
+    `every_s` is how often it is ticked while it is RUNNING, as nothing else would wake it.
+    """
+
+    kind: type[Behaviour]
+    takes_name: bool
+    arguments: Template
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str]
+    every_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """One node of a tree: a composite or decorator as documented in `source`, or a leaf."""
+
+    path: str
+    name: str
+    position: str
+    source: nodes.Node = field(repr=False)
+    children: tuple[Part, ...] = ()
+    leaf: LeafPlan | None = None
+    foreign: ForeignPlan | None = None
+    when: Template | None = None
+    """The condition of a guard."""
+
+    def walk(self) -> Iterator[Part]:
+        """Go through this part and everything below it, in document order."""
+        due: list[Part] = [self]
+        while due:
+            part = due.pop()
+            yield part
+            due += reversed(part.children)

@@ -1,0 +1,124 @@
+"""Plans a tree of a document: leaves as nodes, expressions compiled, py_trees behaviours found."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+
+from py_trees.behaviour import Behaviour as PyTreesBehaviour
+
+from engine.document import node as nodes
+from engine.document.behavior import Behavior
+from engine.document.expression import Template, compile_template
+from engine.errors import DocumentError, ExpressionError
+from engine.leaf import Leaf
+from engine.nearness import near_names
+from engine.node import Node
+from engine.state import State
+from engine.tree.arguments import takes_name, wrong_arguments
+from engine.tree.part import ForeignPlan, LeafPlan, Part
+from engine.tree.tree import Tree
+
+PlanNode = Callable[[str, str, nodes.Node], Node]
+
+
+def new_tree(inside: str, node: nodes.Node, *, base: str, behavior: Behavior, plan: PlanNode) -> Tree:
+    """Plan the tree of a node.
+
+    Args:
+        inside: The node's path in its own document.
+        node: The node, whose kind is `tree`.
+        base: The path of the document's root in the run.
+        behavior: The document.
+        plan: Plans a state or container; given its name, its path in the document, and itself.
+
+    Raises:
+        DocumentError: something in it cannot be run; `where` is the position.
+    """
+    return Tree(root=_Planner(base, behavior, plan).children(inside, node)[0])
+
+
+@dataclass(frozen=True)
+class _Planner:
+    base: str
+    behavior: Behavior
+    plan: PlanNode
+
+    def children(self, inside: str, node: nodes.Node) -> tuple[Part, ...]:
+        return tuple(self._part(name, f"{inside}/{name}", child) for name, child in node.children.items())
+
+    def _part(self, name: str, inside: str, node: nodes.Node) -> Part:
+        is_leaf = node.kind in nodes.KINDS
+        return Part(
+            path=self.base + inside.removeprefix("root"),
+            name=name,
+            position=str(self.behavior.position(inside)),
+            source=node,
+            children=() if is_leaf else self.children(inside, node),
+            leaf=self._leaf(name, inside, node) if is_leaf else None,
+            foreign=self._foreign(inside, node) if node.behaviour is not None else None,
+            when=self._template(inside, "guard", node.guard.when) if node.guard is not None and not is_leaf else None,
+        )
+
+    def _leaf(self, name: str, inside: str, node: nodes.Node) -> LeafPlan:
+        planned = self.plan(name, inside, node)
+        for index, outcome in enumerate(node.success):
+            if outcome not in planned.work.outcomes:
+                where = self.behavior.position(inside, "success", index)
+                hint = near_names(outcome, planned.work.outcomes)
+                raise DocumentError(f"`{name}` has no outcome `{outcome}`", where=where, hint=hint)
+        success = frozenset(node.success) or planned.work.nominal
+        return LeafPlan(node=planned, success=success, check=not _commands(planned))
+
+    def _foreign(self, inside: str, node: nodes.Node) -> ForeignPlan:
+        kind = self._class(inside, node.behaviour or "")
+        wrong = wrong_arguments(kind, node.parameters)
+        if wrong is not None:
+            raise DocumentError(wrong[0], where=self.behavior.position(inside, "with"), hint=wrong[1])
+        return ForeignPlan(
+            kind=kind,
+            takes_name=takes_name(kind),
+            arguments=self._template(inside, "with", node.parameters),
+            inputs=node.inputs,
+            outputs=node.outputs,
+            every_s=node.every_s,
+        )
+
+    def _class(self, inside: str, name: str) -> type[PyTreesBehaviour]:
+        where = self.behavior.position(inside, "behaviour")
+        module_name, _, class_name = name.partition(":")
+        try:
+            found = getattr(importlib.import_module(module_name), class_name)
+        except (ImportError, AttributeError, ValueError) as error:
+            raise DocumentError(str(error), where=where, hint="write it as package.module:Class") from error
+        if not (isinstance(found, type) and issubclass(found, PyTreesBehaviour)) or inspect.isabstract(found):
+            raise DocumentError(
+                f"`{name}` is not a py_trees behaviour that can be made",
+                where=where,
+                hint="it must be a subclass of py_trees.behaviour.Behaviour with an `update`",
+            )
+        return found
+
+    def _template(self, inside: str, key: str, value: object) -> Template:
+        try:
+            return compile_template(value)
+        except ExpressionError as error:
+            where = self.behavior.position(inside, key)
+            raise DocumentError(error.message, where=where, hint=error.hint) from error
+
+
+def _commands(node: Node) -> bool:
+    """Tell whether a leaf may command a device, as far as its states declare it."""
+    work = node.work
+    if isinstance(work, Leaf):
+        return work.state.resources is not State.resources
+    if isinstance(work, Tree) and any(part.foreign is not None for part in work.root.walk()):
+        return True
+    # A priority container holds whatever else is at work.
+    return work.kind == "priority" or _any_commands(work.children.values())
+
+
+def _any_commands(inside: Collection[Node]) -> bool:
+    return any(_commands(child) for child in inside)

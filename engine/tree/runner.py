@@ -1,0 +1,211 @@
+"""Ticks one activation of a tree when something woke it, and carries out what each tick decided."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from engine.cause import cause_of, describe
+from engine.errors import FlexcellError, StateError
+from engine.event import Event, UserdataWritten
+from engine.execution import Execution
+from engine.node import log
+from engine.settle import settle
+from engine.state import Outcome
+from engine.tree.alarms import Alarms
+from engine.tree.blackboard import OwnBlackboard
+from engine.tree.explanation import reason
+from engine.tree.foreign import Foreign
+from engine.tree.growth import Growth
+from engine.tree.leaf import TreeLeaf
+from engine.tree.leaves import Activation, Leaves
+from engine.tree.part import Part
+from engine.tree.place import Place
+from engine.userdata import Scope
+
+_REMEMBERED = 32
+"""How many names are kept to name an endless loop."""
+
+
+class TreeRunner:
+    """One activation of a tree; used on the loop thread, run once.
+
+    Args:
+        root: The planned tree.
+        path: The node that it is the work of.
+        position: Where that stands in its document.
+        scope: Where its parts read and write.
+        execution: The run.
+    """
+
+    def __init__(self, root: Part, *, path: str, scope: Scope, execution: Execution) -> None:
+        self.ticks = 0
+        """How often the tree was ticked."""
+        self._path = path
+        self._execution = execution
+        self._news = asyncio.Event()
+        self._recent: deque[str] = deque(maxlen=_REMEMBERED)
+        self._leaves = Leaves(execution, path, self._news.set)
+        self._alarms = Alarms(execution, self._news.set)
+        self._growth = Growth(execution=execution, leaves=self._leaves, alarms=self._alarms, clear=self._clear)
+        foreign = any(part.foreign is not None for part in root.walk())
+        self._blackboard: AbstractContextManager[None] = OwnBlackboard() if foreign else nullcontext()
+        self._watched = frozenset[str]()
+        self._written: set[str] = set()
+        self._planned = root
+        self._place = Place(scope)
+
+    async def run(self) -> Outcome:
+        """Tick until the root has ended; everything it has begun has ended then.
+
+        Raises:
+            FlexcellError: a leaf, a foreign behaviour or a clean-up failed and nothing in the tree takes that.
+            CancelledError: the tree was preempted; all clean-up is done.
+        """
+        recorder, hear = self._execution.recorder, self._hear
+        recorder.watch(hear)
+        ready: list[Foreign] = []
+        try:
+            return await self._run(self._grow(ready))
+        finally:
+            recorder.unwatch(hear)
+            self._alarms.close()
+            try:
+                await self._leaves.stop()
+            finally:
+                self._shut_down(ready)
+
+    def _grow(self, ready: list[Foreign]) -> Behaviour:
+        with self._blackboard:
+            root = self._growth.grow(self._planned, self._place)
+            self._watched = frozenset(key for guard in self._growth.guards for key in guard.keys)
+            for foreign in self._growth.foreign.values():
+                foreign.set_up()
+                ready.append(foreign)
+        return root
+
+    async def _run(self, root: Behaviour) -> Outcome:
+        instants, moment = 0, self._moment()
+        try:
+            while True:
+                await self._tick(root)
+                if root.status is not Status.RUNNING:
+                    return self._outcome(root)
+                await self._wait()
+                last, moment = moment, self._moment()
+                instants = instants + 1 if moment == last else 0
+                if instants >= self._execution.instant_limit:
+                    raise self._endless(instants)
+        except BaseException:
+            # Whatever it is goes on; nothing in the tree may be left RUNNING.
+            self._clear(root)
+            raise
+
+    def _moment(self) -> float:
+        """What is unchanged while no time passes: virtual time itself, else how often something was waited for."""
+        clock = self._execution.clock
+        return clock.now_s() if clock.virtual else self._execution.waits
+
+    async def _tick(self, root: Behaviour) -> None:
+        self.ticks += 1
+        seen = self._leaves.unread
+        self._raise_error(seen)
+        self._alarms.follow()
+        self._news.clear()
+        for guard in self._growth.guards:
+            guard.said = None
+        steps = root.tick()
+        while (step := self._advance(steps)) is not None:
+            if step is self._growth.turn:
+                await self._take_turn()
+            else:
+                self._growth.statuses.note(step)
+        self._leaves.forget(seen)
+        await self._leaves.begin()
+        self._alarms.begin()
+        self._recent += (*self._leaves.begun, *self._alarms.again)
+        self._leaves.begun.clear()
+
+    def _advance(self, steps: Iterator[Behaviour]) -> Behaviour | None:
+        with self._blackboard:
+            return next(steps, None)
+
+    async def _take_turn(self) -> None:
+        check, self._growth.turn.check = self._growth.turn.check, None
+        await self._leaves.confirm()
+        if check is not None:
+            await self._leaves.probe(check)
+
+    def _raise_error(self, ended: frozenset[Activation]) -> None:
+        """Raise the first error, in document order, that no decorator takes: it ends the tree at once."""
+        for each in sorted(ended, key=lambda each: each.rank):
+            if each.error is not None and not each.caught:
+                raise each.error
+
+    async def _wait(self) -> None:
+        """Return when there is a reason to tick, everything of this instant has played out, and nothing holds us."""
+        while not (self._alarms.due or self._leaves.unread or self._guard_has_changed()):
+            self._news.clear()
+            await self._news.wait()
+        await settle(depth=self._path.count("/"))
+        suspensions = self._execution.suspensions
+        while suspensions.active and suspensions.held(self._path):
+            await suspensions.until_free(self._path)
+            await settle(depth=self._path.count("/"))
+
+    def _guard_has_changed(self) -> bool:
+        """Tell whether a guard that was asked in the last tick would now say something else."""
+        written, self._written = self._written, set()
+        asked = [each for each in self._growth.guards if each.said is not None and each.keys & written]
+        try:
+            return any(each.holds() is not each.said for each in asked)
+        except FlexcellError:
+            return True  # the tick will meet the error where a decorator may take it
+
+    def _hear(self, event: Event) -> None:
+        self._leaves.hear(event)
+        if isinstance(event, UserdataWritten) and event.key in self._watched:
+            self._written.add(event.key)
+            self._news.set()
+
+    def _outcome(self, root: Behaviour) -> Outcome:
+        if root.status is Status.SUCCESS:
+            return Outcome("success")
+        return Outcome("failure", cause=reason(root, self._growth.parts))
+
+    def _clear(self, torn: Behaviour) -> None:
+        """Halt everything at and below a node, also what py_trees forgets when an exception has torn its tick."""
+        with self._blackboard:
+            inside = tuple(torn.iterate())
+            for node in inside:
+                if node in self._growth.foreign:
+                    self._contain(self._growth.foreign[node].clear)
+            torn.stop(Status.INVALID)
+            for node in inside:
+                if node.status is not Status.INVALID or isinstance(node, TreeLeaf):
+                    node.stop(Status.INVALID)
+
+    def _shut_down(self, ready: list[Foreign]) -> None:
+        for foreign in ready:
+            with self._blackboard:
+                self._contain(foreign.shut_down)
+
+    def _contain(self, clean_up: Callable[[], None]) -> None:
+        try:
+            clean_up()
+        except FlexcellError as error:
+            # What made the clean-up necessary goes on; this is told beside it.
+            log(self._execution, self._path, f"clean-up failed: {describe(cause_of(error))}", level="error")
+
+    def _endless(self, instants: int) -> StateError:
+        names = list(dict.fromkeys(path.removeprefix(f"{self._path}/") for path in self._recent))
+        return StateError(
+            f"ticked {instants} times in a row without waiting for anything, through {' → '.join(names)}",
+            where=self._path,
+            hint="let one of these wait for something, or leave the loop",
+        )

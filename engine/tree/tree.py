@@ -1,0 +1,51 @@
+"""The tree container: a behavior tree executed by py_trees, ticked only when something woke it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from engine.document.node import TREE_OUTCOMES
+from engine.execution import Execution
+from engine.node import NOTHING, Entry, Node
+from engine.state import Outcome
+from engine.tree.part import Part
+from engine.tree.runner import TreeRunner
+from engine.userdata import Scope
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tree:
+    """A planned tree as a node's work."""
+
+    root: Part
+
+    @property
+    def kind(self) -> str:
+        """The key of this container in documents."""
+        return "tree"
+
+    @property
+    def outcomes(self) -> tuple[str, ...]:
+        """The final statuses of its root."""
+        return TREE_OUTCOMES
+
+    @cached_property
+    def children(self) -> Mapping[str, Node]:
+        """The leaves, by their path below the tree, in document order."""
+        outside = len(self.root.path) - len(self.root.name)
+        return {part.path[outside:]: part.leaf.node for part in self.root.walk() if part.leaf is not None}
+
+    @cached_property
+    def nominal(self) -> frozenset[str]:
+        """Success."""
+        return frozenset(("success",))
+
+    def enter(self, scope: Scope) -> Entry:
+        """Nothing is evaluated: the leaves evaluate theirs."""
+        return NOTHING
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Tick it to its end."""
+        return await TreeRunner(self.root, path=path, scope=Scope(path, {}, scope), execution=execution).run()

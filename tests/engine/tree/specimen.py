@@ -1,0 +1,97 @@
+"""Random trees for tests, as data from which a document and a plain py_trees tree are made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from hypothesis import strategies as st
+
+EVERY_S = 0.25
+"""The period of polled decorators; a binary fraction, so that sums of it are exact."""
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """Durations and results, one for each activation; the last holds on."""
+
+    commands: bool
+    script: tuple[tuple[float, bool], ...]
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One node: a leaf, or a composite or decorator with its arguments."""
+
+    name: str
+    kind: str = "leaf"
+    leaf: Leaf | None = None
+    children: tuple[Specimen, ...] = ()
+    arguments: dict[str, Any] = field(default_factory=dict[str, Any])
+
+    def document(self) -> dict[str, Any]:
+        """Return the node as a behavior document has it."""
+        if self.leaf is not None:
+            state = "test.Act" if self.leaf.commands else "test.Check"
+            return {"state": state, "name": self.name, "with": {"script": [list(entry) for entry in self.leaf.script]}}
+        inside = [child.document() for child in self.children]
+        group = self.kind in ("sequence", "selector", "parallel")
+        below = {"children": inside} if group else {"child": inside[0]}
+        return {self.kind: {**self.arguments, **below}, "name": self.name}
+
+
+def _renamed(specimen: Specimen, name: str) -> Specimen:
+    return replace(specimen, name=name)
+
+
+_STATUSES = ["success", "failure", "running"]
+_REMAPS = [(actual, shown) for actual in _STATUSES for shown in _STATUSES if actual != shown]
+_DURATIONS = st.sampled_from([0.0, 0.0, 0.5, 1.0, 2.0])
+
+
+@st.composite
+def leaves(draw: st.DrawFn) -> Specimen:
+    """Draw a leaf."""
+    script = draw(st.lists(st.tuples(_DURATIONS, st.booleans()), min_size=1, max_size=3))
+    return Specimen("leaf", leaf=Leaf(draw(st.booleans()), tuple(script)))
+
+
+@st.composite
+def groups(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
+    """Draw a composite."""
+    drawn = draw(st.lists(children, min_size=1, max_size=4))
+    inside = tuple(_renamed(child, f"n{index}") for index, child in enumerate(drawn))
+    kind = draw(st.sampled_from(["sequence", "selector", "parallel"]))
+    if kind != "parallel":
+        return Specimen(kind, kind, None, inside, {"memory": draw(st.booleans())})
+    chosen = draw(st.lists(st.sampled_from([child.name for child in inside]), min_size=1, unique=True))
+    policy = draw(st.sampled_from(["all", "one", chosen]))
+    return Specimen(kind, kind, None, inside, {"policy": policy, "synchronise": draw(st.booleans())})
+
+
+@st.composite
+def decorated(draw: st.DrawFn, child: st.SearchStrategy[Specimen]) -> Specimen:
+    """Draw a decorator that py_trees has too."""
+    kinds = ["inverter", "one_shot", "repeat", "retry", "timeout", "condition", "remap"]
+    kind = draw(st.sampled_from(kinds))
+    return Specimen(kind, kind, None, (_renamed(draw(child), "child"),), _arguments(draw, kind))
+
+
+def _arguments(draw: st.DrawFn, kind: str) -> dict[str, Any]:
+    match kind:
+        case "one_shot":
+            return {"policy": draw(st.sampled_from(["completion", "success"]))}
+        case "repeat" | "retry":
+            return {"times": draw(st.integers(1, 3))}
+        case "timeout":
+            return {"after": draw(st.sampled_from([0.25, 0.5, 1.0, 1.25]))}
+        case "condition":
+            return {"status": draw(st.sampled_from(_STATUSES)), "every": EVERY_S}
+        case "remap":
+            actual, shown = draw(st.sampled_from(_REMAPS))
+            return {actual: shown, "every": EVERY_S}
+        case _:
+            return {}
+
+
+specimens = st.recursive(leaves(), lambda inner: groups(inner) | decorated(inner), max_leaves=16)
