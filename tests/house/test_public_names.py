@@ -10,9 +10,17 @@ import pytest
 from tests.engine.cli.command import flexcell
 
 ROOT = Path(__file__).resolve().parents[2]
-FACES = ["engine.bus", "engine.check", "engine.document", "engine.journal", "engine.store", "states"]
+FACES = [
+    "engine.authoring",
+    "engine.bus",
+    "engine.check",
+    "engine.document",
+    "engine.journal",
+    "engine.store",
+    "states",
+]
 COMMANDS = [
-    ("run",), ("check",), ("serve",), ("schema",), ("states",), ("states", "show"),
+    ("run",), ("check",), ("export",), ("serve",), ("schema",), ("states",), ("states", "show"),
     *(("store", name) for name in ("list", "get", "set", "delete", "export", "import")),
     *(("bus", name) for name in ("list", "echo", "hz", "call", "goal")),
 ]  # fmt: skip
