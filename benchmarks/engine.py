@@ -32,6 +32,7 @@ CHAIN = Table(
     rows=(
         Row("flexcell", "flexcell:chain", (1000,), (20,)),
         Row("flexcell, journaled", "flexcell:journaled_chain", (1000,), (20,), "every event on the disk at the end"),
+        Row("flexcell, behavior tree", "flexcell:tree_chain", (1000,), (20,), "a sequence of states"),
         Row("plain asyncio (floor)", "plain_asyncio:chain", (1000,), (20,), "awaits of an empty coroutine"),
         Row("py_trees", "behavior_tree:chain", (1000,), (20,), "a sequence inside one tick"),
         Row(_SMACH_LIKE, "smach_like:chain", (1000,), (20,)),
@@ -62,6 +63,7 @@ TICKS = Table(
     "100 parallel children, each woken 100 times",
     rows=(
         Row("flexcell", "flexcell:ticks", (100, 100), (3, 5)),
+        Row("flexcell, behavior tree", "flexcell:tree_ticks", (100, 100), (3, 5), "wake-ups of leaves in a parallel"),
         Row("plain asyncio (floor)", "plain_asyncio:ticks", (100, 100), (3, 5)),
         Row("py_trees", "behavior_tree:ticks", (100, 100), (3, 5), "ticks of running leaves"),
     ),
@@ -109,6 +111,22 @@ LOAD = Table(
     columns={"µs CPU per state": lambda r: f"{r.cpu_us:.3g}", **_ONCE},
     ratio=lambda r: r.cpu_us * r.samples[0].units,
 )
+GROWTH = Table(
+    "Growth: transitions in a chain of so many states",
+    rows=tuple(
+        Row(f"{name}, {states:,} states", function, (states,), (4,))
+        for name, function in (
+            ("flexcell", "flexcell:chain"),
+            ("flexcell, journaled", "flexcell:journaled_chain"),
+            ("flexcell, resumed", "flexcell:resumed_chain"),
+            ("py_trees", "behavior_tree:chain"),
+            ("transitions", "transitions_machine:chain"),
+        )
+        for states in ((10, 100, 1000, 10_000) if name != "transitions" else (10, 100, 1000))
+    ),
+    columns=_RATES,
+    ratio=_cpu_us,
+)
 IMPORT = Table(
     "Import",
     rows=(
@@ -123,7 +141,7 @@ IMPORT = Table(
     columns=_ONCE,
     ratio=_cpu_us,
 )
-TABLES = (CHAIN, BRANCHES, TICKS, REACTION, IDLE, LOAD, IMPORT)
+TABLES = (CHAIN, BRANCHES, TICKS, REACTION, IDLE, LOAD, GROWTH, IMPORT)
 
 ELSEWHERE = """\
 ### Measured elsewhere, not in this run

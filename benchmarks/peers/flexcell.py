@@ -16,9 +16,9 @@ from engine.bus import SkillBus
 from engine.check import check_behavior
 from engine.clock import new_clock
 from engine.document import parse_behavior
-from engine.journal import Journal
+from engine.journal import Journal, RunJournal
 from engine.plan import Plan, new_plan
-from engine.journal import RunJournal
+from engine.resume import read_history
 from engine.run import Run
 from engine.state import Context, Outcome, State
 
@@ -84,6 +84,32 @@ def chain(watch: Stopwatch, states: int) -> Sample:
     """Run a machine of states that end at once."""
     plan = _plan(_machine(states, "good", indent="  "))
     return asyncio.run(_measured(watch, plan, states))
+
+
+def tree_chain(watch: Stopwatch, states: int) -> Sample:
+    """Run a behavior tree, a sequence of states that end at once."""
+    plan = _plan(_tree("sequence", states, "{state: bench.Step}"))
+    return asyncio.run(_measured(watch, plan, states))
+
+
+def tree_ticks(watch: Stopwatch, children: int, times: int) -> Sample:
+    """Wake each leaf of a parallel again and again."""
+    plan = _plan(_tree("parallel", children, f"{{state: bench.Tick, with: {{times: {times}}}}}"))
+    return asyncio.run(_measured(watch, plan, children * times))
+
+
+def resumed_chain(watch: Stopwatch, states: int) -> Sample:
+    """Read the events of a machine of states and find out where it stands; a unit is a state."""
+    plan = _plan(_machine(states, "good", indent="  "))
+    events: list[Event] = []
+
+    async def record() -> None:
+        run = Run(plan, run="bench", bus=SkillBus(new_clock()))
+        run.watch(events.append)
+        await run.execute()
+
+    asyncio.run(record())
+    return watch.measure(states, lambda: read_history(plan, "bench", events).checkpoint())
 
 
 def journaled_chain(watch: Stopwatch, states: int) -> Sample:
@@ -158,6 +184,16 @@ def load(watch: Stopwatch, states: int) -> Sample:
         raise AssertionError("the benchmark's document has findings")
     new_plan(behavior, _CATALOGUE)
     return Sample(states, time.process_time() - cpu_s, time.perf_counter() - wall_s)
+
+
+def _tree(kind: str, children: int, child: str) -> str:
+    """Return a machine with one tree in it."""
+    leaves = "".join(f"\n            - {child}" for _ in range(children))
+    return (
+        "  machine:\n    initial: tree\n    states:\n      tree:\n"
+        f"        tree:\n          {kind}:{leaves}\n"
+        "        transitions: {success: good, failure: good}\n"
+    )
 
 
 async def _measured(
