@@ -16,6 +16,7 @@ from engine.bus import SkillBus
 from engine.check import check_behavior
 from engine.clock import new_clock
 from engine.document import parse_behavior
+from engine.event import Event
 from engine.journal import Journal, RunJournal
 from engine.plan import Plan, new_plan
 from engine.resume import read_history
