@@ -16,7 +16,8 @@ from collections.abc import Callable
 import msgspec
 
 from editor_web.backend import Backend, RunSummary, Unsubscribe
-from editor_web.live_run import LOG_LINES, Change, LiveRun, LogLine, NodeLive
+from editor_web.event_words import LogLine
+from editor_web.live_run import LOG_LINES, Change, LiveRun, NodeLive
 from engine.errors import FlexcellError
 from engine.event import Event
 

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 
 import msgspec
 
+from editor_web.event_words import LogLine, log_line, status_of
 from engine.event import (
-    Cause,
+    Diverted,
     Entered,
     Event,
     Exited,
-    GoalFinished,
-    GoalSent,
-    Logged,
-    Retried,
     RunEnded,
     RunStarted,
+    StatusChanged,
     StopRequested,
     Transitioned,
-    UserdataWritten,
 )
 
 LOG_LINES = 1000
-# Outcomes that read as a failure where the event brings no cause with it.
-FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
 
 
 class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -43,26 +37,6 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
     duration_s: float = 0.0
     cause: str = ""
     followed: str = ""
-
-
-class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of a cause chain, outermost first."""
-
-    message: str
-    where: str
-    kind: str
-
-
-class LogLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag."""
-
-    seq: int
-    time_s: float
-    kind: str
-    level: str
-    path: str
-    text: str
-    causes: tuple[CauseLine, ...] = ()
 
 
 class Change(msgspec.Struct, frozen=True, kw_only=True):
@@ -107,6 +81,11 @@ class LiveRun:
         if isinstance(event, Transitioned):
             node = self.nodes.get(event.path, NodeLive())
             return {event.path: msgspec.structs.replace(node, followed=f"{event.source}|{event.outcome}")}
+        if isinstance(event, StatusChanged):
+            return {event.path: self._status_changed(event)}
+        if isinstance(event, Diverted):
+            node = self.nodes.get(event.path, NodeLive())
+            return {event.path: msgspec.structs.replace(node, status="stopped", outcome=event.target)}
         if isinstance(event, RunEnded):
             self.ended = True
             return {
@@ -127,11 +106,24 @@ class LiveRun:
         changed[event.path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
         return changed
 
+    def _status_changed(self, event: StatusChanged) -> NodeLive:
+        """A composite or decorator of a behavior tree has no visits of its own."""
+        node = self.nodes.get(event.path, NodeLive())
+        status = {"running": "active", "success": "done", "failure": "failed"}.get(event.status, "idle")
+        started = status == "active" and node.status != "active"
+        return msgspec.structs.replace(
+            node,
+            status=status,
+            visits=node.visits + started,
+            entered_s=event.time_s if started else node.entered_s,
+            duration_s=event.time_s - node.entered_s if status != "active" else node.duration_s,
+        )
+
     def _exited(self, event: Exited) -> NodeLive:
         node = self.nodes.get(event.path, NodeLive(entered_s=event.time_s))
         return msgspec.structs.replace(
             node,
-            status=_status(event),
+            status=status_of(event),
             visits=event.visit,
             outcome=event.outcome,
             duration_s=event.time_s - node.entered_s,
@@ -139,67 +131,5 @@ class LiveRun:
         )
 
 
-def _status(event: Exited) -> str:
-    if event.preempted:
-        return "stopped"
-    return "failed" if event.cause is not None or event.outcome in FAILURE_OUTCOMES else "done"
-
-
 def _duration(event: Event, changed: dict[str, NodeLive]) -> float:
     return changed[event.path].duration_s if isinstance(event, Exited) else 0.0
-
-
-def log_line(event: Event, *, duration_s: float = 0.0) -> LogLine:
-    """Say one event in words; `duration_s` is how long the node that ended took."""
-    path, level, text, cause = _words(event, duration_s)
-    kind = str(type(event).__struct_config__.tag or "")
-    return LogLine(
-        seq=event.seq, time_s=event.time_s, kind=kind, level=level, path=path, text=text, causes=_lines(cause)
-    )
-
-
-def _words(event: Event, duration_s: float) -> tuple[str, str, str, Cause | None]:
-    match event:
-        case RunStarted():
-            return "", "info", f"run started: {event.behavior}, seed {event.seed}, {event.clock} clock", None
-        case Entered():
-            return event.path, "debug", "entered" if event.visit == 1 else f"entered, visit {event.visit}", None
-        case Exited():
-            level = {"failed": "error", "stopped": "warning"}.get(_status(event), "info")
-            how = "stopped" if event.preempted else f"ended with {event.outcome}"
-            return event.path, level, f"{how} after {_seconds(duration_s)}", event.cause
-        case UserdataWritten():
-            return event.path, "debug", f"{event.key} = {_short(event.value)}", None
-        case Transitioned():
-            return event.path, "info", f"{event.source} \u2014{event.outcome}\u2192 {event.target}", None
-        case GoalSent():
-            return event.path, "debug", f"asked {event.address}: {_short(event.request)}", None
-        case GoalFinished():
-            level = "debug" if event.status == "succeeded" else "warning"
-            return event.path, level, f"goal {event.goal} {event.status}", event.cause
-        case Logged():
-            return event.path, event.level, event.message, None
-        case Retried():
-            return event.path, "warning", f"attempt {event.attempt} after {_seconds(event.wait_s)}", event.cause
-        case StopRequested():
-            return "", "warning", f"stop requested: {event.reason}", None
-        case RunEnded():
-            level = "error" if event.status == "errored" or event.cause is not None else "info"
-            how = f"run {event.status}" + (f" with {event.outcome}" if event.outcome else "")
-            return "", level, f"{how} after {_seconds(event.time_s)}", event.cause
-        case _:
-            return "", "info", type(event).__name__, None
-
-
-def _seconds(duration_s: float) -> str:
-    return f"{duration_s:.2f} s" if math.isfinite(duration_s) else "?"
-
-
-def _short(value: object, limit: int = 160) -> str:
-    text = msgspec.json.encode(value).decode()
-    return text if len(text) <= limit else f"{text[:limit]}\u2026"
-
-
-def _lines(cause: Cause | None) -> tuple[CauseLine, ...]:
-    chain = cause.chain() if cause else ()
-    return tuple(CauseLine(message=c.message, where=c.where, kind=c.kind) for c in chain)

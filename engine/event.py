@@ -44,9 +44,9 @@ class RunStarted(Event, frozen=True, kw_only=True, tag="run_started"):
     behavior: str
     document: str
     parameters: dict[str, object]
-    inputs: dict[str, object]
     seed: int
     clock: str
+    inputs: dict[str, object] = {}
 
 
 class Entered(Event, frozen=True, kw_only=True, tag="entered"):

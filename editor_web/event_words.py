@@ -1,0 +1,204 @@
+"""Every event of a run in words: what the log of the page shows."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+
+from engine.event import (
+    Abandoned,
+    Answered,
+    BehaviorChanged,
+    Called,
+    Cause,
+    Commanded,
+    Diverted,
+    Entered,
+    Event,
+    Exited,
+    FaultInjected,
+    GatePassed,
+    GateReached,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    GoalSent,
+    Logged,
+    LoopBlocked,
+    OperatorChanged,
+    OutcomeRequested,
+    OutcomeWithdrawn,
+    PauseConfirmed,
+    Received,
+    Retried,
+    RunEnded,
+    RunResumed,
+    RunStarted,
+    StatusChanged,
+    StopRequested,
+    Transitioned,
+    UserdataWritten,
+)
+
+# Outcomes that read as a failure where the event brings no cause with it.
+FAILURE_OUTCOMES = frozenset({"failed", "failure", "error", "errored", "aborted"})
+Words = tuple[str, str, str, Cause | None]
+"""Path, level, text, cause."""
+
+
+class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
+    """One link of a cause chain, outermost first."""
+
+    message: str
+    where: str
+    kind: str
+
+
+class LogLine(msgspec.Struct, frozen=True, kw_only=True):
+    """One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag."""
+
+    seq: int
+    time_s: float
+    kind: str
+    level: str
+    path: str
+    text: str
+    causes: tuple[CauseLine, ...] = ()
+
+
+def status_of(event: Exited) -> str:
+    """Return how a node was left: done, failed or stopped."""
+    if event.preempted:
+        return "stopped"
+    return "failed" if event.cause is not None or event.outcome in FAILURE_OUTCOMES else "done"
+
+
+def log_line(event: Event, *, duration_s: float = 0.0) -> LogLine:
+    """Say one event in words; `duration_s` is how long the node that ended took."""
+    path, level, text, cause = _words(event, duration_s)
+    kind = str(type(event).__struct_config__.tag or "")
+    return LogLine(
+        seq=event.seq, time_s=event.time_s, kind=kind, level=level, path=path, text=text, causes=_lines(cause)
+    )
+
+
+def _words(event: Event, duration_s: float) -> Words:
+    words = _words_of_nodes(event, duration_s) or _words_of_skills(event) or _words_of_control(event)
+    return words or _words_of_run(event)
+
+
+def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
+    match event:
+        case Entered():
+            return event.path, "debug", "entered" if event.visit == 1 else f"entered, visit {event.visit}", None
+        case Exited():
+            level = {"failed": "error", "stopped": "warning"}.get(status_of(event), "info")
+            how = "stopped" if event.preempted else f"ended with {event.outcome}"
+            return event.path, level, f"{how} after {_seconds(duration_s)}", event.cause
+        case UserdataWritten():
+            return event.path, "debug", f"{event.key} = {_short(event.value)}", None
+        case Transitioned():
+            return event.path, "info", f"{event.source} \u2014{event.outcome}\u2192 {event.target}", None
+        case Diverted():
+            level = "warning" if event.cause is not None else "info"
+            return event.path, level, f"left by {event.by} for {event.target}", event.cause
+        case Retried():
+            return event.path, "warning", f"attempt {event.attempt} after {_seconds(event.wait_s)}", event.cause
+        case StatusChanged():
+            return event.path, "debug", event.status, None
+        case Logged():
+            return event.path, event.level, event.message, None
+        case Abandoned():
+            return event.path, "error", f"did not stop within {event.waited_s:g} s and was abandoned", None
+        case LoopBlocked():
+            text = f"kept everything waiting for {event.blocked_s:.2f} s, at {event.where}"
+            return event.path, "warning", text, None
+        case _:
+            return None
+
+
+def _words_of_skills(event: Event) -> Words | None:
+    match event:
+        case GoalSent():
+            return event.path, "debug", f"asked {event.address}: {_short(event.request)}", None
+        case GoalFinished():
+            level = "debug" if event.status == "succeeded" else "warning"
+            return event.path, level, f"goal {event.goal} {event.status}", event.cause
+        case GoalHeld():
+            return event.path, "info", f"goal {event.goal} held, at rest", None
+        case GoalResumed():
+            return event.path, "info", f"goal {event.goal} goes on", None
+        case Called():
+            return event.path, "debug", f"called {event.address}: {_short(event.request)}", None
+        case Answered():
+            if event.cause is not None:
+                return event.path, "warning", f"call {event.call} failed", event.cause
+            return event.path, "debug", f"call {event.call} answered {_short(event.result)}", None
+        case Received():
+            return event.path, "debug", f"{event.topic}: {_short(event.message)}", None
+        case FaultInjected():
+            return (
+                event.path,
+                "warning",
+                f"fault injected at {event.address}: {event.fault} {event.detail}".strip(),
+                None,
+            )
+        case _:
+            return None
+
+
+def _words_of_control(event: Event) -> Words | None:
+    match event:
+        case Commanded():
+            arguments = f" {_short(event.arguments)}" if event.arguments else ""
+            return event.path, "info", f"operator: {event.command}{arguments}", None
+        case GateReached():
+            outcome = f" with {event.outcome}" if event.outcome else ""
+            return event.path, "info", f"waits {event.point}{outcome}: {', '.join(event.reasons)}", None
+        case GatePassed():
+            return event.path, "debug", f"waits no longer {event.point}", None
+        case OutcomeRequested():
+            return event.path, "warning", f"asks for {event.outcome}, which requires {event.required}", None
+        case OutcomeWithdrawn():
+            return event.path, "debug", f"asks no longer for {event.outcome}", None
+        case PauseConfirmed():
+            cannot = f"; cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
+            return "", "warning" if event.cannot else "info", f"paused, everything rests{cannot}", None
+        case OperatorChanged():
+            return "", "warning" if event.status == "lost" else "info", f"operator {event.status}", None
+        case BehaviorChanged():
+            return "", "info", f"behavior changed: {'; '.join(event.report) or 'nothing that matters'}", None
+        case _:
+            return None
+
+
+def _words_of_run(event: Event) -> Words:
+    match event:
+        case RunStarted():
+            return "", "info", f"run started: {event.behavior}, seed {event.seed}, {event.clock} clock", None
+        case RunResumed():
+            again = f", entering again {', '.join(event.rerun)}" if event.rerun else ""
+            return "", "warning", f"resumed after event {event.after_seq}{again}", None
+        case StopRequested():
+            return "", "warning", f"stop requested: {event.reason}", None
+        case RunEnded():
+            level = "error" if event.status == "errored" or event.cause is not None else "info"
+            how = f"run {event.status}" + (f" with {event.outcome}" if event.outcome else "")
+            return "", level, f"{how} after {_seconds(event.time_s)}", event.cause
+        case _:
+            return "", "info", type(event).__name__, None
+
+
+def _seconds(duration_s: float) -> str:
+    return f"{duration_s:.2f} s" if math.isfinite(duration_s) else "?"
+
+
+def _short(value: object, limit: int = 160) -> str:
+    text = msgspec.json.encode(value).decode()
+    return text if len(text) <= limit else f"{text[:limit]}\u2026"
+
+
+def _lines(cause: Cause | None) -> tuple[CauseLine, ...]:
+    chain = cause.chain() if cause else ()
+    return tuple(CauseLine(message=c.message, where=c.where, kind=c.kind) for c in chain)
