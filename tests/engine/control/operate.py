@@ -12,6 +12,7 @@ from engine.document import parse_behavior
 from engine.event import Event
 from engine.plan import new_plan
 from engine.run import Run
+from engine.state import State
 from engine.supervision import Supervision
 from tests.engine.control.turntable import TurnTable
 from tests.engine.fake_states import CATALOGUE
@@ -27,12 +28,13 @@ def operate(
     supervision: Supervision | None = None,
     inputs: Mapping[str, object] | None = None,
     prepare: Callable[[SkillBus], object] = lambda bus: None,
+    states: Mapping[str, type[State]] | None = None,
 ) -> Told:
     """Run a document; at each time in seconds do what `acts` says with the run."""
     body = dedent(text)
     plan = new_plan(
         parse_behavior(body if "flexcell" in body else HEAD + body, file="test.yaml"),
-        {**CATALOGUE, "test.TurnTable": TurnTable},
+        {**CATALOGUE, "test.TurnTable": TurnTable, **(states or {})},
     )
 
     async def main() -> Told:
