@@ -59,6 +59,9 @@ class FakeContext:
         """Give the scripted message."""
         return await self.latest(topic, kind)
 
+    async def offer(self, outcome: str) -> None:
+        """Agree at once."""
+
     def log(self, message: str, *, level: str = "info") -> None:
         """Remember the line."""
         self.logged.append((level, message))
