@@ -81,7 +81,6 @@ class Concurrency:
             name: execution.activity.branch(child.path, child.perform(branches[name], execution))
             for name, child in self.children.items()
         }
-        execution.waits += 1
         try:
             outcome = await self._decide(path, tasks, execution)
         finally:

@@ -180,3 +180,21 @@ def test_a_sibling_whose_clean_up_fails_is_an_error_of_the_container() -> None:
     assert told.result.status == "errored"
     assert told.result.cause is not None
     assert "test.Messy raised ZeroDivisionError: in the clean-up" in told.result.cause.message
+
+
+def test_a_loop_through_a_container_in_which_no_time_passes_is_named() -> None:
+    """Starting tasks is no waiting: the loop is endless all the same."""
+    text = """
+    root:
+      machine:
+        initial: both
+        states:
+          both:
+            concurrency:
+              states: {left: {state: test.Give}, right: {state: test.Give}}
+              conditions: [{again: {left: a, right: a}}]
+            transitions: {again: both}
+    """
+    told = run_document(text)
+    assert told.result.status == "errored"
+    assert "10240 transitions in a row without waiting for anything, through both" in str(told.result.cause)

@@ -1,0 +1,12 @@
+"""Coverage of behaviors: which nodes, outcomes, transitions and conditions a set of runs has seen.
+
+`Coverage(behavior, catalogue)` counts: give `follow()` to `Run.watch`, or a whole event log to `add`.
+`missing` and `percent` tell, `accumulate(file)` adds it to a file, and `engine.coverage.report`
+writes files as text, HTML, Cobertura XML, lcov or JSON.
+"""
+
+from engine.coverage.coverage import Coverage
+from engine.coverage.item import Item, ItemKind
+from engine.coverage.record import BehaviorCoverage, merge, read_coverage, write_coverage
+
+__all__ = ["BehaviorCoverage", "Coverage", "Item", "ItemKind", "merge", "read_coverage", "write_coverage"]

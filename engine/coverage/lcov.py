@@ -1,0 +1,30 @@
+"""Coverage as an lcov trace file: nodes are functions, ways out of them are branches."""
+
+from __future__ import annotations
+
+from engine.coverage.lines import FileCoverage, Line, Way, by_file
+from engine.coverage.record import BehaviorCoverage
+
+
+def lcov_report(coverages: tuple[BehaviorCoverage, ...]) -> str:
+    """Return a trace file with one record for each document."""
+    return "".join(_record(file) for file in by_file(coverages))
+
+
+def _record(file: FileCoverage) -> str:
+    nodes = [(line.number, node) for line in file.lines for node in line.nodes]
+    rows = ["TN:", f"SF:{file.file}"]
+    rows += [f"FN:{number},{node.path}" for number, node in nodes]
+    rows += [f"FNDA:{node.count},{node.path}" for _, node in nodes]
+    rows += [f"FNF:{len(nodes)}", f"FNH:{sum(node.count > 0 for _, node in nodes)}"]
+    for line in file.lines:
+        rows += [_branch(line, index, way) for index, way in enumerate(line.ways)]
+    rows += [f"BRF:{file.ways}", f"BRH:{file.ways_taken}"]
+    rows += [f"DA:{line.number},{line.hits}" for line in file.lines]
+    rows += [f"LF:{len(file.lines)}", f"LH:{file.lines_covered}", "end_of_record"]
+    return "\n".join(rows) + "\n"
+
+
+def _branch(line: Line, index: int, way: Way) -> str:
+    # `-` says that the branch was never decided, as its node was never entered.
+    return f"BRDA:{line.number},0,{index},{way.item.count if way.reached else '-'}"

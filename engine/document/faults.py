@@ -1,0 +1,205 @@
+"""Fault documents: what shall go wrong with which requests of a run, to see how a behavior takes it.
+
+    flexcell: 1
+    faults:
+      - {at: root/*/grasp, address: left/gripper/*, request: 1, error: the fingers are blocked}
+      - {at: root/**, address: left/*, probability: 0.1, late: 500 ms}
+
+A request is what a state asks of its surroundings: a service call, an action goal, or the read of a
+topic. The first fault in the document that matches a request is applied to it, and only that one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict, convert
+from engine.document.duration import Duration, seconds
+from engine.document.yaml_source import Source, load_source, parse_source
+from engine.errors import DocumentError, Position
+
+FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]
+FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash")
+_WHERE_AND_WHEN = ("at", "address", "request", "times", "probability")
+
+PathPattern = Annotated[
+    str,
+    Meta(min_length=1, description="A node path; `*` stands for any text without `/`, `**` for any number of parts"),
+]
+AddressPattern = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        description="A bus address or topic such as `left/gripper/*`; wildcards as in `at`",
+    ),
+]
+
+
+class Hang(Strict, frozen=True, kw_only=True):
+    """The device takes the request and never answers.
+
+    A cancel reaches it and is confirmed, unless `ignore_cancel`.
+    """
+
+    ignore_cancel: bool = False
+
+
+class Failure(Strict, frozen=True, kw_only=True):
+    """The request fails with `message`.
+
+    `by` says how: `abort` ends the goal as aborted, `reject` refuses it, `raise` raises in the
+    state; services and topics always raise. Without `after` the device never gets the request; an
+    aborted goal with `after` is under way for so long, and then stopped.
+    """
+
+    message: Annotated[str, Meta(min_length=1, description="What the failure says")]
+    by: Literal["abort", "reject", "raise"] = "abort"
+    after: Duration = 0.0
+
+    @property
+    def after_s(self) -> float:
+        """How long it is under way, in seconds."""
+        return seconds(self.after)
+
+
+class Crash(Strict, frozen=True, kw_only=True):
+    """The process is killed at once, as by `kill -9`.
+
+    `at_event` when the event of this number is recorded; `on_request` before a matching request
+    leaves the engine, or after its effect and before its answer is recorded.
+    """
+
+    at_event: Annotated[int, Meta(ge=1, description="Number of an event, from 1")] | None = None
+    on_request: Literal["before", "after"] | None = None
+
+
+class Fault(Strict, frozen=True, kw_only=True):
+    """One thing that goes wrong: exactly one kind, and to which requests it happens.
+
+    `request` is the n-th request of one state that `at` and `address` match, counted over all its
+    activations. `times` bounds how often the fault is applied in a run. `probability` draws for
+    each such request, from the seed of the run, the state and the number of the request, so that
+    parallel branches do not disturb one another.
+
+    `late` delays the answer. `duplicate` delivers the request twice, with the same goal id: the
+    copy comes `at_once` or `after_end` of the original, whose answer is the one that counts; the
+    message of a topic is read twice. With `lost` the `request` never reaches the device, or the
+    device does it and its `answer` never comes; of a topic one message is lost.
+    """
+
+    name: str = ""
+    at: PathPattern = "**"
+    address: AddressPattern = "**"
+    request: Annotated[int, Meta(ge=1, description="The n-th matching request of a state, from 1")] | None = None
+    times: Annotated[int, Meta(ge=1, description="How often at most, 1 or more")] | None = None
+    probability: Annotated[float, Meta(gt=0.0, le=1.0, description="Above 0, at most 1")] = 1.0
+    late: Duration | None = None
+    hang: Hang | None = None
+    error: Failure | Annotated[str, Meta(min_length=1, description="What the failure says")] | None = None
+    duplicate: Literal["at_once", "after_end"] | None = None
+    lost: Literal["request", "answer"] | None = None
+    crash: Crash | None = None
+
+    @property
+    def kinds(self) -> tuple[FaultKind, ...]:
+        """All kinds it has; a valid fault has one."""
+        return tuple(kind for kind in FAULT_KINDS if getattr(self, kind) is not None)
+
+    @property
+    def kind(self) -> FaultKind:
+        """What goes wrong."""
+        return self.kinds[0]
+
+    @property
+    def late_s(self) -> float:
+        """The delay in seconds."""
+        return seconds(self.late or 0.0)
+
+    @property
+    def failure(self) -> Failure | None:
+        """The error, where it is one, also when only its message is written."""
+        return Failure(message=self.error) if isinstance(self.error, str) else self.error
+
+    @property
+    def crashes_at(self) -> int | None:
+        """The number of the event at which it kills the process, if that is what it does."""
+        return self.crash.at_event if self.crash is not None else None
+
+
+_PLAIN = Fault()
+
+
+class FaultsDocument(Strict, frozen=True, kw_only=True):
+    """The faults of a run as written, in order of precedence."""
+
+    flexcell: Literal[1]
+    description: str = ""
+    faults: Annotated[tuple[Fault, ...], Meta(min_length=1, description="The faults, at least one")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Faults:
+    """A fault document with the file it came from."""
+
+    document: FaultsDocument
+    file: Path
+    source: Source = field(repr=False)
+
+    def position(self, index: int) -> Position:
+        """Return where the fault with this index, from 0, stands."""
+        return self.source.position(("faults", index))
+
+
+def load_faults(path: Path | str) -> Faults:
+    """Read a fault document.
+
+    Raises:
+        DocumentError: the file cannot be read or is not valid; `where` is the position.
+    """
+    return _checked(load_source(Path(path)), Path(path))
+
+
+def parse_faults(text: bytes | str, *, file: Path | str) -> Faults:
+    """Return the faults that `text` describes; `file` is the name shown in positions.
+
+    Raises:
+        DocumentError: as `load_faults`.
+    """
+    return _checked(parse_source(text, file=str(file)), Path(file))
+
+
+def _checked(source: Source, file: Path) -> Faults:
+    document = convert(source, FaultsDocument)
+    for index, fault in enumerate(document.faults):
+        _require_one_kind(source, index, fault)
+        if fault.crash is not None:
+            _require_one_crash(source, index, fault, fault.crash)
+    return Faults(document=document, file=file, source=source)
+
+
+def _require_one_kind(source: Source, index: int, fault: Fault) -> None:
+    known = ", ".join(f"`{kind}`" for kind in FAULT_KINDS)
+    if not fault.kinds:
+        where = source.position(("faults", index))
+        raise DocumentError("this fault does not say what goes wrong", where=where, hint=f"add one of {known}")
+    if len(fault.kinds) > 1:
+        where = source.position(("faults", index, fault.kinds[1]), of_key=True)
+        raise DocumentError(
+            f"this fault is `{fault.kinds[0]}` and `{fault.kinds[1]}` at once", where=where, hint="make it two faults"
+        )
+
+
+def _require_one_crash(source: Source, index: int, fault: Fault, crash: Crash) -> None:
+    where = source.position(("faults", index, "crash"), of_key=True)
+    if (crash.at_event is None) == (crash.on_request is None):
+        raise DocumentError("a crash has either `at_event` or `on_request`", where=where, hint="give one of them")
+    if crash.at_event is None:
+        return
+    for key in _WHERE_AND_WHEN:
+        if getattr(fault, key) != getattr(_PLAIN, key):
+            place = source.position(("faults", index, key), of_key=True)
+            raise DocumentError(f"`{key}` has no meaning beside `at_event`", where=place, hint=f"remove `{key}`")
