@@ -94,10 +94,12 @@ class PageHook(BuildHookInterface[Any]):
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build before the files are collected; the page is git-ignored, so it is named as an artifact."""
-        del version
         if is_stale():
             build()
         build_data["artifacts"].append("editor_web/static/**")
+        if self.target_name == "wheel" and version == "standard":
+            # A checkout has the pages of findings where they are written; an installed package, beside its check.
+            build_data["force_include"][str(ROOT / "docs" / "findings")] = "engine/check/pages"
 
 
 if __name__ == "__main__":

@@ -19,11 +19,11 @@ from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
-from editor_web.routes import behaviors, bus, cell, live, page, runs, session
+from editor_web.routes import behaviors, bus, cell, control, live, page, runs, session
 from editor_web.routes.services import Services
 from editor_web.security import Gate
 from editor_web.wire import ErrorBody
-from engine.errors import FlexcellError
+from engine.errors import ControlError, FlexcellError
 
 STATIC = Path(__file__).parent / "static"
 
@@ -72,8 +72,9 @@ def api() -> FastAPI:
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
     )
-    for module in (session, behaviors, runs, bus, live, cell, page):
+    for module in (session, behaviors, runs, control, bus, live, cell, page):
         app.include_router(module.router)
+    app.include_router(control.interrupted_router)
     app.add_exception_handler(FlexcellError, _refused)
     app.add_exception_handler(RequestValidationError, _malformed)
     app.add_exception_handler(HTTPException, _http_error)
@@ -113,7 +114,9 @@ async def _refused(request: Request, error: Exception) -> JSONResponse:
     if not isinstance(error, FlexcellError):
         raise error
     where = "" if error.where is None else str(error.where)
-    return _answer(422, error.message, where=where, hint=error.hint or "")
+    # A command that the run does not allow now is no mistake in the request.
+    status = 409 if isinstance(error, ControlError) else 422
+    return _answer(status, error.message, where=where, hint=error.hint or "")
 
 
 async def _malformed(request: Request, error: Exception) -> JSONResponse:

@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
+from editor_web.operation import Operation
 from engine.bus.access import BusAccess
 from engine.event import Event
+from engine.launch import Moment
+from engine.supervision import Supervision
 
 Unsubscribe = Callable[[], None]
 
@@ -243,7 +246,7 @@ class RunSummary(Protocol):
         ...
 
 
-class Backend(Protocol):
+class Backend(Operation, Protocol):
     """The engine as the dashboard sees it."""
 
     @property
@@ -272,8 +275,18 @@ class Backend(Protocol):
         """Return one run; raises FlexcellError when the id names none."""
         ...
 
-    async def start(self, behavior_id: str, *, parameters: Mapping[str, object], seed: int) -> str:
-        """Start a run and return its id.
+    async def start(
+        self,
+        behavior_id: str,
+        *,
+        parameters: Mapping[str, object],
+        seed: int,
+        inputs: Mapping[str, object] | None = None,
+        supervision: Supervision | None = None,
+        breakpoints: bool = False,
+        begin: Moment | None = None,
+    ) -> str:
+        """Start a run and return its id; `breakpoints` uses those beside the behavior, `begin` a moment of a run.
 
         Raises:
             FlexcellError: It cannot start; `where` is the parameter's name when one is at fault.

@@ -88,12 +88,18 @@ class Watch(msgspec.Struct, frozen=True, kw_only=True, tag="watch", tag_field="k
     run: str = ""
 
 
+class Operate(msgspec.Struct, frozen=True, kw_only=True, tag="operate", tag_field="k"):
+    """From the client: I operate this run from now on (empty: none); losing the connection is losing the operator."""
+
+    run: str = ""
+
+
 class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k"):
     """From the client: answer to a ping."""
 
 
 Frame = Hello | Snapshot | Delta | Ping
-Request = Watch | Pong
+Request = Watch | Operate | Pong
 
 
 class LiveClient:

@@ -14,7 +14,7 @@ from typing import Any, cast
 import msgspec
 
 from editor_web.app import api
-from editor_web.live import Delta, Hello, Ping, Pong, Snapshot, Watch
+from editor_web.live import Delta, Hello, Operate, Ping, Pong, Snapshot, Watch
 
 HERE = Path(__file__).parent
 OPENAPI = HERE / "openapi.json"
@@ -48,7 +48,7 @@ def _http_schemas() -> dict[str, Schema]:
 
 def _live_schemas() -> dict[str, Schema]:
     _, components = msgspec.json.schema_components(
-        [Hello, Snapshot, Delta, Ping, Pong, Watch], ref_template="#/components/schemas/{name}"
+        [Hello, Snapshot, Delta, Ping, Pong, Watch, Operate], ref_template="#/components/schemas/{name}"
     )
     return dict(components)
 
@@ -68,7 +68,17 @@ def _interface(name: str, schema: Schema) -> str:
     return "\n".join(lines)
 
 
-_SENT = {"StartBody", "StopBody", "Watch"}
+_SENT = {
+    "BreakpointBody",
+    "MomentBody",
+    "Operate",
+    "ResumeBody",
+    "StartBody",
+    "StepBody",
+    "StopBody",
+    "SupervisionBody",
+    "Watch",
+}
 
 
 def _type(schema: Schema) -> str:

@@ -89,14 +89,6 @@ class RunBody(Wire):
     duration_s: float
 
 
-class StartBody(Wire):
-    """A request to start a run; without a seed the server draws one."""
-
-    behavior: str
-    parameters: dict[str, object] = {}
-    seed: int | None = Field(default=None, ge=0, lt=2**31)
-
-
 class StartedBody(Wire):
     """The run that was started."""
 

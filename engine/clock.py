@@ -13,6 +13,7 @@ import math
 import selectors
 from collections.abc import Callable, Coroutine
 from concurrent.futures import Executor
+from contextvars import Context
 from typing import Any, Protocol, TypeVar
 
 from engine.errors import FlexcellError
@@ -110,6 +111,22 @@ class _JumpingSelector(selectors.BaseSelector):
         return self._real.select(self.pass_time(timeout))
 
 
+class _Instant(float):
+    """A time on the grid of nanoseconds; of two equal ones the one asked for first comes first.
+
+    The heap of asyncio orders equal times by chance: by which other timers there are. Sums of
+    floats that mean the same instant differ in the last bit. Neither may decide what a run does.
+    """
+
+    __slots__ = ("order",)
+    order: int
+
+    def __lt__(self, other: object) -> bool:
+        if not isinstance(other, _Instant):
+            return NotImplemented
+        return float(self) < float(other) or (float(self) == float(other) and self.order < other.order)
+
+
 class VirtualLoop(asyncio.SelectorEventLoop):
     """An event loop whose time jumps; make it with `run_virtual`."""
 
@@ -119,6 +136,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._jumping.pass_time = self._pass_time
         self._now_s = 0.0
         self._stepped: list[Lockstep] = []
+        self._timers = 0
         self._working = 0
         self._outside = 0
         self._idle_waiters: list[tuple[int, asyncio.Future[None]]] = []
@@ -126,6 +144,14 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     def time(self) -> float:
         """Virtual seconds since the loop was made."""
         return self._now_s
+
+    def call_at(
+        self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
+    ) -> asyncio.TimerHandle:
+        """Call back at `when`, to the nanosecond; at one instant in the order of asking."""
+        instant = _Instant(round(when * 1e9) / 1e9 if math.isfinite(when) else when)
+        instant.order = self._timers = self._timers + 1
+        return super().call_at(instant, callback, *args, context=context)
 
     def attach(self, simulation: Lockstep) -> None:
         """Step `simulation` along with time from now on."""
@@ -191,6 +217,10 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             f"nothing can happen any more at t={self._now_s:.3f} s",
             hint=f"waiting for ever: {', '.join(waiting)}",
         )
+        told, self.when_stuck = self.when_stuck, None
+        if told is not None:
+            told(error)
+            return
         main = self._main_task
         if main is not None and not main.done():
             self.stuck = error
@@ -200,6 +230,8 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     _main_task: asyncio.Task[Any] | None = None
     stuck: NothingCanWake | None = None
+    when_stuck: Callable[[NothingCanWake], None] | None = None
+    """Called the first time that nothing can wake, instead of cancelling the main task."""
 
     def run_main(self, main: Coroutine[Any, Any, T]) -> T:
         """Run `main` to its end, then cancel what it left behind.

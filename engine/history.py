@@ -15,6 +15,7 @@ from engine.control.autonomy import AutonomyLevel
 from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import DocumentError
 from engine.event import (
+    BehaviorChanged,
     Cause,
     Commanded,
     Diverted,
@@ -25,14 +26,18 @@ from engine.event import (
     Retried,
     RunEnded,
     RunStarted,
+    StatusChanged,
     Transitioned,
     UserdataWritten,
 )
 from engine.foreach import ForEach
+from engine.machine import Machine
 from engine.nearness import near_names
-from engine.node import Node
+from engine.node import Node, Work
 from engine.plan import Plan
 from engine.point import Point
+from engine.priority import Priority
+from engine.tree import Mark, mark_of
 
 BY_OUTCOME = ("operator", "start")
 """`Diverted.by` whose target is an outcome and not a place to go to."""
@@ -50,7 +55,7 @@ class _Open:
     current: str | None = None
     cause: Cause | None = None
     round: int = 0
-    done: list[tuple[str, str]] = field(default_factory=list[tuple[str, str]])
+    done: list[Mark] = field(default_factory=list[Mark])
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,10 @@ class _Left:
 
 
 class History:
-    """One run as its events tell it, up to the last one taken."""
+    """One run as its events tell it, up to the last one taken.
+
+    Nodes that the plan does not have, as the document has changed since, matter only while active.
+    """
 
     def __init__(self, plan: Plan, *, run: str) -> None:
         self.run = run
@@ -98,6 +106,7 @@ class History:
     def take(self, event: Event) -> None:
         """Take the next event."""
         self.seq, self.time_s = event.seq, event.time_s
+        self._mark(event)
         match event:
             case RunStarted():
                 self.seed, self.document, self.parameters = event.seed, event.document, event.parameters
@@ -114,10 +123,15 @@ class History:
                 self._transition(event)
             case UserdataWritten():
                 self._write(event)
+            case StatusChanged() if event.status != "running":
+                # A parallel has merged its branches, or was halted.
+                self._forget_branches(event.path)
             case GatePassed() if event.point == "after" and event.path in self._left:
                 self._left[event.path] = replace(self._left[event.path], passed=True)
             case Commanded():
                 self._command(event)
+            case BehaviorChanged():
+                self.document = event.document
             case RunEnded():
                 self.ended = True
             case _:
@@ -146,11 +160,16 @@ class History:
         return self.visits.get(path, 0)
 
     def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
-        """Return the present moment as something to go on from; states in mid-work are to be entered again."""
+        """Return the present moment as something to go on from; states in mid-work are to be entered again.
+
+        Raises:
+            DocumentError: the run is at a node that the plan does not have.
+        """
         points: dict[str, Point] = {}
         for path, node in self._open.items():
             points[path] = self._open_point(path, node)
         for path, left in self._left.items():
+            self._node(path)
             points[path] = Point(
                 visit=left.visit,
                 left=left.outcome,
@@ -175,9 +194,13 @@ class History:
 
     def _open_point(self, path: str, node: _Open) -> Point:
         work = self._node(path).work
+        if isinstance(work, Machine | Priority) and node.current not in (None, *work.children, *work.outcomes):
+            self._node(f"{path}/{node.current}")
         scope = f"{path}#{node.round}" if isinstance(work, ForEach) else path
         branches = {
-            name: self._scopes[f"{path}/{name}*"] for name in work.children if f"{path}/{name}*" in self._scopes
+            key.removeprefix(f"{path}/").removesuffix("*"): values
+            for key, values in self._scopes.items()
+            if key.startswith(f"{path}/") and key.endswith("*")
         }
         return Point(
             visit=node.visit,
@@ -197,11 +220,15 @@ class History:
         node = self._plan.nodes.get(path)
         if node is None:
             raise DocumentError(
-                "the events speak of a node that the behavior does not have",
+                "this node is active and the behavior does not have it",
                 where=path,
                 hint=f"the document has changed since; {near_names(path, self._plan.nodes)}",
             )
         return node
+
+    def _work(self, path: str) -> Work | None:
+        node = self._plan.nodes.get(path)
+        return node.work if node is not None else None
 
     def _enter(self, event: Entered) -> None:
         path = event.path
@@ -219,12 +246,11 @@ class History:
         container = self._open.get(path.rpartition("/")[0])
         if container is not None:
             container.current = path.rpartition("/")[2]
-        work = self._node(path).work
-        own = dict(work.initial_values(event.inputs))
+        work = self._work(path)
         if isinstance(work, ForEach):
             self._begin_round(path, work, event.inputs, 0)
         else:
-            self._scopes[path] = own
+            self._scopes[path] = dict(work.initial_values(event.inputs)) if work is not None else {}
 
     def _begin_round(self, path: str, work: ForEach, inputs: Mapping[str, object], number: int) -> None:
         items = cast("list[object]", inputs.get("items", []))
@@ -259,8 +285,6 @@ class History:
             attempt=node.attempt if node is not None else 1,
             since_s=node.since_s if node is not None else event.time_s,
         )
-        if outcome is not None:
-            self._done_in_tree(path, outcome)
 
     def _divert(self, event: Diverted) -> None:
         path = event.path
@@ -269,9 +293,10 @@ class History:
         by_outcome = event.by in BY_OUTCOME
         outcome, target = (event.target, None) if by_outcome else (None, event.target)
         self._left[path] = _Left(event.visit, outcome, target, event.cause)
-        self._done_in_tree(path, event.target)
 
     def _retry(self, event: Retried) -> None:
+        if event.path not in self._plan.nodes:
+            return  # a decorator of a tree, whose marks tell it
         left = self._left.pop(event.path, None)
         since_s = left.since_s if left is not None else event.time_s
         self._open[event.path] = _Open(self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False)
@@ -285,21 +310,27 @@ class History:
         container.current = event.target
         if left is not None and left.cause is not None:
             container.cause = left.cause
-        work = self._node(event.path).work
+        work = self._work(event.path)
         if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
             container.round += 1
             self._begin_round(event.path, work, container.inputs, container.round)
 
-    def _done_in_tree(self, path: str, outcome: str) -> None:
-        """Tell the tree around a leaf that it has ended."""
-        above = path
-        while above := above.rpartition("/")[0]:
+    def _mark(self, event: Event) -> None:
+        """Tell the tree around a part, or around a leaf, what has happened to it."""
+        mark = mark_of(event)
+        above = mark.path if mark is not None else ""
+        while mark is not None and (above := above.rpartition("/")[0]):
             node = self._open.get(above)
             if node is None:
                 continue
-            if self._node(above).work.kind == "tree":
-                node.done.append((path, outcome))
+            work = self._work(above)
+            if work is not None and work.kind == "tree":
+                node.done.append(mark)
             return
+
+    def _forget_branches(self, path: str) -> None:
+        for key in [key for key in self._scopes if key.endswith("*") and key.rpartition("/")[0] == path]:
+            del self._scopes[key]
 
     def _command(self, event: Commanded) -> None:
         match event.command:

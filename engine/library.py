@@ -103,6 +103,16 @@ class Library:
             raise DocumentError("this behavior cannot be read", where=behavior_id)
         return read.behavior
 
+    def id_of(self, file: Path) -> str:
+        """Return the id of a behavior by its file.
+
+        Raises:
+            DocumentError: the file is not one of this project.
+        """
+        if not file.is_relative_to(self._project):
+            raise DocumentError("this behavior is of another project", where=file, hint=f"this one is {self._project}")
+        return self._known(file.relative_to(self._project).as_posix())
+
     def _known(self, behavior_id: str) -> str:
         known = set(self._ids())
         if behavior_id not in known:

@@ -40,8 +40,8 @@ class Point:
     """What the children of a concurrency container had written into scopes of their own."""
     round: int = 0
     """The round that a foreach container is in, from 0."""
-    done: tuple[tuple[str, str], ...] = ()
-    """(path, outcome) of the leaves that had ended in a tree, in order."""
+    done: tuple[tuple[str, str, float], ...] = ()
+    """What had happened in a tree, in order: `engine.tree.Mark`."""
 
     @property
     def active(self) -> bool:

@@ -29,6 +29,8 @@ class Recorder:
         self._start_s = clock.now_s() - after_s
         self._watchers: tuple[Watcher, ...] = ()
         self._seq = after_seq
+        self.ended = False
+        """True once the end of the run is recorded; what states that were given up still say is not."""
 
     def now_s(self) -> float:
         """Seconds since the run began, to the microsecond so that equal instants print equally."""
@@ -42,6 +44,8 @@ class Recorder:
 
     def record(self, event: Event) -> None:
         """Take an event made with `next_seq` and `now_s`."""
+        if self.ended:
+            return
         self._journal.append(event)
         for watcher in self._watchers:
             try:

@@ -55,11 +55,7 @@ def effective(events: Iterable[Event]) -> list[Event]:
 
 
 def read_history(plan: Plan, run: str, events: Iterable[Event], *, until_seq: int | None = None) -> History:
-    """Return where a run stood at its end, or at one of its events.
-
-    Raises:
-        DocumentError: the events speak of nodes that the plan does not have.
-    """
+    """Return where a run stood at its end, or at one of its events."""
     return History(plan, run=run).read(effective(events), until_seq=until_seq)
 
 

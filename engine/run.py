@@ -116,6 +116,7 @@ class Run:
         self._log = RunLog(self._recorder)
         self._task: asyncio.Task[Left] | None = None
         self._stop_reason: str | None = None
+        self._failure: FlexcellError | None = None
         self._begun = False
         self._ended = False
         self._cancelled = False
@@ -170,6 +171,16 @@ class Run:
                 # A little longer than any container inside waits for its children.
                 patience_s = self._supervision.abandon_after_s + 2.5
                 self._patience = self._task.get_loop().call_later(patience_s, self._give_up)
+
+    def fail(self, error: FlexcellError) -> None:
+        """Stop like `stop`, and end errored with this cause: something around the run made it impossible."""
+        self._failure = self._failure or error
+        self.stop(error.message)
+
+    @property
+    def active_states(self) -> tuple[str, ...]:
+        """The paths of the states that were entered and not left, in order of entry."""
+        return tuple(path for path in self._execution.activity.nodes if not self.plan.nodes[path].work.children)
 
     def change(self, plan: Plan) -> ChangeReport:
         """Let a new version of the behavior take the place of the running one, which must be paused or locked.
@@ -253,10 +264,10 @@ class Run:
         try:
             return "finished", task.result(), None
         except asyncio.CancelledError:
-            return "stopped", None, self._stopped()
+            return "stopped" if self._failure is None else "errored", None, self._stopped()
         except FlexcellError as error:
             cause = cause_of(error)
-            if self._stop_reason is not None and not self._execution.abandoned:
+            if self._failure is None and self._stop_reason is not None and not self._execution.abandoned:
                 return "stopped", None, under(self._stopped().message, cause, kind="Stopped")
             return "errored", None, cause
         except Exception as error:
@@ -270,7 +281,7 @@ class Run:
 
     def _abandon(self, task: asyncio.Task[Left]) -> Cause:
         waited_s = self._supervision.abandon_after_s
-        leaves = [path for path in self._execution.activity.nodes if not self.plan.nodes[path].work.children]
+        leaves = self.active_states
         for path in leaves:
             self._execution.abandon(task, path, waited_s)
         error = NotStopped(
@@ -294,6 +305,8 @@ class Run:
         cancelling.result()
 
     def _stopped(self) -> Cause:
+        if self._failure is not None:
+            return cause_of(self._failure)
         return Cause(message=f"stopped: {self._stop_reason or 'cancelled'}", where=self.plan.root.path, kind="Stopped")
 
     def _new_control(self) -> Control:

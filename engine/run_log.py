@@ -114,3 +114,4 @@ class RunLog:
                 cause=cause,
             )
         )
+        self._recorder.ended = True

@@ -1,10 +1,10 @@
-"""A session: an open cell, the behaviors of a project, and any number of runs at once."""
+"""A session: an open cell, the behaviors of a project, and any number of runs and operators at once."""
 
 from __future__ import annotations
 
 import asyncio
-import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -14,21 +14,32 @@ import msgspec
 from engine.bus.access import BusAccess, LocalBus
 from engine.cause import describe
 from engine.cell import OpenCell
-from engine.errors import FlexcellError
+from engine.control import Control, ControlView, load_breakpoints
+from engine.document.faults import Faults
+from engine.errors import ControlError, FlexcellError
 from engine.event import Event
-from engine.journal import Journal
+from engine.faults import FaultPort
+from engine.hot_change import ChangeReport
+from engine.journal import Journal, RunRecord, list_runs
+from engine.launch import Moment, moment_of, new_origin, new_run, plan_resume, resume_run
 from engine.library import BehaviorView, Library
 from engine.nearness import near_names
 from engine.plan import Catalogue, new_plan
-from engine.run import Run, RunResult
-from engine.run_id import new_run_id
+from engine.recorded_run import read_run
+from engine.session_operators import Attachment, Operators
+from engine.session_run import SessionRun
+from engine.skill_port import BusPort
+from engine.supervision import Supervision
 
 EventCallback = Callable[[str, Event], None]
 _KEPT_RUNS = 200
 
 
 class RunView(msgspec.Struct, frozen=True, kw_only=True):
-    """One run, under way or over; `status` is running, stopping, finished, stopped or errored."""
+    """One run, under way or over; `status` is running, stopping, finished, stopped or errored.
+
+    `control` is what an operator sees of it while it is under way.
+    """
 
     id: str
     behavior: str
@@ -38,20 +49,7 @@ class RunView(msgspec.Struct, frozen=True, kw_only=True):
     cause: str
     started_at_s: float
     duration_s: float
-
-
-class _Started:
-    """A run of this session with its task and events."""
-
-    def __init__(self, behavior_id: str, run: Run, started_s: float) -> None:
-        self.behavior_id = behavior_id
-        self.run = run
-        self.started_s = started_s
-        self.started_at_s = time.time()
-        self.events: list[Event] = []
-        self.stopping = False
-        self.result: RunResult | None = None
-        self.task: asyncio.Task[None] | None = None
+    control: ControlView | None = None
 
 
 class Session:
@@ -61,8 +59,9 @@ class Session:
         self.cell = cell
         self._library = Library(project, catalogue)
         self._journal = journal
-        self._runs: dict[str, _Started] = {}
+        self._runs: dict[str, SessionRun] = {}
         self._callbacks: tuple[EventCallback, ...] = ()
+        self._operators = Operators()
 
     async def __aenter__(self) -> Self:
         return self
@@ -103,25 +102,130 @@ class Session:
         """Return one run; raises FlexcellError when the id names none."""
         return self._view(run_id, self._known(run_id))
 
-    async def start(self, behavior_id: str, *, parameters: Mapping[str, object], seed: int) -> str:
+    async def start(
+        self,
+        behavior_id: str,
+        *,
+        parameters: Mapping[str, object],
+        seed: int,
+        inputs: Mapping[str, object] | None = None,
+        supervision: Supervision | None = None,
+        breakpoints: bool = False,
+        begin: Moment | None = None,
+        faults: Faults | None = None,
+    ) -> str:
         """Start a run and return its id.
+
+        Args:
+            behavior_id: Which behavior.
+            parameters: Values for its parameters; with `begin` those of that run are the default.
+            seed: Of its random numbers.
+            inputs: Initial values of userdata keys.
+            supervision: Autonomy, whether an operator is demanded, time-outs.
+            breakpoints: Whether to use those beside the behavior's file.
+            begin: The moment of a run in the journal to begin at; the cell stays as it is.
+            faults: Go wrong in this run only.
 
         Raises:
             FlexcellError: it cannot start: the behavior has errors, or a parameter is not acceptable.
         """
         behavior = self._library.behavior(behavior_id)
         plan = new_plan(behavior, self._library.catalogue)
-        run_id = new_run_id(plan.name)
-        checked = plan.checked_parameters(parameters)
-        journal = self._journal.begin(
-            run_id, behavior=plan.name, document=plan.document_hash, started_unix_s=time.time()
+        watched = supervision or Supervision()
+        if breakpoints:
+            watched = replace(watched, breakpoints=load_breakpoints(behavior.file))
+        checkpoint = None
+        if begin is not None:
+            found = read_run(self._journal.path, begin.run)
+            checkpoint = moment_of(found, plan, seq=begin.seq, path=begin.path)
+            known = {name: value for name, value in checkpoint.parameters.items() if name in plan.parameters}
+            parameters = {**known, **parameters}
+        run = new_run(
+            plan,
+            cell=self.cell,
+            journal=self._journal,
+            parameters=parameters,
+            inputs=inputs,
+            seed=seed,
+            origin=new_origin(behavior, cell=self.cell, supervision=watched),
+            supervision=watched,
+            skills=FaultPort(BusPort(self.cell.bus), faults, clock=self.cell.bus.clock, seed=seed) if faults else None,
+            checkpoint=checkpoint,
         )
-        run = Run(plan, run=run_id, bus=self.cell.bus, parameters=checked, seed=seed, journal=journal)
-        started = self._runs[run_id] = _Started(behavior_id, run, self.cell.bus.clock.now_s())
-        run.watch(lambda event: self._tell(run_id, event))
-        started.task = asyncio.create_task(self._execute(started), name=f"session run {run_id}")
-        self._forget_oldest()
+        self._add(SessionRun(behavior_id, run, self.cell.bus.clock.now_s()))
+        return run.id
+
+    def interrupted(self) -> tuple[RunRecord, ...]:
+        """Return the runs of the journal whose engine died, oldest first."""
+        return tuple(record for record in list_runs(self._journal.path) if record.interrupted)
+
+    async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
+        """Go on with an interrupted run of this project and cell, and return its id.
+
+        A simulated world is brought to where it was unless another run is under way.
+
+        Raises:
+            NeedsAnswers: states that were in mid-work ask.
+            FlexcellError: it cannot go on here.
+        """
+        found = read_run(self._journal.path, run_id)
+        behavior_id = self._library.id_of(Path(found.origin.behavior))
+        if found.origin.cell != self._cell_file():
+            there = found.origin.cell or "no cell"
+            raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
+        catalogue = self._library.catalogue
+        alone = all(started.result is not None for started in self._runs.values())
+        resumption = plan_resume(
+            found,
+            new_plan(self._library.behavior(behavior_id), catalogue),
+            catalogue=catalogue,
+            answers=answers,
+            changed=changed,
+            restore=alone and found.origin.seed == self.cell.seed,
+        )
+        run = await resume_run(
+            resumption,
+            cell=self.cell,
+            journal=self._journal,
+            catalogue=catalogue,
+            answers=answers,
+            supervision=Supervision(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator),
+        )
+        self._add(SessionRun(behavior_id, run, self.cell.bus.clock.now_s(), events=found.events))
         return run_id
+
+    def control(self, run_id: str) -> Control:
+        """Return what an operator can do with a run that is under way.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        started = self._known(run_id)
+        if started.run.ended:
+            raise ControlError("this run is over", where=run_id)
+        return started.run.control
+
+    def operate(self, run_id: str) -> Attachment:
+        """Be an operator of a run, until `detach` or `lose` of what is returned; any number may be.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        return self._operators.attach(run_id, self.control(run_id))
+
+    def change(self, run_id: str) -> ChangeReport:
+        """Let the behavior as its file is now take the place of the one that a paused run executes.
+
+        Raises:
+            ControlError: the run cannot go on in the new version; it goes on as it is.
+            DocumentError: the file cannot be read or has errors.
+        """
+        self.control(run_id)
+        started = self._known(run_id)
+        behavior = self._library.behavior(started.behavior_id)
+        return started.run.change(new_plan(behavior, self._library.catalogue))
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Ask a run to stop and return at once; stopping one that is over does nothing."""
@@ -165,7 +269,7 @@ class Session:
             callback(found.latest)
         return found.subscribe(callback).close
 
-    async def _execute(self, started: _Started) -> None:
+    async def _execute(self, started: SessionRun) -> None:
         started.result = await started.run.execute()
 
     def _tell(self, run_id: str, event: Event) -> None:
@@ -173,10 +277,20 @@ class Session:
         for callback in self._callbacks:
             callback(run_id, event)
 
+    def _add(self, started: SessionRun) -> None:
+        run = started.run
+        self._runs[run.id] = started
+        run.watch(lambda event: self._tell(run.id, event))
+        started.task = asyncio.create_task(self._execute(started), name=f"session run {run.id}")
+        self._forget_oldest()
+
+    def _cell_file(self) -> str | None:
+        return str(self.cell.document.file.resolve()) if self.cell.document is not None else None
+
     def _unsubscribe(self, callback: EventCallback) -> None:
         self._callbacks = tuple(known for known in self._callbacks if known is not callback)
 
-    def _known(self, run_id: str) -> _Started:
+    def _known(self, run_id: str) -> SessionRun:
         if run_id not in self._runs:
             raise FlexcellError(f"there is no run {run_id!r}", hint=near_names(run_id, self._runs))
         return self._runs[run_id]
@@ -187,7 +301,7 @@ class Session:
         for run_id in over[: max(0, len(self._runs) - _KEPT_RUNS)]:
             del self._runs[run_id]
 
-    def _view(self, run_id: str, started: _Started) -> RunView:
+    def _view(self, run_id: str, started: SessionRun) -> RunView:
         result = started.result
         now_s = self.cell.bus.clock.now_s()
         return RunView(
@@ -199,4 +313,5 @@ class Session:
             cause=describe(result.cause) if result and result.cause and not result.success else "",
             started_at_s=started.started_at_s,
             duration_s=result.duration_s if result else now_s - started.started_s,
+            control=started.run.control.view() if result is None and not started.run.ended else None,
         )

@@ -6,11 +6,12 @@ injected, without the states or the bus knowing.
 
 from __future__ import annotations
 
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import msgspec
 
 from engine.bus import GoalEnd, Holder, SkillBus
+from engine.recorder import Recorder
 from engine.skill import Action, Service
 
 R = TypeVar("R")
@@ -60,6 +61,19 @@ class SkillPort(Protocol):
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Wait for the next message of a topic."""
+        ...
+
+
+@runtime_checkable
+class AttendingPort(Protocol):
+    """A port that also writes into the event log of the run it is given to."""
+
+    def begin(self, recorder: Recorder) -> None:
+        """Take the log; called before the first event."""
+        ...
+
+    def end(self) -> None:
+        """Write what is left to say; called when all states are left, before the end of the run is recorded."""
         ...
 
 

@@ -10,8 +10,11 @@ import msgspec
 from fastapi import APIRouter, WebSocket
 from starlette.websockets import WebSocketDisconnect
 
-from editor_web.live import PROTOCOL_VERSION, Frame, Hello, LiveClient, Ping, Request, Watch
+from editor_web.access import OPERATOR
+from editor_web.live import PROTOCOL_VERSION, Frame, Hello, LiveClient, Operate, Ping, Request, Watch
+from editor_web.operation import Attached, Operation
 from editor_web.routes.services import role_of, services_of
+from engine.errors import FlexcellError
 
 router = APIRouter()
 PERIOD_S = 0.05
@@ -32,19 +35,50 @@ async def live(socket: WebSocket) -> None:
     services = services_of(socket)
     await socket.accept()
     client = services.hub.join()
-    hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role_of(socket), server_time_s=time.time())
+    role = role_of(socket)
+    operator = _Operator(services.backend, allowed=role == OPERATOR)
+    hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role, server_time_s=time.time())
     try:
         await _send(socket, hello)
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, client), name="live-receive")
+            tasks.create_task(_receive(socket, client, operator), name="live-receive")
             tasks.create_task(_stream(socket, client), name="live-stream")
     except* _Closed:
         pass
     finally:
+        operator.lose()
         services.hub.leave(client)
 
 
-async def _receive(socket: WebSocket, client: LiveClient) -> None:
+class _Operator:
+    """What run the page of one connection operates."""
+
+    def __init__(self, operation: Operation, *, allowed: bool) -> None:
+        self._operation = operation
+        self._allowed = allowed
+        self._attached: Attached | None = None
+
+    def operate(self, run_id: str) -> None:
+        """Leave the run before; operate this one where there is one that is under way."""
+        if self._attached is not None:
+            self._attached.detach()
+            self._attached = None
+        if not run_id or not self._allowed:
+            return
+        try:
+            self._attached = self._operation.operate(run_id)
+        except FlexcellError as error:
+            # The page learns from the run's events and control whether it operates it; it may be over by now.
+            _log.info("a page cannot operate a run: %s", error)
+
+    def lose(self) -> None:
+        """The connection has ended, for whatever reason."""
+        if self._attached is not None:
+            self._attached.lose()
+            self._attached = None
+
+
+async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator) -> None:
     while True:
         try:
             request = _decoder.decode(await socket.receive_text())
@@ -53,8 +87,13 @@ async def _receive(socket: WebSocket, client: LiveClient) -> None:
         except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
             await socket.close(1008, "expected a watch or pong message")
             raise _Closed from error
-        if isinstance(request, Watch):
-            client.watch(request.run)
+        match request:
+            case Watch():
+                client.watch(request.run)
+            case Operate():
+                operator.operate(request.run)
+            case _:
+                pass
 
 
 async def _stream(socket: WebSocket, client: LiveClient) -> None:

@@ -10,8 +10,11 @@ import msgspec
 from fastapi import APIRouter, Header, HTTPException, Query, Request, Response
 
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import ErrorBody, EventsBody, RunBody, StartBody, StartedBody, StopBody
+from editor_web.start_wire import StartBody
+from editor_web.wire import ErrorBody, EventsBody, RunBody, StartedBody, StopBody
 from engine.errors import FlexcellError
+from engine.launch import Moment
+from engine.supervision import Supervision
 
 router = APIRouter(prefix="/api/v1/runs", tags=["runs"])
 KEPT_KEYS = 200
@@ -46,7 +49,16 @@ async def start_run(
         response.status_code = 200
         return StartedBody(run=started[idempotency_key])
     seed = secrets.randbelow(2**31) if body.seed is None else body.seed
-    run_id = await services.backend.start(body.behavior, parameters=body.parameters, seed=seed)
+    watched = body.supervision
+    run_id = await services.backend.start(
+        body.behavior,
+        parameters=body.parameters,
+        seed=seed,
+        inputs=body.inputs,
+        supervision=Supervision(**watched.model_dump(exclude={"breakpoints"})),
+        breakpoints=watched.breakpoints,
+        begin=Moment(**body.begin.model_dump()) if body.begin is not None else None,
+    )
     if idempotency_key is not None:
         started[idempotency_key] = run_id
         while len(started) > KEPT_KEYS:

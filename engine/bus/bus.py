@@ -63,6 +63,7 @@ class SkillBus:
         self.parameters = ParameterServer()
         self._loop = asyncio.get_running_loop()
         self._topics: dict[str, Topic[Any]] = {}
+        self._topic_watchers: tuple[Callable[[Topic[Any]], None], ...] = ()
         self._services: dict[str, _ServiceServer] = {}
         self._actions: dict[str, _ActionServer] = {}
         self._running: dict[str, ActiveGoal[Any]] = {}
@@ -103,9 +104,18 @@ class SkillBus:
         known = self._topics.get(name)
         if known is None:
             known = self._topics[name] = Topic(name, kind, self.clock)
+            for callback in self._topic_watchers:
+                callback(known)
         if known.kind is not kind:
             raise BusError(f"this topic carries {known.kind.__name__}, not {kind.__name__}", where=name)
         return known
+
+    def watch_topics(self, callback: Callable[[Topic[Any]], None]) -> Callable[[], None]:
+        """Call back with every topic there is, and with each that is made later; returns what ends it."""
+        self._topic_watchers = (*self._topic_watchers, callback)
+        for topic in tuple(self._topics.values()):
+            callback(topic)
+        return lambda: self._unwatch_topics(callback)
 
     def find_topic(self, name: str) -> Topic[Any]:
         """Return an existing topic of whatever type."""
@@ -225,6 +235,9 @@ class SkillBus:
         ]
         rows += [BusEntry("lease", name, "Holder", holder) for name, holder in self.leases.listing()]
         return tuple(sorted(rows, key=lambda row: (row.kind, row.name)))
+
+    def _unwatch_topics(self, callback: Callable[[Topic[Any]], None]) -> None:
+        self._topic_watchers = tuple(known for known in self._topic_watchers if known is not callback)
 
     def _busy(self, exclusive: str) -> str:
         running = self._running.get(exclusive)

@@ -2,5 +2,6 @@
 
 from engine.check.check import check_behavior, check_file
 from engine.check.finding import CODES, Finding, Severity
+from engine.check.page import page_name, page_text
 
-__all__ = ["CODES", "Finding", "Severity", "check_behavior", "check_file"]
+__all__ = ["CODES", "Finding", "Severity", "check_behavior", "check_file", "page_name", "page_text"]

@@ -2,50 +2,61 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from pathlib import Path
 
 from engine.check.conditions import check_conditions
-from engine.check.declaration import check_declarations
+from engine.check.conduct import check_conduct
+from engine.check.declaration import check_declarations, check_unused
+from engine.check.entries import Entries, check_entries
 from engine.check.finding import Finding, new_finding
+from engine.check.flow.flow import Flow
+from engine.check.flow.read import Read, reads
+from engine.check.flow.resolve import Flows, Resolver
+from engine.check.flow.site import Sites
+from engine.check.instant import check_loops
+from engine.check.keys import check_keys
+from engine.check.kinds import check_kinds
+from engine.check.parameters import check_parameters
 from engine.check.reachability import check_reachability
 from engine.check.resources import check_resources
-from engine.check.subject import Catalogue, new_subject
-from engine.check.values import check_values
+from engine.check.subject import Catalogue, Subject, new_subjects
+from engine.check.tree import check_trees
+from engine.check.units import check_units
 from engine.check.wiring import check_wiring
 from engine.document.behavior import Behavior
+from engine.document.cell import load_cell
+from engine.document.entries import load_entries
 from engine.document.loader import CircularReference, read_behavior
 from engine.errors import DocumentError, Position
 
 
-def check_behavior(
-    behavior: Behavior, catalogue: Catalogue, entries: Collection[str] | None = None
-) -> tuple[Finding, ...]:
+def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | None = None) -> tuple[Finding, ...]:
     """Return everything that is wrong with a behavior and those it refers to, in document order.
 
     Args:
         behavior: The behavior as loaded.
         catalogue: The states by name; `module:Class` names are imported.
-        entries: Names of the entries that the store will have; None leaves them unchecked.
+        entries: Names, by kind, of the entries that the store will have; by default those that the
+            behavior's own cell is seeded with. They are left unchecked where it names no cell.
     """
     findings: list[Finding] = []
-    seen: set[Path] = set()
-    due = [(behavior, "root")]
-    while due:
-        current, base = due.pop(0)
-        identity = current.file.resolve()
-        if identity in seen:
-            continue
-        seen.add(identity)
-        findings += _check_one(current, catalogue, entries, base)
-        for path, node in current.nodes():
-            if node.behavior is not None and node.behavior in current.references:
-                below = f"{base}{path.removeprefix('root')}/root"
-                due.append((current.references[node.behavior], below))
+    if entries is None:
+        entries, trouble = _own_entries(behavior)
+        findings += trouble
+    subjects = new_subjects(behavior, catalogue)
+    read = {id(subject): tuple(reads(subject)) for subject in subjects}
+    flows: dict[int, Flow] = {}
+    passed_on = _passed_on(subjects)
+    for subject in subjects:
+        keys = [*(each.key for each in read[id(subject)]), *passed_on.get(id(subject), ())]
+        flows[id(subject)] = Flow(subject, Sites(dict.fromkeys(keys)))
+    for subject in subjects:
+        findings += _check_one(subject, entries, read[id(subject)], Flows(flows))
     return tuple(findings)
 
 
-def check_file(path: Path | str, catalogue: Catalogue, entries: Collection[str] | None = None) -> tuple[Finding, ...]:
+def check_file(path: Path | str, catalogue: Catalogue, entries: Entries | None = None) -> tuple[Finding, ...]:
     """Return everything that is wrong with the behavior in a file, be it that it cannot be read."""
     try:
         behavior, circles = read_behavior(path)
@@ -56,17 +67,53 @@ def check_file(path: Path | str, catalogue: Catalogue, entries: Collection[str] 
     return (*(_circular(circle) for circle in circles), *check_behavior(behavior, catalogue, entries))
 
 
-def _check_one(behavior: Behavior, catalogue: Catalogue, entries: Collection[str] | None, base: str) -> list[Finding]:
-    subject = new_subject(behavior, catalogue, base=base)
+def _check_one(subject: Subject, entries: Entries | None, read: Sequence[Read], flows: Flows) -> list[Finding]:
+    flow = flows.of(subject)
     findings = [
         *check_declarations(subject),
         *check_wiring(subject),
         *check_reachability(subject),
+        *check_trees(subject),
         *check_conditions(subject),
-        *check_values(subject, entries),
+        *check_parameters(subject),
+        *check_conduct(subject),
+        *check_units(subject),
+        *check_keys(subject, flow, read),
+        *check_kinds(subject, Resolver(flow, flows)),
+        *check_loops(subject, read),
         *check_resources(subject),
+        *(check_entries(subject, entries) if entries is not None else ()),
     ]
+    if not any(finding.severity == "error" for finding in findings):
+        # With a mistyped name, say, nobody knows what else would be used.
+        findings += check_unused(subject, {each.key for each in read})
+    mismatched = {finding.position for finding in findings if finding.code == "type-mismatch"}
+    findings = [f for f in findings if f.code != "bad-parameter" or f.position not in mismatched]
     return sorted(findings, key=lambda finding: (finding.position.line, finding.position.column, finding.code))
+
+
+def _passed_on(subjects: Sequence[Subject]) -> dict[int, set[str]]:
+    """Return the keys of each behavior that a reference to it reads when it has ended."""
+    found: dict[int, set[str]] = {}
+    for subject in subjects:
+        for placed in subject.nodes.values() if subject.references else ():
+            referred = subject.referred(placed.node)
+            if referred is not None:
+                found.setdefault(id(referred), set()).update(placed.node.outputs)
+    return found
+
+
+def _own_entries(behavior: Behavior) -> tuple[Entries | None, tuple[Finding, ...]]:
+    """Return the entries that the behavior's own cell is seeded with; None where it names no cell, or a broken one."""
+    if behavior.cell_file is None:
+        return None, ()
+    try:
+        seed = load_cell(behavior.cell_file).seed_file
+        return (load_entries(seed).names_by_kind(), ()) if seed is not None else (None, ())
+    except DocumentError as error:
+        position = behavior.source.position(("cell",))
+        found = new_finding("invalid-cell", str(error), path="root", position=position)
+        return None, (found,)
 
 
 def _circular(circle: CircularReference) -> Finding:

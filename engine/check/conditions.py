@@ -45,7 +45,7 @@ def _check_names(subject: Subject, placed: Placed) -> Iterator[Finding]:
 
 def _check_coverage(subject: Subject, placed: Placed) -> Iterator[Finding]:
     container = placed.node.concurrency
-    outcomes = {child.name: subject.outcomes.get(child.path) for child in subject.children(placed)}
+    outcomes = {child.name: subject.possible(child) for child in subject.children(placed)}
     known = {name: found for name, found in outcomes.items() if found is not None}
     if container is None or len(known) < len(outcomes):
         return

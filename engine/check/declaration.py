@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from engine.check.finding import Finding, new_finding
 from engine.check.subject import Subject, targets
@@ -10,6 +10,16 @@ from engine.document.parameter import Parameter
 from engine.nearness import near_names
 
 _NUMERIC = ("number", "integer")
+
+
+def check_unused(subject: Subject, used: Collection[str]) -> Iterator[Finding]:
+    """Find parameters that nobody reads; `used` are the names that somebody does."""
+    for name in subject.behavior.parameters:
+        if name not in used:
+            position = subject.behavior.source.position(("parameters", name), of_key=True)
+            message = f"nothing uses the parameter `{name}`"
+            hint = f"use it as `${{{name}}}`, or remove it"
+            yield new_finding("unused-parameter", message, path=subject.base, position=position, hint=hint)
 
 
 def check_declarations(subject: Subject) -> Iterator[Finding]:
@@ -23,7 +33,7 @@ def check_declarations(subject: Subject) -> Iterator[Finding]:
             message = f"`success` names `{outcome}`, which is not in `outcomes`"
             hint = near_names(outcome, declared)
             yield new_finding("unknown-success", message, path=subject.base, position=position, hint=hint)
-    reached = subject.outcomes.get("root")
+    reached = subject.possible(subject.nodes["root"])
     if reached is None:
         return
     leaving = {*reached, *targets(subject.nodes["root"].node).values()}

@@ -1,4 +1,7 @@
-"""A finding: what is wrong with a behavior, where, and what to do; `CODES` lists all kinds."""
+"""A finding: what is wrong with a behavior, where, and what to do; `CODES` lists all kinds.
+
+Each kind has a page, `docs/findings/<code>.md`, with what it means and how to mend it.
+"""
 
 from __future__ import annotations
 
@@ -13,31 +16,48 @@ Severity = Literal["error", "warning"]
 CODES: Mapping[str, tuple[Severity, str]] = {
     "invalid-document": ("error", "the file cannot be read as a behavior"),
     "circular-behavior": ("error", "behaviors refer to one another in a circle"),
+    "invalid-cell": ("error", "the cell that the behavior names, or its entries, cannot be read"),
     "unknown-state": ("error", "no state has this name, or its class is broken"),
+    "broken-behaviour": ("error", "a py_trees behaviour cannot be imported, or is none"),
     "unknown-parameter": ("error", "the state or behavior has no such parameter"),
     "missing-parameter": ("error", "a parameter without default is not given"),
     "bad-parameter": ("error", "a given parameter has the wrong type or is out of range"),
     "unknown-input": ("error", "the state or behavior has no such input key"),
     "unknown-output": ("error", "the state or behavior has no such output key"),
-    "undefined-key": ("error", "an input reads a userdata key that nothing around it defines"),
+    "undefined-key": ("error", "a userdata key is read that nothing has defined by then"),
+    "maybe-undefined-key": ("warning", "a userdata key is read that some path does not define"),
+    "type-mismatch": ("error", "a value is of a kind that its reader does not take"),
+    "maybe-type-mismatch": ("warning", "on some path a value is of a kind that its reader does not take"),
+    "parallel-writers": ("warning", "branches that run side by side write one userdata key"),
+    "sibling-read": ("warning", "a branch reads a userdata key that a branch beside it writes"),
     "bad-expression": ("error", "an expression is not well formed"),
     "undeclared-name": ("error", "an expression uses a name that is no parameter or userdata key"),
-    "missing-entry": ("warning", "a named entry is not in the entries that are known"),
+    "missing-entry": ("warning", "a named entry is not in the entries that are known, or of another kind"),
+    "missing-unit": ("warning", "a parameter without a unit is handed on to where a unit is due"),
+    "unit-mismatch": ("warning", "a parameter is handed on to where another unit is due"),
+    "range-too-wide": ("warning", "a parameter may be given values that are refused where it is handed on to"),
     "bad-declaration": ("error", "a parameter of the behavior contradicts itself"),
     "required-parameter": ("warning", "a parameter of the behavior has no default, so each run must give it"),
+    "unused-parameter": ("warning", "nothing uses a parameter of the behavior"),
     "unknown-success": ("error", "`success` names an outcome that is not declared"),
     "unknown-outcome": ("error", "an outcome is used that the node does not have"),
     "unknown-target": ("error", "a transition leads to something that does not exist"),
     "unconnected-outcome": ("error", "an outcome of a node leads nowhere"),
     "ambiguous-target": ("error", "a name is a state of a machine and an outcome of it"),
     "missing-initial": ("error", "the initial state of a machine does not exist"),
-    "unreachable-node": ("warning", "no transition leads to a node"),
+    "unreachable-node": ("warning", "nothing leads to a node"),
     "no-path-to-outcome": ("warning", "from a node no outcome of the machine can be reached"),
+    "instant-loop": ("error", "a loop in which no time passes and nothing changes"),
+    "never-ends": ("error", "a part of a tree that cannot end, however its child ends"),
     "unused-outcome": ("warning", "an outcome is declared or connected that nothing leads to"),
     "unknown-child": ("error", "a condition names a child that does not exist"),
     "uncovered-combination": ("error", "all children may finish so that no condition holds"),
     "combinations-not-checked": ("warning", "there are too many combinations of child outcomes to check"),
     "shared-resource": ("error", "nodes that run side by side command the same device"),
+    "constant-guard": ("warning", "a guard is always open or always closed"),
+    "idle-retry": ("warning", "a retry that never happens"),
+    "autonomy-never-passes": ("warning", "an outcome requires so much autonomy that it never passes by itself"),
+    "bad-resume": ("error", "`resume` is neither `rerun`, `ask` nor an outcome of the node"),
 }
 """Every code a finding can have: its severity and what it means."""
 

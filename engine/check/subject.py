@@ -6,15 +6,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from engine.check.finding import Finding, new_finding
+from engine.check.status import BOTH, Status, Statuses, end_statuses
 from engine.document.behavior import Behavior
-from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES, Node
+from engine.document.expression import Template, compile_template
+from engine.document.node import FOREACH_OUTCOMES, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
 from engine.document.signature import StateSignature, read_signature
-from engine.errors import RegistryError, StateError
+from engine.errors import ExpressionError, RegistryError, StateError
 from engine.nearness import near_names
 from engine.registry import state_by_path
 from engine.state import State
 
 Catalogue = Mapping[str, type[State]]
+Given = Mapping[str, Template | ExpressionError]
+_PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
+_NOTHING_GIVEN: Given = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,14 +27,18 @@ class Placed:
     """A node with its path inside its own document and the path of the container around it."""
 
     path: str
+    name: str
+    kind: str
     node: Node
     parent: str | None
     container: Node | None
+    in_tree: bool
+    """Whether it is a part of a tree: directly inside `tree`, a composite or a decorator."""
 
     @property
-    def name(self) -> str:
-        """The last part of the path."""
-        return self.path.rpartition("/")[2]
+    def is_part(self) -> bool:
+        """True for composites, decorators and py_trees behaviours, which stand only in trees."""
+        return self.kind in _PARTS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,50 +51,99 @@ class Subject:
     behavior: Behavior
     base: str
     nodes: Mapping[str, Placed]
+    inside: Mapping[str, tuple[Placed, ...]]
+    """The nodes directly inside each container, by its path."""
     signatures: Mapping[str, StateSignature]
     """By state name; states that are unknown are absent."""
     unknown: Mapping[str, str]
     """What is wrong with the states that are absent, by state name."""
+    references: Mapping[str, Subject]
+    """The behaviors referred to, by the path as written."""
+    given: Mapping[str, Given]
+    """The values under `with`, compiled, by path and name; nodes without are absent."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
+    nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
+    """The outcomes of each node that mean that nothing went wrong, by path."""
+    statuses: Mapping[str, Statuses] = field(default_factory=dict[str, Statuses])
+    """How each part and leaf of a tree can end, by path."""
+
+    @property
+    def incomplete(self) -> bool:
+        """True when a state or a reference is missing, so that nobody knows which keys it writes."""
+        refers = (placed.node.behavior for placed in self.nodes.values())
+        return bool(self.unknown) or any(name is not None and name not in self.references for name in refers)
+
+    @property
+    def inside_out(self) -> Iterator[Placed]:
+        """The nodes, children before their containers."""
+        return reversed(tuple(self.nodes.values()))
 
     def finding(
         self, code: str, message: str, path: str, *keys: str | int, hint: str = "", at_key: bool = False
     ) -> Finding:
         """Make a finding about the node at `path`, or about the value (or key) at `keys` inside it."""
         locate = self.behavior.key_position if at_key else self.behavior.position
-        run_path = self.base + path.removeprefix("root")
-        return new_finding(code, message, path=run_path, position=locate(path, *keys), hint=hint)
+        return new_finding(code, message, path=self.run_path(path), position=locate(path, *keys), hint=hint)
+
+    def run_path(self, path: str) -> str:
+        """Return the path in a run of the node at `path` of this document."""
+        return self.base + path.removeprefix("root")
 
     def signature(self, node: Node) -> StateSignature | None:
         """Return what the class of a state node declares, None for other nodes and unknown states."""
         return self.signatures.get(node.state) if node.state is not None else None
 
-    def children(self, placed: Placed) -> Iterator[Placed]:
-        """Go through the nodes directly inside a container."""
-        return (self.nodes[f"{placed.path}/{name}"] for name in placed.node.children)
+    def referred(self, node: Node) -> Subject | None:
+        """Return the behavior that a node refers to, None for other nodes and references left open."""
+        return self.references.get(node.behavior) if node.behavior is not None else None
+
+    def possible(self, placed: Placed) -> tuple[str, ...] | None:
+        """Return the outcomes that a node can end with; of a tree it may be known that one never occurs."""
+        outcomes = self.outcomes.get(placed.path)
+        if placed.node.tree is None or outcomes is None:
+            return outcomes
+        ends = self.statuses[self.inside[placed.path][0].path]
+        return tuple(outcome for outcome in outcomes if outcome not in TREE_OUTCOMES or outcome in ends)
+
+    def children(self, placed: Placed) -> tuple[Placed, ...]:
+        """Return the nodes directly inside a container."""
+        return self.inside.get(placed.path, ())
+
+    def given_to(self, placed: Placed) -> Given:
+        """Return the values under `with` of a node, compiled."""
+        return self.given.get(placed.path, _NOTHING_GIVEN)
 
 
-def new_subject(behavior: Behavior, catalogue: Catalogue, *, base: str = "root") -> Subject:
-    """Work out everything that the checks share."""
-    nodes: dict[str, Placed] = {}
-    for path, node in behavior.nodes():
-        parent = path.rpartition("/")[0] or None
-        container = nodes[parent].node if parent is not None else None
-        nodes[path] = Placed(path=path, node=node, parent=parent, container=container)
-    signatures, unknown = _signatures(behavior, catalogue)
-    outcomes: dict[str, tuple[str, ...]] = {}
-    # Children before containers: a container's outcomes follow from those inside it.
-    for placed in reversed(nodes.values()):
-        found = _outcomes(placed, behavior, signatures)
-        if found is not None:
-            outcomes[placed.path] = found
-    return Subject(behavior=behavior, base=base, nodes=nodes, signatures=signatures, unknown=unknown, outcomes=outcomes)
+def new_subjects(behavior: Behavior, catalogue: Catalogue) -> tuple[Subject, ...]:
+    """Return the behavior and those it refers to, each once, in the order in which they are first referred to."""
+    bases: dict[int, str] = {}
+    order: list[Behavior] = []
+    due = [(behavior, "root")]
+    for current, base in due:
+        if id(current) in bases:
+            continue
+        bases[id(current)] = base
+        order.append(current)
+        for path, node in current.nodes() if current.references else ():
+            if node.behavior is not None and node.behavior in current.references:
+                below = f"{base}{path.removeprefix('root')}/root"
+                due.append((current.references[node.behavior], below))
+    made: dict[int, Subject] = {}
+    return tuple(_make(current, catalogue, bases, made) for current in order)
 
 
 def targets(node: Node) -> dict[tuple[str, ...], str]:
     """Return where a node in a machine can lead, by the keys inside the node that say so."""
     found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
+    if node.guard is not None or node.timeout is not None or node.on_error is not None:
+        found.update(diversions(node))
+    return found
+
+
+def diversions(node: Node) -> dict[tuple[str, ...], str]:
+    """Return where guard, timeout and on_error of a node lead, by the keys inside the node that say so."""
+    found: dict[tuple[str, ...], str] = {}
     if node.guard is not None and node.guard.to is not None:
         found["guard", "to"] = node.guard.to
     if node.timeout is not None and node.timeout.to is not None:
@@ -95,11 +153,84 @@ def targets(node: Node) -> dict[tuple[str, ...], str]:
     return found
 
 
-def _signatures(behavior: Behavior, catalogue: Catalogue) -> tuple[dict[str, StateSignature], dict[str, str]]:
+def template(value: object) -> Template | ExpressionError:
+    """Compile a value of a document, or return what is wrong with it."""
+    try:
+        return compile_template(value)
+    except ExpressionError as error:
+        return error
+
+
+def leaf_success(placed: Placed, subject: Subject) -> frozenset[str]:
+    """Return the outcomes of a leaf of a tree that mean SUCCESS there."""
+    return frozenset(placed.node.success) or subject.nominal[placed.path]
+
+
+def _make(behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], made: dict[int, Subject]) -> Subject:
+    known = made.get(id(behavior))
+    if known is not None:
+        return known
+    references = {name: _make(other, catalogue, bases, made) for name, other in behavior.references.items()}
+    nodes, inside = _placed(behavior)
+    signatures, unknown = _signatures(nodes, catalogue)
+    outcomes: dict[str, tuple[str, ...]] = {}
+    nominal: dict[str, frozenset[str]] = {}
+    statuses: dict[str, Statuses] = {}
+    subject = Subject(
+        behavior=behavior,
+        base=bases[id(behavior)],
+        nodes=nodes,
+        inside=inside,
+        signatures=signatures,
+        unknown=unknown,
+        references=references,
+        given={
+            path: {name: template(value) for name, value in placed.node.parameters.items()}
+            for path, placed in nodes.items()
+            if placed.node.parameters
+        },
+        outcomes=outcomes,
+        nominal=nominal,
+        statuses=statuses,
+    )
+    # Children before containers: how a container can end follows from those inside it.
+    for placed in subject.inside_out:
+        path = placed.path
+        own = _own_outcomes(placed, subject)
+        if own is not None:
+            outcomes[path] = _seen_outside(placed, own)
+        nominal[path] = _nominal(placed, subject)
+        if placed.in_tree:
+            statuses[path] = _statuses(placed, subject)
+    made[id(behavior)] = subject
+    return subject
+
+
+def _placed(behavior: Behavior) -> tuple[dict[str, Placed], dict[str, tuple[Placed, ...]]]:
+    nodes: dict[str, Placed] = {}
+    inside: dict[str, list[Placed]] = {}
+    for path, node in behavior.nodes():
+        parent, _, name = path.rpartition("/")
+        around = nodes[parent] if parent else None
+        nodes[path] = placed = Placed(
+            path=path,
+            name=name,
+            kind=node.kind,
+            node=node,
+            parent=parent or None,
+            container=around.node if around is not None else None,
+            in_tree=around is not None and (around.is_part or around.kind == "tree"),
+        )
+        if parent:
+            inside.setdefault(parent, []).append(placed)
+    return nodes, {path: tuple(children) for path, children in inside.items()}
+
+
+def _signatures(nodes: Mapping[str, Placed], catalogue: Catalogue) -> tuple[dict[str, StateSignature], dict[str, str]]:
     signatures: dict[str, StateSignature] = {}
     unknown: dict[str, str] = {}
-    for _, node in behavior.nodes():
-        name = node.state
+    for placed in nodes.values():
+        name = placed.node.state
         if name is None or name in signatures or name in unknown:
             continue
         try:
@@ -110,24 +241,28 @@ def _signatures(behavior: Behavior, catalogue: Catalogue) -> tuple[dict[str, Sta
                 signatures[name] = read_signature(state)
         except (RegistryError, StateError) as error:
             unknown[name] = str(error)
+        except Exception as error:
+            # A class of the user's may break in any way when it is imported or described.
+            unknown[name] = f"{type(error).__name__}: {error}"
     return signatures, unknown
 
 
-def _outcomes(placed: Placed, behavior: Behavior, signatures: Mapping[str, StateSignature]) -> tuple[str, ...] | None:
-    own = _own_outcomes(placed.node, behavior, signatures)
+def _seen_outside(placed: Placed, own: tuple[str, ...]) -> tuple[str, ...]:
     container = placed.container
-    if own is None or container is None or (container.concurrency is None and container.foreach is None):
+    if container is None or (container.concurrency is None and container.foreach is None):
         return own
-    # In a concurrency or foreach container a timeout or error gives the child an outcome that it sees.
-    return tuple(dict.fromkeys((*own, *(targets(placed.node).values()))))
+    # In a concurrency or foreach container a guard, timeout or error gives the child an outcome that it sees.
+    leading = diversions(placed.node).values()
+    return tuple(dict.fromkeys((*own, *leading))) if leading else own
 
 
-def _own_outcomes(node: Node, behavior: Behavior, signatures: Mapping[str, StateSignature]) -> tuple[str, ...] | None:
+def _own_outcomes(placed: Placed, subject: Subject) -> tuple[str, ...] | None:
+    node = placed.node
     if node.state is not None:
-        signature = signatures.get(node.state)
+        signature = subject.signatures.get(node.state)
         return signature.outcomes if signature is not None else None
     if node.behavior is not None:
-        referred = behavior.references.get(node.behavior)
+        referred = subject.behavior.references.get(node.behavior)
         return referred.outcomes if referred is not None else None
     if node.concurrency is not None:
         named = [rule.outcome for rule in node.concurrency.rules]
@@ -138,3 +273,55 @@ def _own_outcomes(node: Node, behavior: Behavior, signatures: Mapping[str, State
         return TREE_OUTCOMES
     leading = [target for child in node.children.values() for target in targets(child).values()]
     return tuple(dict.fromkeys(target for target in leading if target not in node.children))
+
+
+def _nominal(placed: Placed, subject: Subject) -> frozenset[str]:
+    """Return what the engine takes for a good end of a node: what a class or document calls success, or follows."""
+    node = placed.node
+    if node.state is not None:
+        signature = subject.signatures.get(node.state)
+        return frozenset(signature.success or signature.outcomes) if signature is not None else frozenset()
+    if node.behavior is not None:
+        referred = subject.behavior.references.get(node.behavior)
+        return frozenset(referred.success or referred.outcomes) if referred is not None else frozenset()
+    if node.concurrency is not None:
+        good = {child.name: subject.nominal[child.path] for child in subject.children(placed)}
+        rules = node.concurrency.rules
+        return frozenset(
+            rule.outcome for rule in rules if all(due in good.get(name, ()) for name, due in rule.when.items())
+        )
+    if node.foreach is not None:
+        return frozenset(FOREACH_OUTCOMES[:1])
+    if node.sequential is None:
+        return frozenset(TREE_OUTCOMES[:1])
+    return _reached_nominally(placed, node.sequential.initial, subject)
+
+
+def _reached_nominally(placed: Placed, initial: str, subject: Subject) -> frozenset[str]:
+    reached: set[str] = set()
+    due = [initial]
+    children = placed.node.children
+    while due:
+        name = due.pop()
+        if name in reached:
+            continue
+        reached.add(name)
+        child = children.get(name)
+        if child is not None:
+            good = subject.nominal[f"{placed.path}/{name}"]
+            due += [target for outcome, target in child.transitions.items() if outcome in good]
+            due += [child.guard.to] if child.guard is not None and child.guard.to is not None else []
+    return frozenset(reached.difference(children))
+
+
+def _statuses(placed: Placed, subject: Subject) -> Statuses:
+    children = subject.children(placed)
+    if placed.is_part:
+        return end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
+    outcomes = subject.outcomes.get(placed.path)
+    if not outcomes:
+        return BOTH
+    good = leaf_success(placed, subject)
+    led = diversions(placed.node).values()
+    found: set[Status] = {"success" if outcome in good else "failure" for outcome in outcomes}
+    return frozenset([*found, *(status for status in BOTH if status in led)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject, targets
@@ -17,31 +17,51 @@ def check_wiring(subject: Subject) -> Iterator[Finding]:
         if node.state is not None and node.state in subject.unknown:
             hint = subject.unknown[node.state]
             yield subject.finding("unknown-state", f"there is no state `{node.state}`", placed.path, "state", hint=hint)
-        yield from _check_retry(subject, placed)
-        if node.machine is not None:
+        yield from _check_named_outcomes(subject, placed)
+        if node.machine is not None or node.priority is not None:
             yield from _check_machine(subject, placed)
     yield from _check_root(subject)
 
 
-def _check_retry(subject: Subject, placed: Placed) -> Iterator[Finding]:
-    outcomes = subject.outcomes.get(placed.path)
-    retry = placed.node.retry
-    if retry is None or outcomes is None:
-        return
-    for index, outcome in enumerate(retry.outcomes):
-        if outcome not in outcomes:
-            message = f"`{placed.name}` has no outcome `{outcome}` to retry on"
-            keys = ("retry", "outcomes", index)
-            yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=near_names(outcome, outcomes))
+def _check_named_outcomes(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    """Find outcomes that retry, autonomy, `success` and `next` name and the node does not have."""
+    node = placed.node
+    named: list[tuple[str, Sequence[str | int], str, bool]] = []
+    if node.retry is not None and node.retry.child is None:
+        outcomes = _each(node.retry.outcomes)
+        named += [(outcome, ("retry", "outcomes", i), "to retry on", False) for i, outcome in outcomes]
+    named += [(outcome, ("autonomy", outcome), "to ask the operator about", True) for outcome in node.autonomy]
+    named += [(outcome, ("success", i), "that could mean success", False) for i, outcome in _each(node.success)]
+    if named:
+        yield from _check_known(subject, placed, placed, named)
+    if node.foreach is not None and node.foreach.next:
+        child = subject.children(placed)[0]
+        following = [(o, ("foreach", "next", i), "to go on after", False) for i, o in _each(node.foreach.next)]
+        yield from _check_known(subject, placed, child, following)
+
+
+def _each(outcomes: Sequence[str]) -> list[tuple[int, str]]:
+    return list(enumerate(outcomes))
+
+
+def _check_known(
+    subject: Subject, placed: Placed, of: Placed, named: Sequence[tuple[str, Sequence[str | int], str, bool]]
+) -> Iterator[Finding]:
+    outcomes = subject.outcomes.get(of.path)
+    for outcome, keys, use, at_key in named if outcomes is not None else ():
+        if outcome not in (outcomes or ()):
+            message = f"`{of.name}` has no outcome `{outcome}` {use}"
+            hint = near_names(outcome, outcomes or ())
+            yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=hint, at_key=at_key)
 
 
 def _check_machine(subject: Subject, placed: Placed) -> Iterator[Finding]:
     siblings = placed.node.children
     leaving = _ways_out(subject, placed)
-    for name in siblings:
-        if leaving is not None and name in leaving:
-            message = f"`{name}` is a state of this machine and an outcome of it"
-            yield subject.finding("ambiguous-target", message, f"{placed.path}/{name}", hint="rename the state")
+    for child in subject.children(placed):
+        if leaving is not None and child.name in leaving:
+            message = f"`{child.name}` is a state of this machine and an outcome of it"
+            yield subject.finding("ambiguous-target", message, child.path, hint="rename the state")
     for child in subject.children(placed):
         yield from _check_targets(subject, child, siblings, leaving)
         yield from _check_outcomes(subject, child)
@@ -55,7 +75,7 @@ def _ways_out(subject: Subject, placed: Placed) -> Collection[str] | None:
 
 
 def _check_targets(
-    subject: Subject, child: Placed, siblings: Collection[str], leaving: Collection[str] | None
+    subject: Subject, child: Placed, siblings: Mapping[str, Node], leaving: Collection[str] | None
 ) -> Iterator[Finding]:
     for keys, target in targets(child.node).items():
         if leaving is None or target in siblings or target in leaving:
@@ -70,7 +90,7 @@ def _check_outcomes(subject: Subject, child: Placed) -> Iterator[Finding]:
     if outcomes is None:
         return
     connected = child.node.transitions
-    for outcome in outcomes:
+    for outcome in subject.possible(child) or ():
         if outcome not in connected and not _reported_inside(child.node):
             message = f"outcome `{outcome}` of `{child.name}` leads nowhere"
             hint = f"add `{outcome}: …` to its `transitions`"
@@ -78,7 +98,7 @@ def _check_outcomes(subject: Subject, child: Placed) -> Iterator[Finding]:
     for outcome in connected:
         if outcome in outcomes:
             continue
-        fixed = child.node.state is not None or child.node.behavior is not None
+        fixed = child.node.sequential is None and child.node.concurrency is None
         code = "unknown-outcome" if fixed else "unused-outcome"
         message = f"`{child.name}` has no outcome `{outcome}`"
         keys = ("transitions", outcome)
@@ -99,7 +119,7 @@ def _check_root(subject: Subject) -> Iterator[Finding]:
             yield subject.finding("unknown-target", message, "root", *keys, hint=near_names(target, declared))
     if root.node.sequential is not None:
         return
-    for outcome in subject.outcomes.get("root", ()):
+    for outcome in subject.possible(root) or ():
         if outcome not in declared:
             message = f"outcome `{outcome}` of the root is not in `outcomes` of the behavior"
             yield subject.finding("unconnected-outcome", message, "root", hint=near_names(outcome, declared))

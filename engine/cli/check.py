@@ -8,11 +8,12 @@ from typing import Annotated, Literal
 
 import typer
 
-from engine.check import Finding, check_file
+from engine.authoring.python_file import is_python_name, load_python_behavior
+from engine.check import Finding, check_behavior, check_file, page_text
 from engine.check.finding import new_finding
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
-from engine.document import load_behavior, load_source
+from engine.document import load_source
 from engine.document.cell import load_cell
 from engine.document.entries import load_entries
 from engine.errors import DocumentError, Position
@@ -23,13 +24,24 @@ _ENTRIES = tuple((key, "entries") for key in ("joints", "poses", "dmps", "record
 
 
 def check(
-    files: Annotated[list[Path], typer.Argument(help="Behavior, cell or entries documents.", show_default=False)],
+    files: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Behavior, cell or entries documents, or FILE.py:NAME.", show_default=False),
+    ] = None,
     format_: Annotated[
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
     ] = "text",
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    explain: Annotated[
+        str, typer.Option(help="Print what a kind of finding means and what to do about it.", metavar="CODE")
+    ] = "",
 ) -> None:
     """Check documents without running anything. Exit code 2 when there is an error in any."""
+    if explain:
+        sys.stdout.write(page_text(explain))
+        return
+    if not files:
+        raise typer.BadParameter("give the documents to check", param_hint="FILES")
     catalogue = load_states()
     findings = [finding for file in files for finding in findings_of(file, catalogue)]
     chosen = "json" if json else format_
@@ -41,9 +53,7 @@ def check(
         sys.stdout.writelines(as_github(finding) + "\n" for finding in findings)
     else:
         sys.stdout.writelines(f"{finding}\n" for finding in findings)
-        errors = sum(finding.severity == "error" for finding in findings)
-        warnings = len(findings) - errors
-        sys.stderr.write(f"{len(files)} checked: {errors} errors, {warnings} warnings\n")
+        sys.stderr.write(_summary(len(files), findings))
     if any(finding.severity == "error" for finding in findings):
         raise typer.Exit(ExitCode.BAD_INPUT)
 
@@ -51,9 +61,11 @@ def check(
 def findings_of(file: Path, catalogue: Catalogue) -> tuple[Finding, ...]:
     """Return the findings of one document of any kind; one that cannot be read is one finding."""
     try:
+        if is_python_name(str(file)):
+            return check_behavior(load_python_behavior(str(file)), catalogue)
         kind = document_kind(file)
         if kind == "behavior":
-            return check_file(file, catalogue, _entries_of(file))
+            return check_file(file, catalogue)
         if kind == "cell":
             seed = load_cell(file).seed_file
             if seed is not None:
@@ -64,16 +76,6 @@ def findings_of(file: Path, catalogue: Catalogue) -> tuple[Finding, ...]:
         where = error.where if isinstance(error.where, Position) else Position(file=str(file), line=1, column=1)
         return (new_finding("invalid-document", error.message, path="", position=where, hint=error.hint or ""),)
     return ()
-
-
-def _entries_of(file: Path) -> frozenset[str] | None:
-    """Return the names of the entries that the behavior's own cell is seeded with, None where it names no cell."""
-    try:
-        cell_file = load_behavior(file).cell_file
-    except DocumentError:
-        return None  # check_file reports it
-    seed = load_cell(cell_file).seed_file if cell_file is not None else None
-    return load_entries(seed).names() if seed is not None else None
 
 
 def document_kind(file: Path) -> str:
@@ -91,3 +93,11 @@ def document_kind(file: Path) -> str:
         where=Position(file=str(file), line=1, column=1),
         hint="a behavior has `root:`, a cell has `cell:`",
     )
+
+
+def _summary(files: int, findings: list[Finding]) -> str:
+    errors = sum(finding.severity == "error" for finding in findings)
+    lines = [f"{files} checked: {errors} errors, {len(findings) - errors} warnings"]
+    if findings:
+        lines.append(f"what a finding means: flexcell check --explain {findings[0].code}")
+    return "\n".join(lines) + "\n"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from urllib.parse import quote
 
 import msgspec
 
-from engine.check import Finding
+from engine.check import CODES, Finding, page_name, page_text
+from engine.errors import FlexcellError
 
 
 def as_json(findings: Sequence[Finding]) -> str:
@@ -23,6 +25,7 @@ def as_json(findings: Sequence[Finding]) -> str:
                 "path": finding.path,
                 "message": finding.message,
                 "hint": finding.hint,
+                "page": page_name(finding.code),
             }
             for finding in findings
         ]
@@ -35,42 +38,71 @@ def as_github(finding: Finding) -> str:
     place = (
         f"file={_property(position.file)},line={position.line},col={position.column},title={_property(finding.code)}"
     )
-    text = f"{finding.message} ({finding.hint})" if finding.hint else finding.message
-    return f"::{finding.severity} {place}::{_data(text)}"
+    return f"::{finding.severity} {place}::{_data(_text(finding))}"
 
 
 def as_sarif(findings: Sequence[Finding]) -> str:
-    """Return the findings as one SARIF 2.1.0 log."""
-    rules = [{"id": code} for code in sorted({finding.code for finding in findings})]
-    log = {
-        "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
-        "version": "2.1.0",
-        "runs": [
-            {
-                "tool": {"driver": {"name": "flexcell", "version": version("flexcell"), "rules": rules}},
-                "results": [_sarif_result(finding) for finding in findings],
-            }
-        ],
+    """Return the findings as one SARIF 2.1.0 log, with the page of each kind of finding that occurs."""
+    codes = sorted({finding.code for finding in findings})
+    numbers = {code: number for number, code in enumerate(codes)}
+    driver = {
+        "name": "flexcell",
+        "version": version("flexcell"),
+        "semanticVersion": version("flexcell"),
+        "rules": [_rule(code) for code in codes],
     }
+    run = {
+        "tool": {"driver": driver},
+        # Columns count characters; unless told, readers take them for UTF-16 code units.
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(finding, numbers) for finding in findings],
+    }
+    log = {"$schema": "https://json.schemastore.org/sarif-2.1.0.json", "version": "2.1.0", "runs": [run]}
     return msgspec.json.encode(log).decode()
 
 
-def _sarif_result(finding: Finding) -> dict[str, object]:
+def _rule(code: str) -> dict[str, object]:
+    severity, meaning = CODES[code]
+    return {
+        "id": code,
+        "name": "".join(word.capitalize() for word in code.split("-")),
+        "shortDescription": {"text": meaning},
+        "defaultConfiguration": {"level": severity},
+        "help": _help(code),
+        # `helpUri` must be absolute, and where the pages are served differs from project to project.
+        "properties": {"page": page_name(code)},
+    }
+
+
+def _help(code: str) -> dict[str, str]:
+    brief = f"{CODES[code][1]}; see {page_name(code)}, or `flexcell check --explain {code}`"
+    try:
+        return {"text": brief, "markdown": page_text(code)}
+    except FlexcellError:
+        return {"text": brief}
+
+
+def _result(finding: Finding, numbers: Mapping[str, int]) -> dict[str, object]:
     position = finding.position
+    place: dict[str, object] = {
+        "physicalLocation": {
+            "artifactLocation": {"uri": quote(position.file.replace("\\", "/"))},
+            "region": {"startLine": position.line, "startColumn": position.column},
+        }
+    }
+    if finding.path:
+        place["logicalLocations"] = [{"fullyQualifiedName": finding.path, "kind": "member"}]
     return {
         "ruleId": finding.code,
+        "ruleIndex": numbers[finding.code],
         "level": finding.severity,
-        "message": {"text": f"{finding.message} ({finding.hint})" if finding.hint else finding.message},
-        "locations": [
-            {
-                "physicalLocation": {
-                    "artifactLocation": {"uri": position.file},
-                    "region": {"startLine": position.line, "startColumn": position.column},
-                },
-                "logicalLocations": [{"fullyQualifiedName": finding.path}],
-            }
-        ],
+        "message": {"text": _text(finding)},
+        "locations": [place],
     }
+
+
+def _text(finding: Finding) -> str:
+    return f"{finding.message} ({finding.hint})" if finding.hint else finding.message
 
 
 def _data(text: str) -> str:

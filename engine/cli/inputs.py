@@ -7,23 +7,57 @@ from pathlib import Path
 
 import msgspec
 
+from engine.authoring.python_file import is_python_name, load_python_behavior
 from engine.check import Finding, check_behavior
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.parameter import Parameter
-from engine.errors import DocumentError, FlexcellError
+from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.nearness import near_names
-from engine.plan import Catalogue
+from engine.plan import Catalogue, Plan, new_plan
 
 
 def read_behavior(file: Path, catalogue: Catalogue) -> tuple[Behavior, tuple[Finding, ...]]:
-    """Load and check a behavior; the findings include warnings.
+    """Load and check a behavior, given as a document or as `FILE.py:NAME`; the findings include warnings.
 
     Raises:
         DocumentError: it cannot be read at all.
     """
-    behavior = load_behavior(file)
+    name = str(file)
+    behavior = load_python_behavior(name) if is_python_name(name) else load_behavior(file)
     return behavior, check_behavior(behavior, catalogue)
+
+
+def read_plan(file: Path, catalogue: Catalogue) -> Plan:
+    """Load, check and plan a behavior while others go on.
+
+    Raises:
+        DocumentError: it cannot be read, or has errors; the first one is given.
+    """
+    behavior, findings = read_behavior(file, catalogue)
+    for finding in findings:
+        if finding.severity == "error":
+            raise DocumentError(finding.message, where=finding.position, hint=finding.hint or None)
+    return new_plan(behavior, catalogue)
+
+
+def read_plan_anew(file: Path, catalogue: Catalogue) -> Plan:
+    """Load, check and plan a behavior whose file may have changed since this process read it.
+
+    Raises:
+        DocumentError: it cannot be read, or has errors.
+        ControlError: it is made in Python, which runs a file once.
+    """
+    if is_python_name(str(file)):
+        hint = "save it as YAML with `flexcell export` and run that"
+        raise ControlError("a behavior made in Python cannot be read anew", where=file, hint=hint)
+    return read_plan(file, catalogue)
+
+
+def behavior_source(file: Path) -> str:
+    """Return the name given for a behavior so that it means the same in every directory."""
+    path, python, name = str(file).partition(".py:")
+    return f"{Path(path).resolve()}{python}{name}"
 
 
 def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:

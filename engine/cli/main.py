@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from engine.cli import bus, check, run, schema, serve, states, store
+from engine.cli import bus, check, coverage, export, replay, resume, run, runs, schema, serve, states, store
 from engine.cli.exit_code import ExitCode
 from engine.errors import FlexcellError
 
@@ -22,8 +22,13 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command("run")(run.run)
+app.command("resume")(resume.resume)
+app.add_typer(runs.app, name="runs")
 app.command("check")(check.check)
+app.command("replay")(replay.replay)
+app.command("export")(export.export)
 app.command("serve")(serve.serve)
+app.add_typer(coverage.app, name="coverage")
 app.add_typer(states.app, name="states")
 app.add_typer(store.app, name="store")
 app.add_typer(bus.app, name="bus")

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from engine.cause import describe
-from engine.event import Entered, Event, Exited, GoalFinished, Logged, Retried, RunEnded, StopRequested
+from engine.event import Entered, Event, Exited, FaultInjected, GoalFinished, Logged, Retried, RunEnded, StopRequested
 
 _LEVELS = {"debug": "dim", "info": "default", "warning": "yellow", "error": "bold red"}
 
@@ -27,6 +27,8 @@ class Progress:
                 self._exited(event)
             case Logged():
                 self._line(event, f"[{_LEVELS.get(event.level, 'default')}]{escape(event.message)}[/]", event.path)
+            case FaultInjected():
+                self._line(event, f"[magenta]{escape(f'{event.fault}: {event.detail}')}[/]", event.path)
             case Retried():
                 self._line(event, f"[yellow]again, attempt {event.attempt}[/]", event.path)
             case GoalFinished(status="aborted" | "rejected"):

@@ -2,60 +2,55 @@
 
 from __future__ import annotations
 
-import asyncio
-import signal
 import sys
-import time
-from collections.abc import Coroutine
-from contextlib import AbstractAsyncContextManager, ExitStack, nullcontext
 from dataclasses import dataclass
-from hashlib import sha256
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal
 
-import msgspec
 import typer
-from rich.console import Console
 
-from engine.cause import describe
 from engine.cell import OpenCell
 from engine.check import Finding
+from engine.checkpoint import Checkpoint
+from engine.cli.execution import Ended, MakeRun, Order, carry_out
 from engine.cli.exit_code import ExitCode
-from engine.cli.inputs import read_behavior, read_cell, read_inputs, read_parameters
-from engine.cli.progress import Progress
+from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, read_plan_anew
+from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.run_junit import write_run_junit
-from engine.clock import run_virtual
-from engine.document.cell import Cell
-from engine.event import Event
+from engine.cli.run_report import print_json, print_result
+from engine.coverage import Coverage
+from engine.document import Behavior
+from engine.document.cell import Cell, load_cell
+from engine.document.faults import load_faults
+from engine.errors import DocumentError
 from engine.journal import Journal, NullJournal, encode_event_log
-from engine.plan import Plan, new_plan
-from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, RunRecording, collect_documents
+from engine.launch import moment_of, new_origin, new_run
+from engine.plan import Catalogue, Plan, new_plan
+from engine.recorded_run import RecordedRun, read_run
+from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, collect_documents
 from engine.registry import load_states
-from engine.run import Run, RunResult
-from engine.run_id import new_run_id
-
-T = TypeVar("T")
+from engine.run import Run
+from engine.skill_port import SkillPort
+from engine.supervision import Supervision
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Order:
-    """Everything a run needs to know, read and checked before anything starts."""
+class _Start:
+    """The moment of another run to begin at."""
 
-    plan: Plan
-    cell: Cell | None
-    parameters: dict[str, object]
-    inputs: dict[str, object]
-    seed: int | None
-    journal: str
-    store: str | None
-    timeout_s: float | None
-    virtual: bool
-    quiet: bool
-    recording: RecordingOrder | None = None
+    found: RecordedRun
+    seq: int
+    checkpoint: Checkpoint
+
+    @property
+    def restores(self) -> bool:
+        """Whether the simulated world is known as it was at that moment."""
+        return self.found.knows_world_at(self.seq)
 
 
 def run(
-    file: Annotated[Path, typer.Argument(help="The behavior, a YAML or JSON file.", show_default=False)],
+    file: Annotated[Path, typer.Argument(help="The behavior: YAML, JSON or FILE.py:NAME.", show_default=False)],
     cell: Annotated[
         Path | None, typer.Option(help="The cell to run it in; the one the behavior names by default.")
     ] = None,
@@ -76,6 +71,18 @@ def run(
     store: Annotated[str | None, typer.Option(help="Use this store file instead of the cell's.")] = None,
     events: Annotated[Path | None, typer.Option(help="Write the event log here, one JSON object a line.")] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
+    from_: Annotated[
+        str | None, typer.Option("--from", help="RUN@SEQ: begin with the data of that event of a run in the journal.")
+    ] = None,
+    at: Annotated[
+        str | None, typer.Option(help="With --from: the node to begin at; the state entered last by default.")
+    ] = None,
+    operator: Operator = False,
+    autonomy: Autonomy = None,
+    operator_loss: Loss = "hold",
+    demand_operator: Demand = False,
+    breakpoints: Breakpoints = False,
+    paused: Paused = False,
     record: Annotated[
         Path | None, typer.Option(help="Record the run in this MCAP file, for Foxglove and `flexcell replay`.")
     ] = None,
@@ -87,6 +94,10 @@ def run(
         typer.Option(help="Record only topics with this name, may hold `*`; may be repeated."),
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Write the result here as JUnit XML.")] = None,
+    faults: Annotated[Path | None, typer.Option(help="Let go wrong what this fault document says.")] = None,
+    coverage: Annotated[
+        Path | None, typer.Option(help="Add what was covered of the behavior to this file; it is made at first.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Show no progress.")] = False,
 ) -> None:
@@ -96,20 +107,48 @@ def run(
     3: it ended with an error. 130: interrupted; robots are at rest and the journal is closed.
     """
     catalogue = load_states()
-    behavior, findings = read_behavior(file, catalogue)
-    _refuse_errors(findings)
-    opened = read_cell(cell, behavior)
-    order = _Order(
-        plan=new_plan(behavior, catalogue),
+    behavior = read_sound_behavior(file, catalogue)
+    plan = new_plan(behavior, catalogue)
+    options = OperatorOptions(
+        autonomy=autonomy,
+        operator=operator,
+        loss=operator_loss,
+        demand=demand_operator,
+        breakpoints=breakpoints,
+        paused=paused,
+    )
+    supervision = options.supervision(file)
+    start = _read_start(from_, at, plan, journal)
+    opened = _read_cell(cell, behavior, start)
+    parameters = read_parameters(parameter or [], behavior.parameters)
+    if start is not None:
+        known = {name: value for name, value in start.checkpoint.parameters.items() if name in plan.parameters}
+        parameters = {**known, **parameters}
+        seed = start.found.origin.seed if seed is None else seed
+    inputs = read_inputs(input_ or [])
+    covered = Coverage(behavior, catalogue) if coverage is not None else None
+    if covered is not None and coverage is not None:
+        covered.require_same(coverage)
+    order = Order(
+        make=_maker(
+            behavior,
+            plan,
+            source=behavior_source(file),
+            parameters=parameters,
+            inputs=inputs,
+            seed=seed,
+            supervision=supervision,
+            start=start,
+        ),
         cell=opened,
-        parameters=read_parameters(parameter or [], behavior.parameters),
-        inputs=read_inputs(input_ or []),
         seed=seed,
         journal=journal,
         store=store,
         timeout_s=timeout,
         virtual=clock == "virtual",
         quiet=quiet or json,
+        supervision=supervision,
+        inputs=inputs,
         recording=RecordingOrder(
             path=record,
             documents=collect_documents(behavior, opened),
@@ -118,152 +157,96 @@ def run(
         )
         if record is not None
         else None,
-    )
-    log: list[Event] = []
-    result, interrupted = _on_clock(_execute(order, log), virtual=order.virtual)
-    encoded = encode_event_log(log)
-    if events is not None:
-        events.write_bytes(encoded)
-    if junit is not None:
-        write_run_junit(junit, file, order.plan, result, seed=seed, clock=clock)
-    if json:
-        _print_json(result, encoded, len(log))
-    else:
-        _print_result(result)
-    raise typer.Exit(ExitCode.INTERRUPTED if interrupted else exit_code(result))
-
-
-def exit_code(result: RunResult) -> ExitCode:
-    """Return what the process says of a run that was not interrupted."""
-    if result.status == "errored":
-        return ExitCode.ERRORED
-    return ExitCode.SUCCESS if result.success else ExitCode.OTHER_OUTCOME
-
-
-def _on_clock(main: Coroutine[Any, Any, T], *, virtual: bool) -> T:
-    return run_virtual(main) if virtual else asyncio.run(main)
-
-
-class _Interruption:
-    """What a signal asks for, whether it comes before the run is made or while it goes on."""
-
-    def __init__(self) -> None:
-        self.reason = ""
-        self._run: Run | None = None
-
-    def signal(self, name: str) -> None:
-        """Stop the run, or the run to come."""
-        self.reason = f"interrupted by {name}"
-        if self._run is not None:
-            self._run.stop(self.reason)
-
-    def watch_over(self, run: Run) -> None:
-        """Stop `run` at the next signal, or at once when there was one."""
-        self._run = run
-        if self.reason:
-            run.stop(self.reason)
-
-
-async def _execute(order: _Order, log: list[Event]) -> tuple[RunResult, bool]:
-    interruption = _Interruption()
-    with ExitStack() as stack:
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            loop.add_signal_handler(number, interruption.signal, number.name)
-            stack.callback(loop.remove_signal_handler, number)
-        journal = _journal(order, stack)
-        async with (
-            _recording(order) as recording,
-            OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell,
-        ):
-            started_unix_s = time.time()
-            run = _new_run(order, cell, journal)
-            if recording is not None:
-                recording.attach(run, cell.bus, started_unix_s=started_unix_s, inputs=order.inputs)
-            run.watch(log.append)
-            if not order.quiet:
-                run.watch(Progress(Console(stderr=True)).show)
-            interruption.watch_over(run)
-            result = await _within(order.timeout_s, run)
-    return result, bool(interruption.reason)
-
-
-def _new_run(order: _Order, cell: OpenCell, journal: Journal | NullJournal) -> Run:
-    run_id = new_run_id(order.plan.name)
-    entry = journal.begin(
-        run_id, behavior=order.plan.name, document=order.plan.document_hash, started_unix_s=time.time()
-    )
-    return Run(
-        order.plan,
-        run=run_id,
-        bus=cell.bus,
-        parameters=order.parameters,
-        inputs=order.inputs,
-        seed=order.seed or 0,
-        journal=entry,
+        faults=load_faults(faults) if faults is not None else None,
+        watchers=(covered.follow(),) if covered is not None else (),
+        reload=partial(read_plan_anew, file, catalogue) if operator else None,
     )
 
+    def report(ended: Ended) -> None:
+        encoded = encode_event_log(ended.log)
+        if events is not None:
+            events.write_bytes(encoded)
+        if covered is not None and coverage is not None:
+            covered.accumulate(coverage)
+        if junit is not None:
+            write_run_junit(junit, file, plan, ended.result, seed=seed, clock=clock)
+        if json:
+            print_json(ended.result, encoded, len(ended.log))
+        else:
+            print_result(ended.result)
 
-async def _within(timeout_s: float | None, execution: Run) -> RunResult:
-    if timeout_s is None:
-        return await execution.execute()
-    loop = asyncio.get_running_loop()
-    timer = loop.call_later(timeout_s, execution.stop, f"it took longer than {timeout_s:g} s")
-    try:
-        return await execution.execute()
-    finally:
-        timer.cancel()
-
-
-def _recording(order: _Order) -> AbstractAsyncContextManager[RunRecording | None]:
-    if order.recording is None:
-        return nullcontext()
-    return RunRecording.open(order.recording, inline=order.virtual)
+    raise typer.Exit(carry_out(order, report=report))
 
 
-def _journal(order: _Order, stack: ExitStack) -> Journal | NullJournal:
-    if order.journal == "none":
-        return NullJournal()
-    return stack.enter_context(Journal.open(order.journal, inline=order.virtual))
+def _maker(
+    behavior: Behavior,
+    plan: Plan,
+    *,
+    source: str | None,
+    parameters: dict[str, object],
+    inputs: dict[str, object],
+    seed: int | None,
+    supervision: Supervision,
+    start: _Start | None,
+) -> MakeRun:
+    async def make(cell: OpenCell, journal: Journal | NullJournal, skills: SkillPort | None) -> Run:
+        if start is not None and start.restores and start.found.world is not None:
+            await cell.restore(start.found.world.data)
+        return new_run(
+            plan,
+            cell=cell,
+            journal=journal,
+            parameters=parameters,
+            inputs=inputs,
+            seed=seed or 0,
+            origin=new_origin(behavior, cell=cell, supervision=supervision, source=source),
+            supervision=supervision,
+            skills=skills,
+            checkpoint=start.checkpoint if start is not None else None,
+        )
+
+    return make
 
 
-def _refuse_errors(findings: tuple[Finding, ...]) -> None:
+def _read_start(text: str | None, at: str | None, plan: Plan, journal: str) -> _Start | None:
+    if text is None:
+        if at is not None:
+            raise DocumentError("--at needs --from", hint="such as --from RUN@120")
+        return None
+    run_id, _, number = text.rpartition("@")
+    if not run_id or not number.isdecimal():
+        raise DocumentError(f"{text!r} is not RUN@SEQ", where="--from", hint="`flexcell runs show RUN --events`")
+    found, seq = read_run(journal, run_id), int(number)
+    start = _Start(found=found, seq=seq, checkpoint=moment_of(found, plan, seq=seq, path=at))
+    if found.world is not None and not start.restores:
+        known = found.world.seq
+        sys.stderr.write(f"flexcell: the cell starts as it is: its world is known at event {known} only\n")
+    elif found.world is None and found.origin.cell is not None:
+        sys.stderr.write("flexcell: the cell starts as it is\n")
+    return start
+
+
+def _read_cell(file: Path | None, behavior: Behavior, start: _Start | None) -> Cell | None:
+    if file is None and start is not None and start.found.origin.cell is not None:
+        return load_cell(Path(start.found.origin.cell))
+    return read_cell(file, behavior)
+
+
+def read_sound_behavior(file: Path, catalogue: Catalogue) -> Behavior:
+    """Load a behavior; one that has errors ends the command with all of them.
+
+    Raises:
+        DocumentError: it cannot be read at all.
+    """
+    behavior, findings = read_behavior(file, catalogue)
+    refuse_errors(findings)
+    return behavior
+
+
+def refuse_errors(findings: tuple[Finding, ...]) -> None:
+    """Print the findings that prevent a run, and end the command when there are any."""
     errors = [finding for finding in findings if finding.severity == "error"]
     for finding in errors:
         sys.stderr.write(f"{finding}\n")
     if errors:
         raise typer.Exit(ExitCode.BAD_INPUT)
-
-
-def _print_json(result: RunResult, encoded: bytes, count: int) -> None:
-    chain = result.cause.chain() if result.cause else ()
-    document = {
-        "run": result.run,
-        "behavior": result.behavior,
-        "status": result.status,
-        "outcome": result.outcome,
-        "success": result.success,
-        "cause": [{"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes} for link in chain],
-        "duration_s": result.duration_s,
-        "events": count,
-        "events_sha256": sha256(encoded).hexdigest(),
-        "userdata": result.userdata,
-    }
-    sys.stdout.write(msgspec.json.encode(document).decode() + "\n")
-
-
-def _print_result(result: RunResult) -> None:
-    console = Console(stderr=True)
-    style = "green" if result.success else "red"
-    what = result.outcome or result.status
-    console.print(f"[bold {style}]{what}[/] after {result.duration_s:.2f} s [dim](run {result.run})[/]")
-    if result.cause is not None and not result.success:
-        for depth, link in enumerate(result.cause.chain()):
-            console.print(f"{'  ' * depth}because {describe_link(link)}", markup=False, highlight=False, soft_wrap=True)
-            for node in link.nodes:
-                console.print(f"{'  ' * depth}        in {node}", markup=False, highlight=False, soft_wrap=True)
-
-
-def describe_link(link: Any) -> str:
-    """Write one link of a cause chain without what is below it."""
-    return describe(msgspec.structs.replace(link, because=None))

@@ -11,7 +11,9 @@ from engine.document.schema import schema_texts
 
 
 def schema(
-    kind: Annotated[Literal["behavior", "cell", "entries"], typer.Argument(help="Which document.")] = "behavior",
+    kind: Annotated[
+        Literal["behavior", "cell", "entries", "faults"], typer.Argument(help="Which document.")
+    ] = "behavior",
 ) -> None:
     """Print the JSON Schema of a kind of document."""
     sys.stdout.write(schema_texts()[f"{kind}.schema.json"])

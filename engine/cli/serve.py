@@ -21,6 +21,7 @@ from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
+from engine.watchdog import Watchdog
 
 ServeDashboard = Callable[..., Coroutine[Any, Any, None]]
 
@@ -59,7 +60,7 @@ async def _serve(
         if open_page:
             webbrowser.open(dashboard.login_url)
 
-    with Journal.open(state) as journal:
+    with Journal.open(state) as journal, Watchdog():
         async with (
             OpenCell(cell, seed=seed) as opened,
             Session(opened, project=project, catalogue=catalogue, journal=journal) as session,

@@ -89,8 +89,11 @@ class Control:
         self._loss_timeout_s = loss_timeout_s
         self._loss: asyncio.TimerHandle | None = None
         self._operator = "none"
+        self._closed = False
         self._confirmed = False
         gate.asks = demanded
+        gate.on_paused = self._paused
+        suspensions.on_settled = self._settled
         gate.arm()
 
     @property
@@ -101,16 +104,11 @@ class Control:
     def pause(self) -> None:
         """Hold every goal and timer and let no node be entered or left; shown as confirmed once at rest."""
         self._record("pause")
-        self._confirmed = False
         self._gate.pause()
-        self._suspensions.on_settled = self._settled
-        if self._suspensions.settled():
-            self._settled()
 
     def resume(self) -> None:
         """Let the run go on."""
         self._record("resume")
-        self._suspensions.on_settled = lambda: None
         self._confirmed = False
         self._gate.resume()
 
@@ -130,6 +128,7 @@ class Control:
         if path and waiting is None:
             raise ControlError("nothing waits there", where=path, hint=near_names(path, self._gate.waiting))
         self._record("step", path, mode=mode)
+        self._confirmed = False
         origin = waiting.path if waiting is not None else ""
         self._gate.step(Step(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
 
@@ -236,7 +235,13 @@ class Control:
 
     def close(self) -> None:
         """The run is over; no timer is left behind."""
+        self._closed = True
         self._forget_loss()
+
+    @property
+    def closed(self) -> bool:
+        """True once the run is over."""
+        return self._closed
 
     def _order(self, path: str, order: Order) -> None:
         waiting = path in self._gate.waiting
@@ -259,8 +264,14 @@ class Control:
     def _waiting_in(self, path: str) -> Waiting | None:
         return next((each for each in self._gate.waiting.values() if not path or inside(path, each.path)), None)
 
+    def _paused(self) -> None:
+        """Whoever has paused the run: it is confirmed once everything rests."""
+        self._confirmed = False
+        if self._suspensions.settled():
+            self._settled()
+
     def _settled(self) -> None:
-        if self._confirmed or not self._gate.paused:
+        if self._confirmed or not self._gate.paused or self._gate.stepping:
             return
         self._confirmed = True
         recorder = self._recorder

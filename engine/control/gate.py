@@ -5,6 +5,7 @@ While nothing is asked of it, `armed` is False and nodes pass without calling it
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from engine.cause import cause_of, describe
@@ -53,6 +54,8 @@ class Gate:
         self._orders: dict[str, Order] = {}
         self._answers: set[str] = set()
         self._accepted: dict[str, tuple[int, str]] = {}
+        self.on_paused: Callable[[], None] = lambda: None
+        """Called after every pause: by the operator, a breakpoint, the end of a step."""
         self._step: Step | None = None
         self._paused = False
         self._recorder = recorder
@@ -85,6 +88,7 @@ class Gate:
         self._paused, self._step = True, None
         self._suspensions.hold(PAUSE, self._covers)
         self.arm()
+        self.on_paused()
 
     def resume(self) -> None:
         """Let every branch go on."""

@@ -70,6 +70,12 @@ class Entries:
         """Return the names of all entries, whatever their kind."""
         return frozenset(record.name for record in self.records())
 
+    def names_by_kind(self) -> dict[str, frozenset[str]]:
+        """Return the names of the entries of each kind."""
+        document = self.document
+        sections = {"joints": document.joints, "pose": document.poses, "dmp": document.dmps, "record": document.records}
+        return {kind: frozenset(section) for kind, section in sections.items()}
+
 
 def load_entries(path: Path | str) -> Entries:
     """Read an entries document.

@@ -13,7 +13,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import msgspec
 from cel_expr_python import cel
@@ -30,6 +30,9 @@ RESERVED = frozenset(
 )
 """Words of the expression language, which cannot name a parameter or a userdata key."""
 
+ValueType = Literal["boolean", "integer", "number", "text", "list", "mapping", "nothing", "anything"]
+"""What is known of a value before a run."""
+
 Variables = Mapping[str, object]
 _Evaluation = Callable[[Variables], object]
 
@@ -37,6 +40,16 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _UNDECLARED = re.compile(r"undeclared reference to '([^']*)'")
 _ERROR_LINE = re.compile(r"ERROR: <input>:(-?\d+):(-?\d+): (.*)")
 _ERROR_STATUS = re.compile(r"^[A-Z_]+: ")
+_NO_OVERLOAD = re.compile(r"found no matching overload for '([^']*)' applied to '\((.*)\)'")
+_NO_FIELDS = re.compile(r"expression of type '([^']*)' cannot be the operand of a select operation")
+_SYMBOL = re.compile(r"^@?_?|_$")
+_STRICT = frozenset(
+    {
+        *("_+_", "_-_", "_*_", "_/_", "_<_", "_<=_", "_>_", "_>=_", "!_", "-_", "_&&_", "_||_"),
+        *("size", "startsWith", "endsWith", "contains", "matches"),
+    }
+)
+"""What fails when run with the wrong types; comparing unlike values, for one, is only refused by the type check."""
 _MIXED_NUMBERS = re.compile(r"found no matching overload for .* applied to '\(.*\b(?:int.*double|double.*int)\b.*\)'")
 
 
@@ -100,7 +113,7 @@ def _prepare_list(items: list[object], names: set[str]) -> _Evaluation | None:
 
 
 def _prepare_text(text: str, names: set[str]) -> _Evaluation:
-    pieces = _split(text)
+    pieces = split_text(text)
     for piece in pieces:
         if isinstance(piece, Expression):
             names |= piece.names
@@ -110,7 +123,12 @@ def _prepare_text(text: str, names: set[str]) -> _Evaluation:
     return lambda variables: "".join(p if isinstance(p, str) else as_text(p.evaluate(variables)) for p in pieces)
 
 
-def _split(text: str) -> list[str | Expression]:
+def split_text(text: str) -> list[str | Expression]:
+    """Return the literal pieces and the expressions of a text in order.
+
+    Raises:
+        ExpressionError: an expression is not well formed.
+    """
     pieces: list[str | Expression] = []
     literal = ""
     index = 0
@@ -166,6 +184,21 @@ class Expression:
     text: str
     names: frozenset[str]
     _program: Any  # cel.Expression; None where the expression is just the name of a variable
+
+    @property
+    def bare(self) -> bool:
+        """True when it is just the name of a variable."""
+        return self._program is None
+
+    def result_type(self, variables: Mapping[str, ValueType]) -> ValueType:
+        """Return the type of its value, as far as the types of the variables tell.
+
+        Raises:
+            ExpressionError: it fails whenever the variables have these types; says at which operation.
+        """
+        if self.bare:
+            return variables.get(self.text, "anything")
+        return _result_type(self.text, tuple((name, variables.get(name, "anything")) for name in sorted(self.names)))
 
     def evaluate(self, variables: Variables) -> object:
         """Return the value of the expression.
@@ -253,9 +286,74 @@ def _in_words(reason: str) -> str:
     return re.sub(r" expecting \{.*", "", reason).replace("'<EOF>'", "end")
 
 
+@lru_cache(maxsize=4096)
+def _result_type(text: str, variables: tuple[tuple[str, ValueType], ...]) -> ValueType:
+    try:
+        program = _typed_environment(variables).compile(text)
+    except RuntimeError as error:
+        for _, _, reason in _ERROR_LINE.findall(str(error)):
+            if impossible := _impossible(reason):
+                raise ExpressionError(f"`${{{_short(text)}}}`: {impossible}") from None
+        return "anything"
+    return _words_for(program.return_type().name())
+
+
+def _impossible(reason: str) -> str | None:
+    """Say what fails when run; None for what only the type check refuses."""
+    selected = _NO_FIELDS.match(reason)
+    if selected:
+        return f"{_type_in_words(selected[1])} has no fields"
+    refused = _NO_OVERLOAD.match(reason)
+    if refused is None or refused[1] not in _STRICT or _MIXED_NUMBERS.match(reason):
+        return None
+    operands = [_type_in_words(operand) for operand in re.split(r", (?![^(]*\))", refused[2])]
+    return f"`{_SYMBOL.sub('', refused[1])}` cannot be applied to {' and '.join(operands)}"
+
+
+def _type_in_words(of_cel: str) -> str:
+    known = {
+        "string": "text",
+        "int": "an integer",
+        "double": "a number",
+        "bool": "true or false",
+        "null_type": "nothing",
+        "list": "a list",
+        "map": "a mapping",
+    }
+    return known.get(of_cel.partition("(")[0], of_cel)
+
+
+@lru_cache(maxsize=1)
+def _cel_types() -> Mapping[ValueType, Any]:
+    kinds = cel.Type
+    return {
+        "boolean": kinds.BOOL,
+        "integer": kinds.INT,
+        "number": kinds.DOUBLE,
+        "text": kinds.STRING,
+        "list": kinds.LIST,
+        "mapping": kinds.MAP,
+        "nothing": kinds.NULL,
+        "anything": kinds.DYN,
+    }
+
+
+def _words_for(of_cel: str) -> ValueType:
+    outer = of_cel.partition("<")[0]
+    for word, known in _cel_types().items():
+        if known.name().partition("<")[0] == outer:
+            return word
+    return "anything"
+
+
 @lru_cache(maxsize=1024)
+def _typed_environment(variables: tuple[tuple[str, ValueType], ...]) -> Any:
+    known = {name: _cel_types()[kind] for name, kind in variables}
+    return cel.NewEnv(variables=known, extensions=[_mixed_arithmetic()])
+
+
 def _environment(names: frozenset[str]) -> Any:
-    return cel.NewEnv(variables=dict.fromkeys(sorted(names), cel.Type.DYN), extensions=[_mixed_arithmetic()])
+    return _typed_environment(tuple((name, "anything") for name in sorted(names)))
 
 
 @lru_cache(maxsize=1)

@@ -177,18 +177,24 @@ class ForEach(Strict, frozen=True, kw_only=True, rename={"item": "as"}):
 
 
 class Composite(Strict, frozen=True, kw_only=True):
-    """Children of a sequence or selector; with `memory` a child that is done is not asked again."""
+    """Children of a sequence or selector; with `memory` a child that is done is not asked again.
+
+    A plain list of children has memory.
+    """
 
     children: Annotated[tuple[Node, ...], Meta(min_length=1, description="The children, at least one")]
     memory: bool
 
 
 class Parallel(Strict, frozen=True, kw_only=True):
-    """Children ticked together; `policy` says whose success is its own: `all`, `one`, or those named."""
+    """Children ticked together; `policy` says whose success is its own: `all`, `one`, or those named.
+
+    With `synchronise` a child that has succeeded is not run again while the others are at work.
+    """
 
     children: Annotated[tuple[Node, ...], Meta(min_length=1, description="The children, at least one")]
     policy: Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)] = "all"
-    synchronise: bool = False
+    synchronise: bool = True
 
 
 class Decorator(Strict, frozen=True, kw_only=True):
@@ -224,19 +230,37 @@ class Cooldown(Strict, frozen=True, kw_only=True):
 
 
 class Remap(Strict, frozen=True, kw_only=True):
-    """Shows another status than the child has."""
+    """Shows another status than the child has.
+
+    Where an end of the child is shown as `running`, the child is run again `every` so often.
+    """
 
     child: Node
     success: Status = "success"
     failure: Status = "failure"
     running: Status = "running"
+    every: Duration = 0.1
+
+    @property
+    def every_s(self) -> float:
+        """The period in seconds."""
+        return seconds(self.every)
 
 
 class StatusCondition(Strict, frozen=True, kw_only=True):
-    """Is SUCCESS when the child has this status, RUNNING until then."""
+    """Is SUCCESS when the child has this status, RUNNING until then.
+
+    A child that has ended otherwise is run again `every` so often.
+    """
 
     child: Node
     status: Status
+    every: Duration = 0.1
+
+    @property
+    def every_s(self) -> float:
+        """The period in seconds."""
+        return seconds(self.every)
 
 
 TREE_OUTCOMES = ("success", "failure")
@@ -256,6 +280,7 @@ class Node(
     `autonomy` names for an outcome the level from which on it does not pass by itself any more;
     `resume` says what to do with the node after a crash: `rerun`, `ask`, or take an outcome.
     `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its place in paths.
+    `every` is how often a py_trees `behaviour` is ticked while it is RUNNING, 0.1 s without it.
     """
 
     state: str | None = None
@@ -275,6 +300,7 @@ class Node(
     remap: Remap | None = None
     condition: StatusCondition | None = None
     behaviour: str | None = None
+    every: Duration | None = None
     name: NodeName | None = None
     parameters: dict[str, object] = {}
     inputs: dict[str, Key] = {}
@@ -302,6 +328,11 @@ class Node(
         if self.state is not None:
             return "state"
         return self.kinds[0]
+
+    @property
+    def every_s(self) -> float:
+        """How often a py_trees behaviour is ticked while it is RUNNING, in seconds."""
+        return seconds(self.every) if self.every is not None else 0.1
 
     @property
     def sequential(self) -> Machine | None:
@@ -378,11 +409,10 @@ def _names(children: Iterable[Node]) -> list[str]:
     taken: set[str] = set()
     seen: dict[str, int] = {}
     for child in children:
-        name = child.own_name
-        seen[name] = seen.get(name, 0) + 1
+        own = name = child.own_name
         while name in taken:
-            name = f"{child.own_name}_{seen[child.own_name]}"
-            seen[child.own_name] += 1
+            seen[own] = seen.get(own, 1) + 1
+            name = f"{own}_{seen[own]}"
         taken.add(name)
         names.append(name)
     return names

@@ -54,6 +54,11 @@ class Parameter(Strict, frozen=True, kw_only=True):
         """True when a run cannot start without a value for it."""
         return self.default is UNSET
 
+    @property
+    def value_type(self) -> object:
+        """The Python type that values are converted to."""
+        return _KINDS[self.type]
+
     def problem(self, value: object) -> str | None:
         """Return what is wrong with a value, None when it is acceptable."""
         if not _fits(self.type, value):

@@ -11,10 +11,11 @@ import msgspec
 from engine.document.behavior import BehaviorDocument
 from engine.document.cell import CellDocument
 from engine.document.entries import EntriesDocument
+from engine.document.faults import FaultsDocument
 from engine.document.parameter import any_value
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
-_MODELS = {"behavior": BehaviorDocument, "cell": CellDocument, "entries": EntriesDocument}
+_MODELS = {"behavior": BehaviorDocument, "cell": CellDocument, "entries": EntriesDocument, "faults": FaultsDocument}
 
 
 def schema_texts() -> dict[str, str]:

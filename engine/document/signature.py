@@ -43,6 +43,8 @@ class StateSignature:
     parameters: Mapping[str, KeySignature]
     inputs: Mapping[str, KeySignature]
     outputs: Mapping[str, KeySignature]
+    instant: bool = False
+    unwritten: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     state: type[State] = field(repr=False)
 
     @property
@@ -64,6 +66,11 @@ def read_signature(state: type[State]) -> StateSignature:
     stray = [outcome for outcome in state.success if outcome not in state.outcomes]
     if stray:
         raise _broken(state, f"its success names `{stray[0]}`, which is not one of its outcomes", "correct `success`")
+    for outcome, keys in state.unwritten.items():
+        if outcome not in state.outcomes or not set(keys) <= set(state.outputs):
+            raise _broken(
+                state, f"its `unwritten` names an outcome or key it has not: {outcome}", "correct `unwritten`"
+            )
     return StateSignature(
         name=name,
         doc=inspect.getdoc(state) or "",
@@ -72,6 +79,8 @@ def read_signature(state: type[State]) -> StateSignature:
         parameters=_parameters(state),
         inputs=_inputs(state),
         outputs={key: _key(key, kind, required=True, default=None) for key, kind in state.outputs.items()},
+        instant=state.instant,
+        unwritten=state.unwritten,
         state=state,
     )
 

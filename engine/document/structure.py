@@ -6,8 +6,9 @@ from collections.abc import Iterable
 
 from engine.document.behavior import Behavior
 from engine.document.expression import RESERVED
-from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
+from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node, Parallel
 from engine.errors import DocumentError
+from engine.nearness import near_names
 
 _CONTAINER_KEYS = {
     "with": "parameters go to states and behavior references",
@@ -41,6 +42,13 @@ def require_structure(behavior: Behavior) -> None:
         # Inside a machine that is a leaf of a tree, machine rules hold again.
         in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
         _require_rounds(behavior, path, node)
+        _require_every(behavior, path, node)
+
+
+def _require_every(behavior: Behavior, path: str, node: Node) -> None:
+    if node.every is not None and node.behaviour is None:
+        where = behavior.key_position(path, "every")
+        raise DocumentError("`every` goes with a `behaviour`", where=where, hint="only that is ticked without an event")
 
 
 def _require_names(behavior: Behavior) -> None:
@@ -97,6 +105,16 @@ def _require_tree_part(behavior: Behavior, path: str, node: Node) -> None:
         )
     if node.kind in (*TREE_KINDS, *WRAPPERS):
         _require_bare(behavior, path, node)
+    _require_policy(behavior, path, node)
+
+
+def _require_policy(behavior: Behavior, path: str, node: Node) -> None:
+    """A policy of a parallel names its children."""
+    policy = node.parallel.policy if isinstance(node.parallel, Parallel) else ()
+    for index, name in enumerate(() if isinstance(policy, str) else policy):
+        if name not in node.children:
+            where = behavior.position(path, "parallel", "policy", index)
+            raise DocumentError(f"there is no child `{name}` here", where=where, hint=near_names(name, node.children))
 
 
 def _require_bare(behavior: Behavior, path: str, node: Node) -> None:
@@ -106,6 +124,10 @@ def _require_bare(behavior: Behavior, path: str, node: Node) -> None:
             where = behavior.key_position(path, key)
             hint = f"wrap it: `{key}: {{…, child: …}}`" if key in WRAPPERS else "remove it"
             raise DocumentError(f"a `{node.kind}` of a tree has no `{key}`", where=where, hint=hint)
+    if node.kind == "retry" and node.retry is not None and node.retry.outcomes:
+        where = behavior.key_position(path, "retry", "outcomes")
+        hint = "it tries again after FAILURE"
+        raise DocumentError("`retry` with a `child` has no `outcomes`", where=where, hint=hint)
 
 
 def _require_no_tree_part(behavior: Behavior, path: str, node: Node) -> None:

@@ -40,14 +40,16 @@ _SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})
 
 
 @dataclass(slots=True)
-class _Place:
+class Place:
     """Where a key and its value stand, counted from 0, and the places inside the value."""
 
     key_line: int
     key_column: int
     line: int
     column: int
-    children: dict[str | int, _Place] | None = None
+    children: dict[str | int, Place] | None = None
+    file: str | None = None
+    """The file it stands in, where that is another than the document's."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +58,7 @@ class Source:
 
     file: str
     data: object
-    place: _Place = field(repr=False)
+    place: Place = field(repr=False)
 
     def position(self, path: DataPath, *, of_key: bool = False) -> Position:
         """Return where the value (or the key) at `path` stands; for a path that is absent, its nearest ancestor."""
@@ -67,9 +69,10 @@ class Source:
                 of_key = True
                 break
             place = child
+        file = place.file or self.file
         if of_key:
-            return Position(file=self.file, line=place.key_line + 1, column=place.key_column + 1)
-        return Position(file=self.file, line=place.line + 1, column=place.column + 1)
+            return Position(file=file, line=place.key_line + 1, column=place.key_column + 1)
+        return Position(file=file, line=place.line + 1, column=place.column + 1)
 
 
 def load_source(path: Path) -> Source:
@@ -207,12 +210,12 @@ class _Builder:
         self._documents = 0
         self._nodes = 0
         self._root: list[object] = []
-        self._root_place = _Place(0, 0, 0, 0)
+        self._root_place = Place(0, 0, 0, 0)
         # One row per open container: the container, its place, and the pending key of a mapping.
         self._container: dict[str, object] | list[object] | None = None
         self._place = self._root_place
         self._key: tuple[str, int, int] | None = None
-        self._stack: list[tuple[dict[str, object] | list[object] | None, _Place, tuple[str, int, int] | None]] = []
+        self._stack: list[tuple[dict[str, object] | list[object] | None, Place, tuple[str, int, int] | None]] = []
 
     def take(self, event: _Event) -> bool:
         """Use one event; True when the stream is over."""
@@ -276,7 +279,7 @@ class _Builder:
         if plain and key == "<<":
             self._refuse(event, "the merge key `<<` is not supported", "write the keys out")
         if key in container:
-            first = cast("dict[str | int, _Place]", self._place.children)[key]
+            first = cast("dict[str | int, Place]", self._place.children)[key]
             self._refuse(event, f"the key `{_short(key)}` is repeated; it is first on line {first.key_line + 1}")
         mark = event.start_mark
         self._key = (key, mark.line, mark.column)
@@ -293,20 +296,20 @@ class _Builder:
         self._stack.append(outer)
         self._container, self._place, self._key = container, place, None
 
-    def _add(self, value: object, line: int, column: int) -> _Place:
+    def _add(self, value: object, line: int, column: int) -> Place:
         container = self._container
         if container is None:
             self._root.append(value)
-            self._root_place = _Place(line, column, line, column)
+            self._root_place = Place(line, column, line, column)
             return self._root_place
-        children = cast("dict[str | int, _Place]", self._place.children)
+        children = cast("dict[str | int, Place]", self._place.children)
         if type(container) is dict:
             key, key_line, key_column = cast("tuple[str, int, int]", self._key)
             self._key = None
             container[key] = value
-            place = children[key] = _Place(key_line, key_column, line, column)
+            place = children[key] = Place(key_line, key_column, line, column)
         else:
-            place = children[len(children)] = _Place(line, column, line, column)
+            place = children[len(children)] = Place(line, column, line, column)
             cast("list[object]", container).append(value)
         return place
 

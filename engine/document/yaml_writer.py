@@ -9,6 +9,9 @@ import yaml
 
 from engine.document.yaml_source import plain_scalar
 
+_LINE = 80
+"""Characters up to which plain values stand on one line."""
+
 
 class _Dumper(yaml.CSafeDumper):
     """PyYAML's dumper with text quoted wherever YAML 1.1 or 1.2 would read something else."""
@@ -17,9 +20,33 @@ class _Dumper(yaml.CSafeDumper):
         """Write shared values out; the strict reader refuses aliases."""
         return True
 
+    def represent_mapping(self, tag: str, mapping: Any, flow_style: bool | None = None) -> yaml.MappingNode:
+        """Write a mapping of plain values on one line where it fits."""
+        represent = cast("Callable[..., yaml.MappingNode]", super().represent_mapping)  # pyright: ignore[reportUnknownMemberType]
+        node = represent(tag, mapping, flow_style=flow_style)
+        pairs = cast("list[tuple[yaml.Node, yaml.Node]]", node.value)
+        node.flow_style = _fits([part for pair in pairs for part in pair])
+        return node
+
+    def represent_sequence(self, tag: str, sequence: Any, flow_style: bool | None = None) -> yaml.SequenceNode:
+        """Write a list of plain values on one line where it fits, and lists of numbers always so."""
+        represent = cast("Callable[..., yaml.SequenceNode]", super().represent_sequence)  # pyright: ignore[reportUnknownMemberType]
+        node = represent(tag, sequence, flow_style=flow_style)
+        items = cast("list[yaml.Node]", node.value)
+        numbers = all(item.tag in ("tag:yaml.org,2002:float", "tag:yaml.org,2002:int") for item in items)
+        node.flow_style = numbers or _fits(items)
+        return node
+
+
+def _fits(parts: list[yaml.Node]) -> bool:
+    """Tell whether scalars stand on one line without being broken in their midst."""
+    scalars = [part.value for part in parts if isinstance(part, yaml.ScalarNode)]
+    return len(scalars) == len(parts) and sum(len(text) + 2 for text in scalars) <= _LINE
+
 
 def _represent_text(dumper: _Dumper, text: str) -> yaml.ScalarNode:
-    style = '"' if plain_scalar(text) != text or not text.isprintable() else None
+    quoted = plain_scalar(text) != text or not text.isprintable() or "${" in text
+    style = '"' if quoted else None
     represent = cast("Callable[..., yaml.ScalarNode]", dumper.represent_scalar)  # pyright: ignore[reportUnknownMemberType]
     return represent("tag:yaml.org,2002:str", text, style=style)
 

@@ -9,7 +9,7 @@ from engine.journal.codec import decode_event, encode_event, encode_event_log
 from engine.journal.journal import Journal, SqliteRunJournal, journal_path
 from engine.journal.null import NullJournal, NullRunJournal
 from engine.journal.port import JournalPort, RunJournal, RunOrigin, RunRecord
-from engine.journal.reader import list_runs, read_events, read_origin, read_world
+from engine.journal.reader import find_run, list_runs, read_events, read_origin, read_world
 
 __all__ = [
     "Journal",
@@ -24,6 +24,7 @@ __all__ = [
     "decode_event",
     "encode_event",
     "encode_event_log",
+    "find_run",
     "journal_path",
     "list_runs",
     "read_events",

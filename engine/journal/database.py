@@ -15,7 +15,7 @@ from engine.journal.codec import encode_event
 from engine.journal.port import RunOrigin
 from engine.sqlite_file import advice, open_sqlite
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS run(
     id TEXT PRIMARY KEY, behavior TEXT NOT NULL, hash TEXT NOT NULL, status TEXT NOT NULL,
@@ -25,8 +25,10 @@ CREATE TABLE IF NOT EXISTS event(
     PRIMARY KEY (run, seq)) STRICT, WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS origin(run TEXT PRIMARY KEY, data TEXT NOT NULL) STRICT;
 CREATE TABLE IF NOT EXISTS world(run TEXT PRIMARY KEY, seq INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
+CREATE TABLE IF NOT EXISTS driver(run TEXT PRIMARY KEY, engine TEXT NOT NULL) STRICT;
 """
 _INSERT_EVENT = "INSERT INTO event(run, seq, time_s, epoch, data) VALUES (?, ?, ?, ?, ?)"
+_SET_DRIVER = "INSERT OR REPLACE INTO driver(run, engine) VALUES (?, ?)"
 
 
 class RunRefused(JournalError):
@@ -50,9 +52,16 @@ class JournalDatabase:
         return cls(path, connection)
 
     def insert_run(
-        self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None
+        self,
+        run_id: str,
+        *,
+        behavior: str,
+        document: str,
+        started_unix_s: float,
+        origin: RunOrigin | None,
+        engine: str,
     ) -> int:
-        """Store a new run as running; return its epoch."""
+        """Store a new run as running, driven by `engine`; return its epoch."""
         try:
             self._connection.execute("BEGIN IMMEDIATE")
             self._connection.execute(
@@ -62,6 +71,7 @@ class JournalDatabase:
             if origin is not None:
                 text = msgspec.json.encode(origin).decode()
                 self._connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
+            self._connection.execute(_SET_DRIVER, (run_id, engine))
             self._connection.execute("COMMIT")
         except sqlite3.IntegrityError as error:
             raise JournalError(f"run {run_id} is there already", where=self.path, hint="resume it") from error
@@ -72,14 +82,21 @@ class JournalDatabase:
                 self._connection.rollback()
         return 1
 
-    def take_over_run(self, run_id: str) -> int:
+    def take_over_run(self, run_id: str, *, engine: str) -> int:
         """Make this engine the only one that may write to the run; return the new epoch."""
         try:
+            self._connection.execute("BEGIN IMMEDIATE")
             row = self._connection.execute(
                 "UPDATE run SET epoch = epoch + 1, status = 'running' WHERE id = ? RETURNING epoch", (run_id,)
             ).fetchone()
+            if row is not None:
+                self._connection.execute(_SET_DRIVER, (run_id, engine))
+            self._connection.execute("COMMIT")
         except sqlite3.Error as error:
             raise journal_fault("cannot be written", self.path, error) from error
+        finally:
+            if self._connection.in_transaction:
+                self._connection.rollback()
         if row is None:
             raise JournalError(f"there is no run {run_id}", where=self.path, hint="`flexcell runs` lists them")
         return int(row[0])

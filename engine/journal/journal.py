@@ -10,8 +10,9 @@ from typing import Self
 from engine.errors import JournalError
 from engine.event import Event
 from engine.journal.batch import WorldState
-from engine.journal.database import JournalDatabase
+from engine.journal.database import JournalDatabase, journal_fault
 from engine.journal.port import RunOrigin
+from engine.journal.presence import Presence
 from engine.journal.writer import WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
 
 JOURNAL_FILE = "journal.db"
@@ -42,11 +43,15 @@ class SqliteRunJournal:
         return self._ledger.epoch
 
     def append(self, event: Event) -> None:
-        """Take an event; it is encoded and written by the next commit of any run."""
+        """Take an event; it is encoded and written by the next commit of any run, or after a moment."""
         self._ledger.appended += 1
         self._ledger.last_seq = event.seq
-        self._queue.append((self._ledger, event))
-        if len(self._queue) >= WAKE_AT_EVENTS:
+        queue = self._queue
+        queue.append((self._ledger, event))
+        waiting = len(queue)
+        if waiting == 1:
+            self._writer.wake_soon()
+        elif waiting >= WAKE_AT_EVENTS:
             self._writer.wake()
 
     def keep_world(self, state: bytes) -> None:
@@ -82,10 +87,11 @@ class SqliteRunJournal:
 class Journal:
     """All runs journaled in one file; open it with `Journal.open`, close it or use `with`."""
 
-    def __init__(self, database: JournalDatabase, writer: GroupWriter) -> None:
+    def __init__(self, database: JournalDatabase, writer: GroupWriter, presence: Presence) -> None:
         self.path = database.path
         self._database = database
         self._writer = writer
+        self._presence = presence
         self._closed = False
 
     @classmethod
@@ -102,10 +108,15 @@ class Journal:
             JournalError: the file cannot be opened.
         """
         database = JournalDatabase.open(journal_path(place), busy_timeout_s=busy_timeout_s)
+        try:
+            presence = Presence.open(database.path)
+        except OSError as error:
+            database.close()
+            raise journal_fault("cannot be opened", database.path, error) from error
         writer = GroupWriter(database)
         if not inline:
             writer.start()
-        return cls(database, writer)
+        return cls(database, writer, presence)
 
     def begin(
         self, run_id: str, *, behavior: str, document: str, started_unix_s: float, origin: RunOrigin | None = None
@@ -118,7 +129,12 @@ class Journal:
         self._refuse_unusable()
         with self._writer.lock:
             epoch = self._database.insert_run(
-                run_id, behavior=behavior, document=document, started_unix_s=started_unix_s, origin=origin
+                run_id,
+                behavior=behavior,
+                document=document,
+                started_unix_s=started_unix_s,
+                origin=origin,
+                engine=self._presence.engine,
             )
         return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
 
@@ -130,7 +146,7 @@ class Journal:
         """
         self._refuse_unusable()
         with self._writer.lock:
-            epoch = self._database.take_over_run(run_id)
+            epoch = self._database.take_over_run(run_id, engine=self._presence.engine)
         return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
 
     def close(self) -> None:
@@ -147,6 +163,7 @@ class Journal:
             self._writer.stop()
         finally:
             self._database.close()
+            self._presence.close()
         failure = self._writer.failure
         self._writer.failure = failure or JournalError("the journal is closed", where=self.path, hint="open it again")
         if failure is not None and failure is not known:

@@ -13,7 +13,8 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     """One run as the journal knows it.
 
     `status` is running, or as `RunEnded` gave it: finished, stopped, errored. A run still
-    `running` after a crash can be resumed. `epoch` counts the engines that have driven it.
+    `running` that no process drives was interrupted and can be resumed. `epoch` counts the engines
+    that have driven it.
     """
 
     id: str
@@ -23,15 +24,32 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     epoch: int
     started_unix_s: float
     last_seq: int
+    driver: int | None = None
+    """The process that drives it now, None when none does."""
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether the engine that drove it has died before its end."""
+        return self.status == "running" and self.driver is None
 
 
 class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """How a run was started, for whoever resumes it; paths are absolute."""
+    """How a run was started, for whoever resumes it; paths are absolute.
+
+    `documents` holds the texts of the behavior and of all it refers to by relative path, and
+    `document` says which of them is the behavior: files change while runs are interrupted.
+    `seed` is that of the cell, `run_seed` that of the run.
+    """
 
     behavior: str
+    document: str = ""
+    documents: dict[str, str] = {}
+    parameters: dict[str, object] = {}
+    inputs: dict[str, object] = {}
     cell: str | None = None
     store: str | None = None
     seed: int | None = None
+    run_seed: int = 0
     clock: str = "real"
     autonomy: str = "full"
     demand_operator: bool = False
@@ -51,7 +69,7 @@ class RunJournal(Protocol):
         ...
 
     def append(self, event: Event) -> None:
-        """Take an event; nothing is written before the next commit. Never fails, never waits.
+        """Take an event; it is on the disk after the next commit, or sooner. Never fails, never waits.
 
         The event and what it holds must not be changed afterwards. A `RunEnded` also sets the
         status of the run.

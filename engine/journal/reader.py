@@ -16,13 +16,16 @@ from engine.journal.codec import decode_event
 from engine.journal.database import journal_fault
 from engine.journal.journal import journal_path
 from engine.journal.port import RunOrigin, RunRecord
+from engine.journal.presence import living_engines
 from engine.nearness import near_names
 from engine.sqlite_file import read_sqlite
 
 _RUNS = """
 SELECT id, behavior, hash, status, epoch, started,
-       coalesce((SELECT max(seq) FROM event WHERE event.run = run.id), 0) FROM run ORDER BY started, rowid
+       coalesce((SELECT max(seq) FROM event WHERE event.run = run.id), 0), {driver} FROM run ORDER BY started, rowid
 """
+_DRIVER = "(SELECT engine FROM driver WHERE driver.run = run.id)"
+_DRIVER_SINCE_VERSION = 3
 
 
 def list_runs(place: Path | str) -> tuple[RunRecord, ...]:
@@ -32,6 +35,7 @@ def list_runs(place: Path | str) -> tuple[RunRecord, ...]:
         JournalError: there is no journal, or it cannot be read.
     """
     with _reading(place) as connection:
+        living = living_engines(journal_path(place))
         return tuple(
             RunRecord(
                 id=str(run),
@@ -41,9 +45,22 @@ def list_runs(place: Path | str) -> tuple[RunRecord, ...]:
                 epoch=int(epoch),
                 started_unix_s=float(started),
                 last_seq=int(last),
+                driver=living.get(str(engine)) if status == "running" else None,
             )
-            for run, behavior, document, status, epoch, started, last in connection.execute(_RUNS)
+            for run, behavior, document, status, epoch, started, last, engine in connection.execute(_runs(connection))
         )
+
+
+def find_run(place: Path | str, run_id: str) -> RunRecord:
+    """Return one run.
+
+    Raises:
+        JournalError: there is no such journal or run.
+    """
+    runs = {record.id: record for record in list_runs(place)}
+    if run_id not in runs:
+        raise JournalError(f"there is no run {run_id}", where=journal_path(place), hint=near_names(run_id, runs))
+    return runs[run_id]
 
 
 def read_events(place: Path | str, run_id: str) -> tuple[AnyEvent, ...]:
@@ -85,6 +102,12 @@ def read_world(place: Path | str, run_id: str) -> WorldState | None:
     with _reading(place) as connection:
         row = connection.execute("SELECT seq, data FROM world WHERE run = ?", (run_id,)).fetchone()
     return WorldState(int(row[0]), bytes(row[1])) if row is not None else None
+
+
+def _runs(connection: sqlite3.Connection) -> str:
+    """Return the query; a journal that only older versions have written knows no engines."""
+    version = int(connection.execute("PRAGMA user_version").fetchone()[0])
+    return _RUNS.format(driver=_DRIVER if version >= _DRIVER_SINCE_VERSION else "NULL")
 
 
 @contextmanager

@@ -15,6 +15,8 @@ from engine.journal.database import JournalDatabase, RunRefused
 
 WAKE_AT_EVENTS = 4096
 """So many uncommitted events wake the writer by themselves, which bounds the memory they take."""
+WAKE_AFTER_S = 0.25
+"""So long after the first of them it is woken too: a run that only waits has no effect that is due a commit."""
 
 
 @dataclass(eq=False)
@@ -96,6 +98,16 @@ class GroupWriter:
     def wake(self) -> None:
         """Tell the thread that somebody waits."""
         self._wake.set()
+
+    def wake_soon(self) -> None:
+        """Tell the thread, after a while, that something is there; called on an event loop."""
+        if self._thread is None:
+            return
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:
+            return  # nobody runs: what is there is written at the end
+        loop.call_later(WAKE_AFTER_S, self._wake.set)
 
     def stop(self) -> None:
         """Write what is left and end the thread."""

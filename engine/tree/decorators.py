@@ -17,6 +17,7 @@ from engine.cause import cause_of
 from engine.errors import FlexcellError, JournalError, NotStopped
 from engine.event import Cause
 from engine.tree.alarms import Alarms
+from engine.tree.history import Standing
 
 WHERE_NOTHING_WAKES_S = 0.1
 """How often a part is ticked by default that is RUNNING while nothing that could wake it runs below."""
@@ -48,6 +49,11 @@ class Timeout(Decorator):
     def terminate(self, new_status: Status) -> None:
         """Count no longer."""
         self._alarms.drop(self.name)
+
+    def restore(self, standing: Standing, elapsed_s: float) -> None:
+        """Go on counting."""
+        if standing.status == "running":
+            self._alarms.set(self.name, max(0.0, self._after_s - elapsed_s))
 
 
 class Cooldown(Decorator):
@@ -81,6 +87,13 @@ class Cooldown(Decorator):
         if self._busy:
             self._busy = False
             self._alarms.set(self.name, self._after_s)
+
+    def restore(self, standing: Standing, elapsed_s: float) -> None:
+        """Go on cooling down, where it had ended less than its time ago."""
+        self._busy = standing.status == "running"
+        left_s = self._after_s - elapsed_s
+        if not self._busy and left_s > 0 and (standing.first is not None or standing.ended_s is not None):
+            self._alarms.set(self.name, left_s)
 
 
 class Guard(Decorator):
@@ -125,15 +138,19 @@ class Guard(Decorator):
 class Repeat(decorators.Repeat):
     """py_trees' Repeat, which has the tree ticked again at once where py_trees waits for a next tick."""
 
-    def __init__(self, path: str, child: Behaviour, times: int, alarms: Alarms) -> None:
+    def __init__(
+        self, path: str, child: Behaviour, times: int, alarms: Alarms, tell: Callable[[Behaviour], None]
+    ) -> None:
         super().__init__(path, child, times)
         self._alarms = alarms
+        self._tell = tell
 
     def update(self) -> Status:
         """Count, and go on at once."""
         status = super().update()
         if status is Status.RUNNING and self.decorated.status is Status.SUCCESS:
             self._alarms.call_again(self.name)
+            self._tell(self)
         return status
 
     def terminate(self, new_status: Status) -> None:
@@ -216,6 +233,14 @@ class Retry(Decorator):
         """Wait no longer."""
         self._alarms.drop(self.name)
 
+    def restore(self, standing: Standing, elapsed_s: float) -> None:
+        """Go on with the attempt, or with the wait before it."""
+        if standing.status == "running":
+            self.attempt = standing.attempt
+            left_s = self._backoff_s * 2 ** (self.attempt - 2) - elapsed_s
+            if self.attempt > 1 and self.decorated.status is not Status.RUNNING and left_s > 0:
+                self._alarms.set(self.name, left_s)
+
     def _try_again(self, error: Cause | None) -> None:
         wait_s = self._backoff_s * 2 ** (self.attempt - 1)
         self.attempt += 1
@@ -235,14 +260,14 @@ class Remap(Decorator):
         super().__init__(path, child)
         self.refusal = ""
         """Why it failed of itself."""
-        self._shown = shown
+        self.shown = shown
         self._every_s = every_s
         self._alarms = alarms
 
     def update(self) -> Status:
         """Show what is to be shown."""
         actual = self.decorated.status
-        shown = self._shown[actual]
+        shown = self.shown[actual]
         self.refusal = ""
         if shown is not actual and shown is Status.FAILURE:
             self.refusal = f"{actual.value} counts as FAILURE"
@@ -252,6 +277,11 @@ class Remap(Decorator):
     def terminate(self, new_status: Status) -> None:
         """Be ticked no longer."""
         self._alarms.drop(self.name)
+
+    def restore(self, standing: Standing, elapsed_s: float) -> None:
+        """Be ticked again from time to time if need be."""
+        hidden = standing.status == "running" and self.decorated.status is not Status.RUNNING
+        _wake_up(self._alarms, self.name, self._every_s, hidden=hidden)
 
 
 class Condition(decorators.Condition):
@@ -272,6 +302,11 @@ class Condition(decorators.Condition):
     def terminate(self, new_status: Status) -> None:
         """Be ticked no longer."""
         self._alarms.drop(self.name)
+
+    def restore(self, standing: Standing, elapsed_s: float) -> None:
+        """Be ticked again from time to time if need be."""
+        hidden = standing.status == "running" and self.decorated.status is not Status.RUNNING
+        _wake_up(self._alarms, self.name, self._every_s, hidden=hidden)
 
 
 def _wake_up(alarms: Alarms, path: str, every_s: float, *, hidden: bool) -> None:

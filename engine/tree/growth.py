@@ -69,11 +69,12 @@ class Growth:
         """
         if part.leaf is not None:
             self._rank += 1
-            node: Behaviour = TreeLeaf(part.leaf, place, self.leaves, self.turn, rank=self._rank, caught=caught)
-            self.parts[node] = part
-            return node
+            rank = self._rank
+            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank=rank, caught=caught)
+            self.parts[leaf] = part
+            return leaf
         if part.foreign is not None:
-            node = self._foreign(part, place)
+            node: Behaviour = self._foreign(part, place)
         elif part.source.parallel is not None:
             node = self._parallel(part, place, caught)
         elif part.source.kind in ("sequence", "selector"):
@@ -133,7 +134,7 @@ class Growth:
             case nodes.Node(one_shot=nodes.OneShot() as shot):
                 return decorators.OneShot(path, child, _ONE_SHOT[shot.policy])
             case nodes.Node(repeat=nodes.Repeat() as repeat):
-                return Repeat(path, child, repeat.times, alarms)
+                return Repeat(path, child, repeat.times, alarms, self.statuses.repeat)
             case nodes.Node(cooldown=nodes.Cooldown() as cooldown):
                 return Cooldown(path, child, cooldown.after_s, alarms)
             case nodes.Node(remap=nodes.Remap() as remap):

@@ -11,6 +11,7 @@ from engine.node import Left
 from engine.tree.leaves import Activation, Leaves
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
+from engine.tree.statuses import Statuses
 
 
 class Turn(Behaviour):
@@ -33,11 +34,22 @@ class TreeLeaf(Behaviour):
         place: Where it reads and writes.
         leaves: Those that are active in this tree.
         turn: What the tick yields to have a check begin.
+        statuses: Told when it has ended, and when it is halted or an end of it counts no more.
         rank: Its place in the document.
         caught: Whether a decorator around it takes its errors.
     """
 
-    def __init__(self, plan: LeafPlan, place: Place, leaves: Leaves, turn: Turn, *, rank: int, caught: bool) -> None:
+    def __init__(
+        self,
+        plan: LeafPlan,
+        place: Place,
+        leaves: Leaves,
+        turn: Turn,
+        statuses: Statuses,
+        *,
+        rank: int,
+        caught: bool,
+    ) -> None:
         super().__init__(plan.node.name)
         self.plan = plan
         self.left: Left | None = None
@@ -45,9 +57,12 @@ class TreeLeaf(Behaviour):
         self._place = place
         self._leaves = leaves
         self._turn = turn
+        self._statuses = statuses
         self._rank = rank
         self._caught = caught
         self._activation: Activation | None = None
+        self._counted = False
+        """Whether an earlier end counted when the present activation was asked for."""
 
     def tick(self) -> Iterator[Behaviour]:
         """Begin when it is not active, then tell how it stands."""
@@ -55,6 +70,7 @@ class TreeLeaf(Behaviour):
         if activation is None:
             activation = Activation(self.plan, self._place, rank=self._rank, caught=self._caught)
             self._activation = activation
+            self._counted = self.status is not Status.INVALID
             self._leaves.ask(activation)
             if self.plan.check:
                 self._turn.check = activation
@@ -68,6 +84,7 @@ class TreeLeaf(Behaviour):
             self._activation = None
             self.left = left
             self.status = self._status(left)
+            self._statuses.end(self)
         yield self
 
     def update(self) -> Status:
@@ -76,10 +93,27 @@ class TreeLeaf(Behaviour):
 
     def stop(self, new_status: Status) -> None:
         """Halt it if it is active."""
-        if self._activation is not None:
-            self._leaves.halt(self._activation)
-            self._activation = None
+        activation, self._activation = self._activation, None
+        if activation is None:
+            counted = self.status is not Status.INVALID
+        else:
+            self._leaves.halt(activation)
+            # One that never began has told nothing; what it had told before still counts.
+            counted = activation.task is not None or self._counted
+        if counted:
+            self._statuses.reset(self.plan.node.path)
         self.status = new_status
+
+    def go_on(self) -> None:
+        """Be at work again, without a tick, in place of an activation that was cut."""
+        self._activation = Activation(self.plan, self._place, rank=self._rank, caught=self._caught)
+        self._leaves.ask(self._activation)
+        self.status = Status.RUNNING
+
+    def restore(self, left: Left) -> None:
+        """Have ended so, in an activation that was read before."""
+        self.left = left
+        self.status = self._status(left)
 
     def _status(self, left: Left) -> Status:
         succeeded = left.target == "success" if left.target is not None else left.outcome in self.plan.success

@@ -56,12 +56,17 @@ class Activation:
         Raises:
             FlexcellError: it ended with this error.
         """
-        return self.task.result() if self.task is not None and self.task.done() else None
+        return self.task.result() if self.task is not None and self.ended else None
+
+    @property
+    def ended(self) -> bool:
+        """Whether it has ended, be it with an error."""
+        return self.task is not None and self.task.done()
 
     @property
     def error(self) -> BaseException | None:
         """The error it ended with, if any."""
-        if self.task is None or not self.task.done() or self.task.cancelled():
+        if self.task is None or not self.ended or self.task.cancelled():
             return None
         return self.task.exception()
 
@@ -109,7 +114,7 @@ class Leaves:
         Raises:
             FlexcellError: it ended with this error.
         """
-        if activation.task is None or not activation.task.done():
+        if not activation.ended:
             return None
         self._running.discard(activation)
         self._unread.discard(activation)
@@ -125,8 +130,7 @@ class Leaves:
             return
         self._running.discard(activation)
         self._unread.discard(activation)
-        ended = activation.task is not None and activation.task.done()
-        if not ended or (activation.error is not None and not activation.caught):
+        if not activation.ended or (activation.error is not None and not activation.caught):
             self._halted.append(activation)
 
     def forget(self, seen: Iterable[Activation]) -> None:
@@ -154,6 +158,16 @@ class Leaves:
         asked, self._asked = self._asked, []
         for activation in asked:
             self._start(activation)
+
+    async def go_on(self) -> None:
+        """Begin what is asked for in place of activations that were cut; a check may have been in mid-tick."""
+        for activation in tuple(self._asked):
+            if not activation.plan.check:
+                continue
+            await self.probe(activation)
+            if activation.ended:
+                self._unread.add(activation)
+        await self.begin()
 
     async def probe(self, activation: Activation) -> None:
         """Begin a check at once and return when it has ended, or waits for something."""

@@ -45,6 +45,12 @@ class Parallel(composites.Parallel):
         for name, place in self._places.items():
             place.scope = branch_scope(self.name, name, self._outside.scope, {})
 
+    def restore(self, written: Mapping[str, Mapping[str, object]]) -> None:
+        """Give each branch the scope it had, by the path of the branch."""
+        for name, place in self._places.items():
+            values = written.get(f"{self.name}/{name}", {})
+            place.scope = branch_scope(self.name, name, self._outside.scope, values)
+
     def terminate(self, new_status: Status) -> None:
         """Merge what was written, unless the parallel was halted."""
         if new_status is not Status.INVALID:

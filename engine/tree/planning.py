@@ -16,7 +16,6 @@ from engine.errors import DocumentError, ExpressionError
 from engine.leaf import Leaf
 from engine.nearness import near_names
 from engine.node import Node
-from engine.state import State
 from engine.tree.arguments import takes_name, wrong_arguments
 from engine.tree.part import ForeignPlan, LeafPlan, Part
 from engine.tree.tree import Tree
@@ -113,7 +112,7 @@ def _commands(node: Node) -> bool:
     """Tell whether a leaf may command a device, as far as its states declare it."""
     work = node.work
     if isinstance(work, Leaf):
-        return work.state.resources is not State.resources
+        return work.commands_hardware
     if isinstance(work, Tree) and any(part.foreign is not None for part in work.root.walk()):
         return True
     # A priority container holds whatever else is at work.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from py_trees.behaviour import Behaviour
@@ -22,12 +22,15 @@ from engine.tree.blackboard import OwnBlackboard
 from engine.tree.explanation import reason
 from engine.tree.foreign import Foreign
 from engine.tree.growth import Growth
+from engine.tree.history import Mark, standings
 from engine.tree.leaf import TreeLeaf
 from engine.tree.leaves import Activation, Leaves
 from engine.tree.part import Part
 from engine.tree.place import Place
+from engine.tree.restoring import Branches, restore
 from engine.userdata import Scope
 
+_FINAL = (Status.SUCCESS, Status.FAILURE)
 _REMEMBERED = 32
 """How many names are kept to name an endless loop."""
 
@@ -38,12 +41,22 @@ class TreeRunner:
     Args:
         root: The planned tree.
         path: The node that it is the work of.
-        position: Where that stands in its document.
         scope: Where its parts read and write.
         execution: The run.
+        history: What had happened in an activation that was cut, to go on from there; see `mark_of`.
+        branches: What branches of its parallels had written, by the path of the branch.
     """
 
-    def __init__(self, root: Part, *, path: str, scope: Scope, execution: Execution) -> None:
+    def __init__(
+        self,
+        root: Part,
+        *,
+        path: str,
+        scope: Scope,
+        execution: Execution,
+        history: Sequence[Mark] = (),
+        branches: Branches | None = None,
+    ) -> None:
         self.ticks = 0
         """How often the tree was ticked."""
         self._path = path
@@ -59,6 +72,8 @@ class TreeRunner:
         self._written: set[str] = set()
         self._planned = root
         self._place = Place(scope)
+        self._history = history
+        self._branches: Branches = branches or {}
 
     async def run(self) -> Outcome:
         """Tick until the root has ended; everything it has begun has ended then.
@@ -92,19 +107,32 @@ class TreeRunner:
     async def _run(self, root: Behaviour) -> Outcome:
         instants, moment = 0, self._moment()
         try:
-            while True:
+            if self._history:
+                await self._go_on(root)
+            while root.status not in _FINAL:
                 await self._tick(root)
-                if root.status is not Status.RUNNING:
-                    return self._outcome(root)
-                await self._wait()
+                if root.status is Status.INVALID:
+                    raise StateError("the root of the tree has no status", where=self._path)
+                if root.status is Status.RUNNING:
+                    await self._wait()
                 last, moment = moment, self._moment()
                 instants = instants + 1 if moment == last else 0
                 if instants >= self._execution.instant_limit:
                     raise self._endless(instants)
+            return self._outcome(root)
         except BaseException:
             # Whatever it is goes on; nothing in the tree may be left RUNNING.
+            self._growth.statuses.closing = True
             self._clear(root)
             raise
+
+    async def _go_on(self, root: Behaviour) -> None:
+        """Stand where the history ends, and return when there is a reason to tick."""
+        tick_due = restore(root, self._growth, standings(self._history), self._branches)
+        await self._leaves.go_on()
+        self._alarms.begin()
+        if root.status is Status.RUNNING and not tick_due:
+            await self._wait()
 
     def _moment(self) -> float:
         """What is unchanged while no time passes: virtual time itself, else how often something was waited for."""

@@ -1,4 +1,8 @@
-"""Records when the status of a composite, decorator or foreign behaviour of one tree has changed."""
+"""Records when the status of a composite, decorator or foreign behaviour of one tree has changed.
+
+Leaves tell themselves that they were entered and left; of them only `invalid` is recorded, when they
+are halted or reset. With that the log holds what `engine.tree.history` needs to go on from there.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +23,10 @@ class Statuses:
         self._recorder = execution.recorder
         self._paths: dict[Behaviour, str] = {}
         self._recorded: dict[Behaviour, Status] = {}
+        self._ended_below: set[Behaviour] = set()
+        """Those below which something has ended since their own status was recorded."""
+        self.closing = False
+        """Whether the tree comes to an end without a status: then only what was RUNNING is told."""
 
     def follow(self, behaviour: Behaviour, path: str) -> None:
         """Record the changes of a behaviour from now on."""
@@ -27,24 +35,56 @@ class Statuses:
         # py_trees yields what it has ticked but not what it has halted; this is where it tells that.
         vars(behaviour)["terminate"] = partial(self._terminate, behaviour, behaviour.terminate)
 
+    def take(self, behaviour: Behaviour) -> None:
+        """Count the present status as recorded."""
+        self._recorded[behaviour] = behaviour.status
+
+    def repeat(self, behaviour: Behaviour) -> None:
+        """Record that one that is RUNNING begins a further round."""
+        if self._recorded[behaviour] is not Status.RUNNING:
+            self._record(behaviour, Status.RUNNING)
+        self._record(behaviour, Status.RUNNING)
+
+    def end(self, behaviour: Behaviour) -> None:
+        """Take note that a leaf or part has ended: what ends with it is recorded, also with the status it had."""
+        above = behaviour.parent
+        while above is not None:
+            self._ended_below.add(above)
+            above = above.parent
+
+    def reset(self, path: str) -> None:
+        """Record that a leaf is halted, or that its end counts no more as what is around it begins anew."""
+        if not self.closing:
+            self._tell(path, Status.INVALID)
+
     def note(self, behaviour: Behaviour) -> None:
-        """Record the status of one that was just ticked, if it has changed."""
-        if self._recorded.get(behaviour, behaviour.status) is not behaviour.status:
-            self._record(behaviour, behaviour.status)
+        """Record the status of one that was just ticked, if it has changed, or has come about anew."""
+        status = behaviour.status
+        ended = status is not Status.RUNNING
+        anew = ended and behaviour in self._ended_below
+        if anew or self._recorded.get(behaviour, status) is not status:
+            self._record(behaviour, status)
+            self._ended_below.discard(behaviour)
+            if ended:
+                self.end(behaviour)
 
     def _terminate(self, behaviour: Behaviour, own: Callable[[Status], None], new_status: Status) -> None:
         own(new_status)
-        if new_status is Status.INVALID and self._recorded[behaviour] is not new_status:
+        before = self._recorded[behaviour]
+        if new_status is Status.INVALID and before is not new_status and (before is Status.RUNNING or not self.closing):
             self._record(behaviour, new_status)
 
     def _record(self, behaviour: Behaviour, status: Status) -> None:
         self._recorded[behaviour] = status
+        self._tell(self._paths[behaviour], status)
+
+    def _tell(self, path: str, status: Status) -> None:
         recorder = self._recorder
         recorder.record(
             StatusChanged(
                 seq=recorder.next_seq(),
                 time_s=recorder.now_s(),
-                path=self._paths[behaviour],
+                path=path,
                 status=status.value.lower(),
             )
         )

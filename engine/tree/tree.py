@@ -10,6 +10,7 @@ from engine.document.node import TREE_OUTCOMES
 from engine.execution import Execution
 from engine.node import NOTHING, Entry, Node
 from engine.state import Outcome
+from engine.tree.history import marks_of
 from engine.tree.part import Part
 from engine.tree.runner import TreeRunner
 from engine.userdata import Scope
@@ -26,14 +27,18 @@ class Tree:
         """The key of this container in documents."""
         return "tree"
 
-    @property
+    @cached_property
     def outcomes(self) -> tuple[str, ...]:
         """The final statuses of its root."""
         return TREE_OUTCOMES
 
-    @cached_property
+    @property
     def children(self) -> Mapping[str, Node]:
         """The leaves, by their path below the tree, in document order."""
+        return self._leaves
+
+    @cached_property
+    def _leaves(self) -> Mapping[str, Node]:
         outside = len(self.root.path) - len(self.root.name)
         return {part.path[outside:]: part.leaf.node for part in self.root.walk() if part.leaf is not None}
 
@@ -42,10 +47,23 @@ class Tree:
         """Success."""
         return frozenset(("success",))
 
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """Nothing: its scope begins empty."""
+        return {}
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the leaves evaluate theirs."""
         return NOTHING
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Tick it to its end."""
-        return await TreeRunner(self.root, path=path, scope=Scope(path, {}, scope), execution=execution).run()
+        """Tick it to its end; from where it stood, if it is gone on with."""
+        point = entry.point
+        runner = TreeRunner(
+            self.root,
+            path=path,
+            scope=Scope(path, point.values if point is not None else {}, scope),
+            execution=execution,
+            history=tuple(marks_of(point.done)) if point is not None else (),
+            branches={f"{path}/{name}": written for name, written in point.branches.items()} if point else {},
+        )
+        return await runner.run()

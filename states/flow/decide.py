@@ -16,6 +16,7 @@ class Decide(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "flow.Decide"
     outcomes: ClassVar[tuple[str, ...]] = ("true", "false")
     success: ClassVar[tuple[str, ...]] = ("true",)
+    instant: ClassVar[bool] = True
 
     when: Annotated[bool, Meta(description="The condition")]
 

@@ -15,6 +15,7 @@ class Log(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "flow.Log"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
     success: ClassVar[tuple[str, ...]] = ("done",)
+    instant: ClassVar[bool] = True
 
     message: Annotated[str, Meta(description="What to say")]
     level: Annotated[Literal["debug", "info", "warning", "error"], Meta(description="How serious it is")] = "info"

@@ -16,9 +16,12 @@ class SetValue(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "flow.SetValue"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
     success: ClassVar[tuple[str, ...]] = ("done",)
+    instant: ClassVar[bool] = True
     outputs: ClassVar[Mapping[str, Any]] = {"value": object}
 
-    value: Annotated[object, Meta(description="Any value, or an expression that gives one")]
+    value: Annotated[
+        object, Meta(description="Any value, or an expression that gives one", extra_json_schema={"output": "value"})
+    ]
 
     async def run(self, ctx: Context) -> Outcome:
         """Write the value."""

@@ -30,6 +30,7 @@ class Grasp(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
     success: ClassVar[tuple[str, ...]] = ("held",)
     outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "width_m": float}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("width_m",)}
 
     gripper: GripperName
     width_m: Width

@@ -26,7 +26,9 @@ NO_OFFSET: Vector3 = (0.0, 0.0, 0.0)
 class EntryTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The value that the named entry has when the state runs."""
 
-    entry: Annotated[str, Meta(min_length=1, description="Name of the entry in the store")]
+    entry: Annotated[
+        str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "joints"})
+    ]
 
 
 JointTarget = EntryTarget | Annotated[tuple[float, ...], Meta(min_length=1)]
@@ -36,7 +38,7 @@ JointTarget = EntryTarget | Annotated[tuple[float, ...], Meta(min_length=1)]
 class PoseTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A pose of the tool centre point, metres and x y z w in `frame`; or the entry of kind `pose` of a name."""
 
-    entry: str = ""
+    entry: Annotated[str, Meta(description="Name of the entry in the store", extra_json_schema={"entry": "pose"})] = ""
     xyz: Vector3 | None = None
     xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
     frame: str = "world"

@@ -20,6 +20,7 @@ class ReadEntry(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("found", "missing")
     success: ClassVar[tuple[str, ...]] = ("found",)
     outputs: ClassVar[Mapping[str, Any]] = {"value": dict[str, object], "revision": int}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"missing": ("value", "revision")}
 
     kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
     name: Annotated[str, Meta(description="Name of the entry")]

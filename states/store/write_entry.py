@@ -24,6 +24,7 @@ class WriteEntry(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("written", "conflict")
     success: ClassVar[tuple[str, ...]] = ("written",)
     outputs: ClassVar[Mapping[str, Any]] = {"revision": int}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"conflict": ("revision",)}
 
     kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
     name: Annotated[str, Meta(description="Name of the entry")]

@@ -8,8 +8,10 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from editor_web.operation import Attached, InterruptedRun
 from engine.bus.access import BusAccess
-from engine.errors import FlexcellError
+from engine.control import Control
+from engine.errors import ControlError, FlexcellError
 from engine.event import (
     Cause,
     Entered,
@@ -23,7 +25,10 @@ from engine.event import (
     StopRequested,
     Transitioned,
 )
+from engine.hot_change import ChangeReport
+from engine.launch import Moment
 from engine.messages import FramePoses, Quaternion, SceneDescription, Vector3, VisualGeometry
+from engine.supervision import Supervision
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -338,7 +343,17 @@ class FakeBackend:
             raise FlexcellError(f"no run {run_id!r}")
         return self._runs[run_id]
 
-    async def start(self, behavior_id: str, *, parameters: Mapping[str, object], seed: int) -> str:
+    async def start(
+        self,
+        behavior_id: str,
+        *,
+        parameters: Mapping[str, object],
+        seed: int,
+        inputs: Mapping[str, object] | None = None,
+        supervision: Supervision | None = None,
+        breakpoints: bool = False,
+        begin: Moment | None = None,
+    ) -> str:
         behavior = self.behavior(behavior_id)
         if behavior.graph is None:
             raise FlexcellError("the document has errors", where=behavior_id, hint="see its problems")
@@ -377,6 +392,21 @@ class FakeBackend:
         if topic in self._topics:
             callback(self._topics[topic])
         return lambda: callbacks.remove(callback)
+
+    def control(self, run_id: str) -> Control:
+        raise ControlError("this fake has no control", where=run_id)
+
+    def operate(self, run_id: str) -> Attached:
+        raise ControlError("this fake has no control", where=run_id)
+
+    def change(self, run_id: str) -> ChangeReport:
+        raise ControlError("this fake has no control", where=run_id)
+
+    def interrupted(self) -> tuple[InterruptedRun, ...]:
+        return ()
+
+    async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
+        raise ControlError("this fake resumes nothing", where=run_id)
 
     def publish(self, topic: str, message: object) -> None:
         """Publish on a topic."""

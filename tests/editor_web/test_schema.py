@@ -20,6 +20,7 @@ def test_every_field_has_a_type() -> None:
     unknown = [line.strip() for line in typescript().splitlines() if "unknown" in line]
     assert sorted(unknown) == [
         "readonly events: readonly (Readonly<Record<string, unknown>>)[]",
+        "readonly inputs?: Readonly<Record<string, unknown>>",
         "readonly parameters?: Readonly<Record<string, unknown>>",
         "readonly schema: Readonly<Record<string, unknown>>",
     ]

@@ -16,11 +16,14 @@ FACES = [
     "engine.check",
     "engine.document",
     "engine.journal",
+    "engine.recording",
+    "engine.replay",
     "engine.store",
+    "engine.testing",
     "states",
 ]
 COMMANDS = [
-    ("run",), ("check",), ("export",), ("serve",), ("schema",), ("states",), ("states", "show"),
+    ("run",), ("check",), ("export",), ("replay",), ("serve",), ("schema",), ("states",), ("states", "show"),
     *(("store", name) for name in ("list", "get", "set", "delete", "export", "import")),
     *(("bus", name) for name in ("list", "echo", "hz", "call", "goal")),
 ]  # fmt: skip

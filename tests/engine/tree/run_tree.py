@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from textwrap import dedent, indent
 
@@ -79,9 +79,16 @@ def run_tree(tree: str, *, head: str = "", stop_at_s: float | None = None, insta
     )
 
 
-def run_plan(plan: Plan, *, stop_at_s: Iterable[float] = (), instant_limit: int = 10_000) -> Told:
-    """Run a plan to its end in virtual time."""
+def run_plan(
+    plan: Plan,
+    *,
+    stop_at_s: Iterable[float] = (),
+    instant_limit: int = 10_000,
+    counts: Mapping[str, int] | None = None,
+) -> Told:
+    """Run a plan to its end in virtual time; `counts` are activations that scripted leaves have behind them."""
     COUNTS.clear()
+    COUNTS.update(counts or {})
     events: list[Event] = []
 
     async def main() -> RunResult:

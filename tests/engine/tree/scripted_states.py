@@ -10,6 +10,8 @@ from tests.engine.fake_states import CATALOGUE as FAKE_STATES
 
 COUNTS: dict[str, int] = {}
 """Activations so far, by path; cleared by `run_tree`."""
+REMAINING: dict[str, float] = {}
+"""For leaves that go on with an activation that was cut: what is left of it, by path."""
 
 
 class Check(State, frozen=True, kw_only=True):
@@ -22,8 +24,10 @@ class Check(State, frozen=True, kw_only=True):
     cleanup_s: float = 0.0
 
     async def run(self, ctx: Context) -> Outcome:
-        count = COUNTS[ctx.path] = COUNTS.get(ctx.path, 0) + 1
+        goes_on = ctx.path in REMAINING
+        count = COUNTS[ctx.path] = COUNTS.get(ctx.path, 0) + (not goes_on)
         duration_s, good = self.script[min(count, len(self.script)) - 1]
+        duration_s = REMAINING.pop(ctx.path, duration_s)
         if duration_s > 0:
             try:
                 await ctx.clock.sleep(duration_s)

@@ -46,19 +46,17 @@ def _renamed(specimen: Specimen, name: str) -> Specimen:
 
 _STATUSES = ["success", "failure", "running"]
 _REMAPS = [(actual, shown) for actual in _STATUSES for shown in _STATUSES if actual != shown]
-_DURATIONS = st.sampled_from([0.0, 0.0, 0.5, 1.0, 2.0])
+_DECORATORS = ["inverter", "one_shot", "repeat", "retry", "timeout", "condition", "remap"]
 
 
 @st.composite
-def leaves(draw: st.DrawFn) -> Specimen:
-    """Draw a leaf."""
-    script = draw(st.lists(st.tuples(_DURATIONS, st.booleans()), min_size=1, max_size=3))
-    return Specimen("leaf", leaf=Leaf(draw(st.booleans()), tuple(script)))
+def _leaf(draw: st.DrawFn, durations: list[float]) -> Specimen:
+    entry = st.tuples(st.sampled_from(durations), st.booleans())
+    return Specimen("leaf", leaf=Leaf(draw(st.booleans()), tuple(draw(st.lists(entry, min_size=1, max_size=3)))))
 
 
 @st.composite
-def groups(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
-    """Draw a composite."""
+def _group(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
     drawn = draw(st.lists(children, min_size=1, max_size=4))
     inside = tuple(_renamed(child, f"n{index}") for index, child in enumerate(drawn))
     kind = draw(st.sampled_from(["sequence", "selector", "parallel"]))
@@ -70,14 +68,12 @@ def groups(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
 
 
 @st.composite
-def decorated(draw: st.DrawFn, child: st.SearchStrategy[Specimen]) -> Specimen:
-    """Draw a decorator that py_trees has too."""
-    kinds = ["inverter", "one_shot", "repeat", "retry", "timeout", "condition", "remap"]
-    kind = draw(st.sampled_from(kinds))
-    return Specimen(kind, kind, None, (_renamed(draw(child), "child"),), _arguments(draw, kind))
+def _decorated(draw: st.DrawFn, child: st.SearchStrategy[Specimen], polling: bool) -> Specimen:
+    kind = draw(st.sampled_from(_DECORATORS if polling else [each for each in _DECORATORS if each != "condition"]))
+    return Specimen(kind, kind, None, (_renamed(draw(child), "child"),), _arguments(draw, kind, polling))
 
 
-def _arguments(draw: st.DrawFn, kind: str) -> dict[str, Any]:
+def _arguments(draw: st.DrawFn, kind: str, polling: bool) -> dict[str, Any]:
     match kind:
         case "one_shot":
             return {"policy": draw(st.sampled_from(["completion", "success"]))}
@@ -88,10 +84,15 @@ def _arguments(draw: st.DrawFn, kind: str) -> dict[str, Any]:
         case "condition":
             return {"status": draw(st.sampled_from(_STATUSES)), "every": EVERY_S}
         case "remap":
-            actual, shown = draw(st.sampled_from(_REMAPS))
+            actual, shown = draw(st.sampled_from([pair for pair in _REMAPS if polling or pair[1] != "running"]))
             return {actual: shown, "every": EVERY_S}
         case _:
             return {}
 
 
-specimens = st.recursive(leaves(), lambda inner: groups(inner) | decorated(inner), max_leaves=16)
+def trees(*, durations: list[float], polling: bool = True) -> st.SearchStrategy[Specimen]:
+    """Return random trees whose leaves take these times; without `polling` nothing is asked periodically."""
+    return st.recursive(_leaf(durations), lambda inner: _group(inner) | _decorated(inner, polling), max_leaves=16)
+
+
+specimens = trees(durations=[0.0, 0.0, 0.5, 1.0, 2.0])

@@ -1,5 +1,10 @@
 // Made by `python -m editor_web.schema`; edit the Python models instead.
 
+/** Outcomes that require less than `level` pass by themselves. */
+export interface AutonomyBody {
+  readonly level: "off" | "low" | "high" | "full"
+}
+
 /** One behavior with its form, findings and graph. */
 export interface BehaviorBody {
   readonly id: string
@@ -23,11 +28,44 @@ export interface BehaviorSummaryBody {
   readonly warnings: number
 }
 
+/** Where a run pauses by itself; `path` may hold `*` and `?`, `condition` is an expression over userdata. */
+export interface BreakpointBody {
+  readonly path: string
+  readonly when?: "before" | "after"
+  readonly condition?: string | null
+  readonly hits?: number
+  readonly outcomes?: readonly string[]
+  readonly enabled?: boolean
+}
+
+/** All breakpoints of the run; they replace those before. */
+export interface BreakpointsBody {
+  readonly breakpoints: readonly BreakpointBody[]
+}
+
 /** One link of a cause chain, outermost first. */
 export interface CauseLine {
   readonly message: string
   readonly where: string
   readonly kind: string
+}
+
+/** What a hot change did, a line for each difference. */
+export interface ChangeBody {
+  readonly changes: readonly string[]
+}
+
+/** What an operator sees of a run; `confirmed` once everything that was to be held is at rest. */
+export interface ControlBody {
+  readonly paused: boolean
+  readonly confirmed: boolean
+  readonly cannot: readonly string[]
+  readonly waiting: readonly WaitingBody[]
+  readonly locks: readonly string[]
+  readonly breakpoints: readonly BreakpointBody[]
+  readonly autonomy: "off" | "low" | "high" | "full"
+  readonly operator: string
+  readonly active: readonly string[]
 }
 
 /** What changed in the watched run since `after`, and the runs that changed; `dropped` log lines are missing. */
@@ -68,6 +106,12 @@ export interface FindingBody {
   readonly hint: string
 }
 
+/** End an active or waiting node with an outcome. */
+export interface ForceBody {
+  readonly path: string
+  readonly outcome: string
+}
+
 /** One node of the behavior with everything inside it. */
 export interface GraphNodeBody {
   readonly path: string
@@ -90,6 +134,14 @@ export interface Hello {
   readonly server_time_s: number
 }
 
+/** A run of the journal whose engine died; `behavior` is the name of what it executed. */
+export interface InterruptedBody {
+  readonly id: string
+  readonly behavior: string
+  readonly started_at_s: number
+  readonly last_seq: number
+}
+
 /** One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag. */
 export interface LogLine {
   readonly seq: number
@@ -101,6 +153,18 @@ export interface LogLine {
   readonly causes: readonly CauseLine[]
 }
 
+/** An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise. */
+export interface MomentBody {
+  readonly run: string
+  readonly seq: number
+  readonly path?: string | null
+}
+
+/** The node that a command is about. */
+export interface NodeBody {
+  readonly path: string
+}
+
 /** One node: idle, active, done, failed or stopped. `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine took last, as `source|outcome`. */
 export interface NodeLive {
   readonly status: string
@@ -110,6 +174,12 @@ export interface NodeLive {
   readonly duration_s: number
   readonly cause: string
   readonly followed: string
+}
+
+/** From the client: I operate this run from now on (empty: none); losing the connection is losing the operator. */
+export interface Operate {
+  readonly k: "operate"
+  readonly run?: string
 }
 
 /** One value that is set per run, with the JSON Schema of its field. */
@@ -128,6 +198,12 @@ export interface Ping {
 /** From the client: answer to a ping. */
 export interface Pong {
   readonly k: "pong"
+}
+
+/** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
+export interface ResumeBody {
+  readonly answers?: Readonly<Record<string, string>>
+  readonly changed?: boolean
 }
 
 /** One run, under way or over. */
@@ -178,7 +254,10 @@ export interface Snapshot {
 export interface StartBody {
   readonly behavior: string
   readonly parameters?: Readonly<Record<string, unknown>>
+  readonly inputs?: Readonly<Record<string, unknown>>
   readonly seed?: number | null
+  readonly supervision?: SupervisionBody
+  readonly begin?: MomentBody | null
 }
 
 /** The run that was started. */
@@ -186,9 +265,25 @@ export interface StartedBody {
   readonly run: string
 }
 
+/** One step of a paused run, in the branch of `path` where one is given. */
+export interface StepBody {
+  readonly mode?: "into" | "over" | "out"
+  readonly path?: string
+}
+
 /** A request to stop a run; `reason` goes into its event log. */
 export interface StopBody {
   readonly reason?: string
+}
+
+/** How a run is watched over; see `flexcell run --help` for the same options. */
+export interface SupervisionBody {
+  readonly autonomy?: "off" | "low" | "high" | "full"
+  readonly demand_operator?: boolean
+  readonly breakpoints?: boolean
+  readonly start_paused?: boolean
+  readonly loss_policy?: "hold" | "continue" | "stop"
+  readonly loss_timeout_s?: number
 }
 
 /** An arrow inside a machine. */
@@ -196,6 +291,15 @@ export interface TransitionBody {
   readonly source: string
   readonly outcome: string
   readonly target: string
+}
+
+/** A node that waits at the gate: `before` its entry or `after` its outcome, and for what. */
+export interface WaitingBody {
+  readonly path: string
+  readonly visit: number
+  readonly point: "before" | "after"
+  readonly outcome: string
+  readonly reasons: readonly string[]
 }
 
 /** From the client: show this run from now on (empty: the list of runs only); answered by a snapshot. */

@@ -1,0 +1,89 @@
+"""What the dashboard asks of the engine to operate runs: control, operators, hot change, resuming."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from engine.control import Control
+from engine.hot_change import ChangeReport
+
+
+class Attached(Protocol):
+    """One operator of one run."""
+
+    def detach(self) -> None:
+        """Leave on purpose; may be called again."""
+        ...
+
+    def lose(self) -> None:
+        """Tell that this operator cannot be reached any more."""
+        ...
+
+
+class InterruptedRun(Protocol):
+    """A run of the journal whose engine died."""
+
+    @property
+    def id(self) -> str:
+        """The run's id."""
+        ...
+
+    @property
+    def behavior(self) -> str:
+        """The name of its behavior."""
+        ...
+
+    @property
+    def started_unix_s(self) -> float:
+        """Wall time of the start, seconds since 1970."""
+        ...
+
+    @property
+    def last_seq(self) -> int:
+        """The number of its last durable event."""
+        ...
+
+
+class Operation(Protocol):
+    """The part of the backend that changes what runs do."""
+
+    def control(self, run_id: str) -> Control:
+        """Return what an operator can do with a run.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        ...
+
+    def operate(self, run_id: str) -> Attached:
+        """Be an operator of a run from now on.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        ...
+
+    def change(self, run_id: str) -> ChangeReport:
+        """Let the behavior as its file is now take the place of the one that a paused run executes.
+
+        Raises:
+            ControlError: the run cannot go on in the new version; it goes on as it is.
+            FlexcellError: the file has errors.
+        """
+        ...
+
+    def interrupted(self) -> tuple[InterruptedRun, ...]:
+        """Return the runs whose engine died, oldest first."""
+        ...
+
+    async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
+        """Go on with an interrupted run and return its id.
+
+        Raises:
+            ControlError: it cannot go on, or states that were in mid-work ask.
+            FlexcellError: the id names none.
+        """
+        ...

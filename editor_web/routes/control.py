@@ -1,0 +1,145 @@
+"""Operating a run: pause, step, breakpoints, lock, force, repeat, answer, autonomy, hot change, resume."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, HTTPException
+
+from editor_web.control_wire import (
+    AutonomyBody,
+    BreakpointsBody,
+    ChangeBody,
+    ControlBody,
+    ForceBody,
+    InterruptedBody,
+    NodeBody,
+    ResumeBody,
+    StepBody,
+)
+from editor_web.routes.services import ServicesOf
+from editor_web.wire import ErrorBody, StartedBody
+from engine.control import Breakpoint, Control
+from engine.errors import ControlError, FlexcellError
+
+router = APIRouter(
+    prefix="/api/v1/runs",
+    tags=["control"],
+    responses={404: {"model": ErrorBody}, 409: {"model": ErrorBody}},
+)
+interrupted_router = APIRouter(prefix="/api/v1/interrupted", tags=["control"])
+
+
+async def _control_of(run_id: str, services: ServicesOf) -> Control:
+    """Return the control of a run; 404 where there is none, 409 when it is over."""
+    try:
+        return services.backend.control(run_id)
+    except ControlError:
+        raise
+    except FlexcellError as error:
+        raise HTTPException(404, error.message) from error
+
+
+ControlOf = Annotated[Control, Depends(_control_of)]
+
+
+def _seen(control: Control) -> ControlBody:
+    return ControlBody.model_validate(control.view())
+
+
+@router.get("/{run_id}/control")
+async def get_control(control: ControlOf) -> ControlBody:
+    """Return where a run waits, what is locked, and whether it is paused."""
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/pause")
+async def pause(control: ControlOf) -> ControlBody:
+    """Hold every goal and timer; `confirmed` says when everything rests."""
+    control.pause()
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/resume")
+async def resume(control: ControlOf) -> ControlBody:
+    """Let a paused run go on."""
+    control.resume()
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/step")
+async def step(control: ControlOf, body: StepBody) -> ControlBody:
+    """Let a paused run make one step."""
+    control.step(body.mode, body.path)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/lock")
+async def lock(control: ControlOf, body: NodeBody) -> ControlBody:
+    """Hold the outcome of a node."""
+    control.lock(body.path)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/unlock")
+async def unlock(control: ControlOf, body: NodeBody) -> ControlBody:
+    """Let the outcome of a locked node pass."""
+    control.unlock(body.path)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/force")
+async def force(control: ControlOf, body: ForceBody) -> ControlBody:
+    """End a node with an outcome; what runs in it is preempted."""
+    control.force(body.path, body.outcome)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/repeat")
+async def repeat(control: ControlOf, body: NodeBody) -> ControlBody:
+    """Run a node again; what runs in it is preempted first."""
+    control.repeat(body.path)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/answer")
+async def answer(control: ControlOf, body: NodeBody) -> ControlBody:
+    """Agree to the outcome that a node has requested."""
+    control.answer(body.path)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/autonomy")
+async def set_autonomy(control: ControlOf, body: AutonomyBody) -> ControlBody:
+    """Set which outcomes pass without being asked for."""
+    control.set_autonomy(body.level)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/breakpoints")
+async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlBody:
+    """Replace all breakpoints of a run."""
+    made = [Breakpoint(**each.model_dump()) for each in body.breakpoints]
+    for each in made:
+        _ = each.template  # an expression that does not compile is refused before anything changes
+    control.set_breakpoints(made)
+    return _seen(control)
+
+
+@router.post("/{run_id}/control/change")
+async def change(run_id: str, control: ControlOf, services: ServicesOf) -> ChangeBody:
+    """Let the behavior as its file is now take the place of the one that a paused run executes."""
+    del control
+    return ChangeBody.model_validate(services.backend.change(run_id))
+
+
+@interrupted_router.get("")
+async def list_interrupted(services: ServicesOf) -> list[InterruptedBody]:
+    """List the runs of the journal whose engine died, oldest first."""
+    return [InterruptedBody.model_validate(run) for run in services.backend.interrupted()]
+
+
+@interrupted_router.post("/{run_id}/resume", status_code=201, responses={409: {"model": ErrorBody}})
+async def resume_interrupted(run_id: str, body: ResumeBody, services: ServicesOf) -> StartedBody:
+    """Go on with an interrupted run; 409 says which states that were in mid-work need an answer."""
+    return StartedBody(run=await services.backend.resume(run_id, answers=body.answers, changed=body.changed))

@@ -1,0 +1,79 @@
+"""Behaviors in Python: typed functions that make the same frozen documents as YAML.
+
+    from engine.authoring import Timeout, behavior, machine, parameter, state
+    from states.flow.wait import Wait
+
+    pause = parameter("pause", float, default=0.5, unit="s")
+    rest = behavior(
+        "rest",
+        outcomes=["rested"],
+        parameters=[pause],
+        root=machine(
+            initial="wait", states={"wait": state(Wait(duration_s=pause.value), transitions={"done": "rested"})}
+        ),
+    )
+
+What comes out is an `engine.document.Behavior`: check it, plan it, run it, write it with `to_yaml`.
+"""
+
+from engine.authoring.behavior import behavior
+from engine.authoring.container import concurrency, foreach, machine, priority, tree
+from engine.authoring.export import is_made_in_python, to_yaml, write_behavior
+from engine.authoring.expression import Param, expr
+from engine.authoring.leaf import behaviour, reference, state
+from engine.authoring.parameter import parameter
+from engine.authoring.python_file import load_python_behavior
+from engine.authoring.step import PartKeys, Step, StepKeys, TreePart
+from engine.authoring.tree_part import (
+    condition,
+    cooldown,
+    guard,
+    inverter,
+    one_shot,
+    parallel,
+    remap,
+    repeat,
+    retry,
+    selector,
+    sequence,
+    timeout,
+)
+from engine.document.node import Guard, Retry, Timeout
+
+__all__ = [
+    "Guard",
+    "Param",
+    "PartKeys",
+    "Retry",
+    "Step",
+    "StepKeys",
+    "Timeout",
+    "TreePart",
+    "behavior",
+    "behaviour",
+    "concurrency",
+    "condition",
+    "cooldown",
+    "expr",
+    "foreach",
+    "guard",
+    "inverter",
+    "is_made_in_python",
+    "load_python_behavior",
+    "machine",
+    "one_shot",
+    "parallel",
+    "parameter",
+    "priority",
+    "reference",
+    "remap",
+    "repeat",
+    "retry",
+    "selector",
+    "sequence",
+    "state",
+    "timeout",
+    "to_yaml",
+    "tree",
+    "write_behavior",
+]

@@ -1,0 +1,102 @@
+"""Finds a behavior that a Python file makes, named as `FILE.py` or `FILE.py:NAME`."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import ModuleType
+
+from engine.cause import cause_of, describe
+from engine.document.behavior import Behavior
+from engine.errors import DocumentError, FlexcellError, Position
+from engine.nearness import near_names
+
+
+def is_python_name(name: str) -> bool:
+    """Tell whether a name given for a behavior is that of a Python file."""
+    return name.endswith(".py") or ".py:" in name
+
+
+def load_python_behavior(name: str) -> Behavior:
+    """Run a Python file and return the behavior under a name at its top level.
+
+    The file runs as a module named after it, with its folder importable, so that behaviors can
+    name state classes that stand in it.
+
+    Args:
+        name: `FILE.py:NAME`; without `:NAME` the only behavior that the file makes.
+
+    Raises:
+        DocumentError: the file cannot be run, or has no such behavior; names the line.
+    """
+    path, _, wanted = name.partition(".py:")
+    file = Path(path if path.endswith(".py") else f"{path}.py")
+    start = Position(file=str(file), line=1, column=1)
+    if not file.is_file():
+        raise DocumentError("there is no such file", where=start, hint="check its path")
+    found = {key: value for key, value in vars(_module(file, start)).items() if isinstance(value, Behavior)}
+    if wanted in found:
+        return found[wanted]
+    if wanted:
+        hint = near_names(wanted, found)
+        raise DocumentError(f"this file makes no behavior named `{wanted}`", where=start, hint=hint)
+    if len(found) != 1:
+        names = ", ".join(found) or "none"
+        raise DocumentError(f"this file makes {names}", where=start, hint=f"name one: {file.name}:NAME")
+    return next(iter(found.values()))
+
+
+def _module(file: Path, start: Position) -> ModuleType:
+    known = sys.modules.get(file.stem)
+    if known is not None:
+        if _is_of(known, file):
+            return known
+        hint = "rename the file"
+        raise DocumentError(f"another module named `{file.stem}` is loaded already", where=start, hint=hint)
+    # A loader of its own keeps the path as given in the positions of nodes.
+    loader = SourceFileLoader(file.stem, str(file))
+    module = ModuleType(file.stem)
+    module.__file__ = str(file)
+    with _importable(file):
+        sys.modules[file.stem] = module
+        try:
+            loader.exec_module(module)
+        except DocumentError:
+            del sys.modules[file.stem]
+            raise
+        except FlexcellError as error:
+            del sys.modules[file.stem]
+            where = error.where if isinstance(error.where, Position) else _raised_at(error, file)
+            raise DocumentError(error.message, where=where, hint=error.hint) from error
+        except Exception as error:
+            # The user's file may raise anything; what matters is which of its lines did.
+            del sys.modules[file.stem]
+            raise DocumentError(describe(cause_of(error)), where=_raised_at(error, file)) from error
+    return module
+
+
+@contextmanager
+def _importable(file: Path) -> Generator[None]:
+    folder = str(file.resolve().parent)
+    sys.path.insert(0, folder)
+    try:
+        yield
+    finally:
+        with suppress(ValueError):
+            sys.path.remove(folder)
+
+
+def _is_of(module: ModuleType, file: Path) -> bool:
+    return module.__file__ is not None and Path(module.__file__).resolve() == file.resolve()
+
+
+def _raised_at(error: Exception, file: Path) -> Position:
+    """Return the line of the file that led to the error."""
+    if isinstance(error, SyntaxError) and error.filename:
+        return Position(file=error.filename, line=error.lineno or 1, column=error.offset or 1)
+    own = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(file)]
+    return Position(file=str(file), line=(own[-1].lineno or 1) if own else 1, column=1)

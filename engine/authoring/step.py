@@ -1,0 +1,71 @@
+"""What the functions of this package make: nodes as plain data with the place in Python that made them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TypedDict, Unpack
+
+from engine.authoring.place import calling_position
+from engine.authoring.plain import as_plain
+from engine.document.node import AutonomyLevel, Guard, NodeKind, Retry, Timeout
+from engine.errors import Position
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TreePart:
+    """A node of a behavior tree; composites and decorators stand nowhere else."""
+
+    keys: Mapping[str, object] = field(repr=False)
+    """Document keys to plain data, in which nodes stand as objects of this class."""
+    place: Position
+
+
+class Step(TreePart):
+    """A node that can stand anywhere: in a machine, side by side with others, in a tree, at the root."""
+
+
+class PartKeys(TypedDict, total=False):
+    """What every part of a tree may be given."""
+
+    name: str
+    description: str
+
+
+class StepKeys(PartKeys, total=False):
+    """What every step may be given, named as in documents."""
+
+    transitions: Mapping[str, str]
+    guard: Guard
+    timeout: Timeout
+    retry: Retry
+    on_error: str
+    autonomy: Mapping[str, AutonomyLevel]
+    resume: str
+    success: Sequence[str]
+
+
+def new_step(kind: NodeKind, what: object, **keys: Unpack[StepKeys]) -> Step:
+    """Make a step of a kind from the value under its key."""
+    place = calling_position()
+    return Step(keys={kind: what, **_plain_keys(keys, place)}, place=place)
+
+
+def new_part(kind: NodeKind, what: object, **keys: Unpack[PartKeys]) -> TreePart:
+    """Make a composite or decorator from the value under its key."""
+    place = calling_position()
+    return TreePart(keys={kind: what, **_plain_keys(keys, place)}, place=place)
+
+
+def with_keys(step: Step, keys: Mapping[str, object]) -> Step:
+    """Return the step with more document keys, those with empty values left out."""
+    return Step(keys={**step.keys, **{key: value for key, value in keys.items() if value}}, place=step.place)
+
+
+def given(**keys: object) -> dict[str, object]:
+    """Return the keys that were given a value; what is None keeps the default of documents."""
+    return {key: value for key, value in keys.items() if value is not None}
+
+
+def _plain_keys(keys: Mapping[str, object], place: Position) -> dict[str, object]:
+    return {key: as_plain(value, what=f"`{key}`", where=place) for key, value in keys.items()}

@@ -1,0 +1,325 @@
+"""What is known of a value before a run, and whether it fits where it is going."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import lru_cache
+from typing import Any, cast
+
+import msgspec
+import msgspec.inspect as inspect
+
+from engine.document.conversion import in_words
+from engine.document.expression import ValueType, as_text
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A value that stands in the document."""
+
+    value: object
+
+
+@dataclass(frozen=True)
+class Typed:
+    """Some value of a type."""
+
+    type: inspect.Type
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A list in the document of which some items are expressions."""
+
+    items: tuple[Kind, ...]
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """A mapping in the document of which some values are expressions."""
+
+    items: Mapping[str, Kind]
+
+
+Kind = Constant | Typed | Listed | Mapped
+
+
+class Fit(IntEnum):
+    """Whether values of a kind are accepted by a type: never, depending on the value, always."""
+
+    NO = 0
+    MAYBE = 1
+    YES = 2
+
+
+ANYTHING = Typed(inspect.AnyType())
+TEXT = Typed(inspect.StrType())
+INTEGER = Typed(inspect.IntType())
+LIST = Typed(inspect.ListType(inspect.AnyType()))
+
+_OPEN = (inspect.AnyType, inspect.CustomType, inspect.ExtType, inspect.RawType)
+_LISTS = (inspect.ListType, inspect.VarTupleType, inspect.SetType, inspect.FrozenSetType)
+_FROM_TEXT = (
+    inspect.EnumType,
+    inspect.DateTimeType,
+    inspect.DateType,
+    inspect.TimeType,
+    inspect.TimeDeltaType,
+    inspect.UUIDType,
+    inspect.DecimalType,
+    inspect.BytesType,
+    inspect.ByteArrayType,
+    inspect.MemoryViewType,
+)
+_OF_EXPRESSION: Mapping[ValueType, inspect.Type] = {
+    "boolean": inspect.BoolType(),
+    "integer": inspect.IntType(),
+    "number": inspect.FloatType(),
+    "text": inspect.StrType(),
+    "list": inspect.ListType(inspect.AnyType()),
+    "mapping": inspect.DictType(inspect.StrType(), inspect.AnyType()),
+    "nothing": inspect.NoneType(),
+    "anything": inspect.AnyType(),
+}
+
+
+@lru_cache(maxsize=4096)
+def type_of(annotation: Any) -> inspect.Type:
+    """Return the type that an annotation means, without its limits."""
+    return _bare(inspect.type_info(annotation))
+
+
+def of_annotation(annotation: Any) -> Kind:
+    """Return the kind of values that a state declares with an annotation."""
+    return Typed(type_of(annotation))
+
+
+def of_expression(found: ValueType) -> Kind:
+    """Return the kind of what an expression gives."""
+    return Typed(_OF_EXPRESSION[found])
+
+
+def in_expression(kinds: Sequence[Kind]) -> ValueType:
+    """Return what an expression may take for granted of a variable with one of these kinds."""
+    found: list[ValueType] = [_word(kind) for kind in kinds]
+    if not found or found.count(found[0]) < len(found):
+        return "anything"
+    return found[0]
+
+
+def fit(kind: Kind, annotation: Any) -> Fit:
+    """Tell whether values of a kind are accepted where an annotation declares what is due."""
+    if isinstance(kind, Constant):
+        return Fit.NO if complaint(kind.value, annotation) else Fit.YES
+    return _fit(kind, type_of(annotation))
+
+
+def complaint(value: object, annotation: Any) -> str:
+    """Say what is wrong with a value of a document where an annotation declares what is due; empty when nothing is."""
+    try:
+        msgspec.convert(value, cast("type[Any]", annotation))
+    except msgspec.ValidationError as error:
+        return in_words(str(error))
+    return ""
+
+
+def describe(kind: Kind) -> str:
+    """Name a kind in a message."""
+    if isinstance(kind, Constant):
+        shown = as_text(kind.value)
+        return f"`{shown if len(shown) <= 40 else f'{shown[:37]}…'}`"
+    if isinstance(kind, Listed):
+        return f"a list with {_and_so_on([describe(item) for item in kind.items])}"
+    if isinstance(kind, Mapped):
+        return f"a mapping with {_and_so_on([f'{key}: {describe(item)}' for key, item in kind.items.items()])}"
+    return describe_type(kind.type)
+
+
+def describe_type(found: inspect.Type) -> str:
+    """Name a type as authors of documents know it."""
+    match found:
+        case inspect.BoolType():
+            return "true or false"
+        case inspect.IntType():
+            return "an integer"
+        case inspect.FloatType():
+            return "a number"
+        case inspect.StrType():
+            return "text"
+        case inspect.NoneType():
+            return "nothing"
+        case inspect.LiteralType():
+            return f"one of {', '.join(str(value) for value in found.values)}"
+        case inspect.StructType() | inspect.DataclassType() | inspect.TypedDictType() | inspect.NamedTupleType():
+            return str(found.cls.__name__)
+        case inspect.DictType():
+            return "a mapping"
+        case inspect.UnionType():
+            return " or ".join(dict.fromkeys(describe_type(option) for option in found.types))
+        case inspect.ListType() | inspect.VarTupleType() | inspect.SetType() | inspect.FrozenSetType():
+            inner = describe_type(found.item_type)
+            return f"a list of {_PLURALS.get(inner, 'values')}"
+        case inspect.TupleType():
+            return f"a list of {len(found.item_types)} values"
+        case _:
+            return "any value"
+
+
+def _and_so_on(shown: Sequence[str]) -> str:
+    return ", ".join([*shown[:4], "…"] if len(shown) > 4 else shown)
+
+
+_PLURALS = {"a number": "numbers", "an integer": "integers", "text": "texts", "true or false": "truth values"}
+
+
+def item_kinds(kind: Kind) -> tuple[Kind, ...]:
+    """Return the kinds of the items of a list; none where it is no list or has no items."""
+    if isinstance(kind, Constant):
+        value = kind.value
+        return tuple(Constant(item) for item in cast("list[object]", value)) if isinstance(value, list) else ()
+    if isinstance(kind, Listed):
+        return kind.items
+    if isinstance(kind, Mapped):
+        return ()
+    options = kind.type.types if isinstance(kind.type, inspect.UnionType) else (kind.type,)
+    found: list[Kind] = []
+    for option in options:
+        if isinstance(option, _LISTS):
+            found.append(Typed(option.item_type))
+        elif isinstance(option, inspect.TupleType):
+            found += [Typed(item) for item in option.item_types]
+        elif isinstance(option, _OPEN):
+            found.append(ANYTHING)
+    return tuple(found)
+
+
+def _bare(found: inspect.Type) -> inspect.Type:
+    while isinstance(found, inspect.Metadata):
+        found = found.type
+    if isinstance(found, inspect.UnionType):
+        return inspect.UnionType(tuple(_bare(option) for option in found.types))
+    return found
+
+
+def _word(kind: Kind) -> ValueType:
+    if isinstance(kind, Constant):
+        value = kind.value
+        if isinstance(value, bool):
+            return "boolean"
+        by_class: dict[type, ValueType] = {int: "integer", float: "number", str: "text", list: "list", dict: "mapping"}
+        return by_class.get(type(value), "anything")
+    if isinstance(kind, Listed):
+        return "list"
+    return "mapping" if isinstance(kind, Mapped) else _word_of_type(kind.type)
+
+
+def _word_of_type(found: inspect.Type) -> ValueType:
+    match found:
+        case inspect.BoolType():
+            return "boolean"
+        case inspect.IntType():
+            return "integer"
+        case inspect.FloatType():
+            return "number"
+        case inspect.StrType():
+            return "text"
+        case inspect.ListType() | inspect.VarTupleType() | inspect.TupleType():
+            return "list"
+        case inspect.DictType() | inspect.StructType():
+            return "mapping"
+        case _:
+            return "anything"
+
+
+def _type_of_constant(value: object) -> inspect.Type:
+    """Return the type of a value inside a list or mapping that has expressions in it."""
+    return _OF_EXPRESSION[_word(Constant(value))] if value is not None else inspect.NoneType()
+
+
+def _fit(kind: Kind, due: inspect.Type) -> Fit:
+    due = _bare(due)
+    if isinstance(due, inspect.UnionType):
+        return max(_fit(kind, option) for option in due.types)
+    if isinstance(due, _OPEN):
+        return Fit.YES
+    if isinstance(kind, Constant):
+        return _fit_constant(kind.value, due)
+    if isinstance(kind, Listed):
+        return _fit_items(kind.items, due)
+    if isinstance(kind, Mapped):
+        return _fit_fields(kind.items, due)
+    return _fit_type(kind.type, due)
+
+
+def _fit_constant(value: object, due: inspect.Type) -> Fit:
+    if isinstance(value, list | tuple):
+        return _fit_items([Constant(item) for item in cast("list[object]", value)], due)
+    if isinstance(value, dict):
+        return _fit_fields({key: Constant(item) for key, item in cast("dict[str, object]", value).items()}, due)
+    if isinstance(due, inspect.LiteralType):
+        return Fit.YES if value in due.values else Fit.NO
+    # Limits are not looked at here: the value stands beside expressions, and a run checks them all.
+    return min(_fit_type(_type_of_constant(value), due), Fit.MAYBE)
+
+
+def _fit_items(items: Sequence[Kind], due: inspect.Type) -> Fit:
+    if isinstance(due, _LISTS):
+        return min((_fit(item, due.item_type) for item in items), default=Fit.YES)
+    if isinstance(due, inspect.TupleType):
+        if len(items) != len(due.item_types):
+            return Fit.NO
+        return min((_fit(item, t) for item, t in zip(items, due.item_types, strict=True)), default=Fit.YES)
+    return Fit.NO
+
+
+def _fit_fields(items: Mapping[str, Kind], due: inspect.Type) -> Fit:
+    if isinstance(due, inspect.DictType):
+        return min((_fit(item, due.value_type) for item in items.values()), default=Fit.YES)
+    if isinstance(due, inspect.StructType):
+        fields = {field.encode_name: field for field in due.fields}
+        if due.forbid_unknown_fields and not set(items) <= set(fields):
+            return Fit.NO
+        if any(field.required and name not in items for name, field in fields.items()):
+            return Fit.NO
+        return min((_fit(item, fields[name].type) for name, item in items.items() if name in fields), default=Fit.YES)
+    return Fit.MAYBE if isinstance(due, inspect.DataclassType | inspect.TypedDictType) else Fit.NO
+
+
+def _fit_type(found: inspect.Type, due: inspect.Type) -> Fit:
+    found = _bare(found)
+    if isinstance(found, inspect.UnionType):
+        fits = {_fit(Typed(option), due) for option in found.types}
+        return fits.pop() if len(fits) == 1 else Fit.MAYBE
+    if isinstance(found, _OPEN):
+        return Fit.MAYBE
+    if isinstance(found, inspect.LiteralType):
+        return min((_fit_constant(value, due) for value in found.values), default=Fit.MAYBE)
+    if isinstance(due, _LISTS) and isinstance(found, _LISTS):
+        return _fit(Typed(found.item_type), due.item_type)
+    if isinstance(due, (*_LISTS, inspect.TupleType)) and isinstance(found, inspect.TupleType):
+        return _fit_items([Typed(item) for item in found.item_types], due)
+    if isinstance(due, inspect.TupleType) and isinstance(found, _LISTS):
+        return min((_fit(Typed(found.item_type), item) for item in due.item_types), default=Fit.MAYBE)
+    return _fit_plain(found, due)
+
+
+def _fit_plain(found: inspect.Type, due: inspect.Type) -> Fit:
+    match found, due:
+        case inspect.IntType(), inspect.FloatType():
+            return Fit.YES
+        case inspect.StrType(), _ if isinstance(due, (inspect.LiteralType, *_FROM_TEXT)):
+            return Fit.MAYBE
+        case _ if isinstance(found, _FROM_TEXT) or isinstance(due, _FROM_TEXT):
+            return Fit.MAYBE
+        case inspect.IntType() | inspect.BoolType() | inspect.NoneType(), inspect.LiteralType():
+            return Fit.MAYBE
+        case inspect.DictType(), inspect.StructType() | inspect.DataclassType() | inspect.TypedDictType():
+            return Fit.MAYBE
+        case inspect.StructType(), inspect.StructType():
+            return Fit.YES if issubclass(found.cls, due.cls) else Fit.NO
+        case inspect.DictType(), inspect.DictType():
+            return _fit(Typed(found.value_type), due.value_type)
+        case _:
+            return Fit.YES if type(found) is type(due) else Fit.NO

@@ -1,0 +1,155 @@
+"""Checks that the values which reach a node are of a kind that it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from engine.check.finding import Finding
+from engine.check.flow.flow import BEHAVIOR
+from engine.check.flow.kind import Constant, Fit, Kind, complaint, describe, describe_type, fit, type_of
+from engine.check.flow.read import expressions, only_name
+from engine.check.flow.resolve import Resolver
+from engine.check.flow.route import route, shown
+from engine.check.flow.site import Site
+from engine.check.subject import Placed, Subject
+from engine.errors import ExpressionError
+
+_MOST_ROUTES = 100
+_MOST_CONTEXTS = 1000
+
+
+@dataclass(frozen=True)
+class _Use:
+    """A place where a value of a type is due: an input key, or a value with expressions."""
+
+    placed: Placed
+    keys: tuple[str | int, ...]
+    what: str
+    due: Any
+    key: str | None
+    """The userdata key, where the value is read from one."""
+    value: object = None
+
+    @property
+    def takes(self) -> str:
+        """What is due, in words."""
+        return f"{self.what} takes {describe_type(type_of(self.due))}"
+
+
+def check_kinds(subject: Subject, resolver: Resolver) -> Iterator[Finding]:
+    """Find inputs, parameters, guards and lists that get values they do not take."""
+    check = _Kinds(subject, resolver)
+    for placed in subject.nodes.values():
+        if placed.path in resolver.flow.before:
+            yield from check.node(placed)
+
+
+class _Kinds:
+    def __init__(self, subject: Subject, resolver: Resolver) -> None:
+        self._subject = subject
+        self._resolver = resolver
+        self._routes = 0
+        self._contexts = 0
+
+    def node(self, placed: Placed) -> Iterator[Finding]:
+        for use in _uses(self._subject, placed):
+            try:
+                reaching = _reaching(self._resolver, use)
+            except ExpressionError as error:
+                hint = error.hint or "convert it, for instance with `string(…)`, `int(…)` or `double(…)`"
+                yield self._subject.finding("type-mismatch", error.message, placed.path, *use.keys, hint=hint)
+                continue
+            yield from self._compared(use, reaching)
+        if placed.node.behavior is not None and placed.node.inputs:
+            yield from self._inside(placed)
+
+    def _compared(self, use: _Use, reaching: Sequence[tuple[Site | None, Kind]]) -> Iterator[Finding]:
+        wrong = [(site, kind) for site, kind in reaching if fit(kind, use.due) is Fit.NO]
+        if not wrong:
+            return
+        site, kind = wrong[0]
+        path = use.placed.path
+        always = len(wrong) == len(reaching)
+        message = f"{use.takes}, and {'gets' if always else 'may get'} {describe(kind)}"
+        if site is not None:
+            message += f" from {_origin(self._subject, site)}"
+            self._routes += 1
+            if not always and self._routes <= _MOST_ROUTES:
+                steps = route(self._resolver.flow, path, 1 << site.number)
+                message += f" on the way {shown(steps)}" if len(steps) > 1 else ""
+        code = "type-mismatch" if always else "maybe-type-mismatch"
+        yield self._subject.finding(code, message, path, *use.keys, hint=_complaint(kind, use.due))
+
+    def _inside(self, placed: Placed) -> Iterator[Finding]:
+        """Find uses inside a referred behavior that do not take what is passed in here."""
+        referred = self._subject.referred(placed.node)
+        inner = self._resolver.inner(placed.path)
+        self._contexts += 1
+        if referred is None or inner is None or self._contexts > _MOST_CONTEXTS:
+            return
+        told: set[str] = set()
+        for other in referred.nodes.values():
+            for use in _uses(referred, other) if other.path in inner.flow.before else ():
+                try:
+                    reaching = _reaching(inner, use)
+                except ExpressionError:
+                    continue
+                for site, kind in reaching:
+                    if site is None or site.path != BEHAVIOR or site.key not in placed.node.inputs or site.key in told:
+                        continue
+                    if fit(kind, use.due) is Fit.NO:
+                        told.add(site.key)
+                        at = f"at `{other.path}` of `{placed.node.behavior}`"
+                        message = f"{use.takes}, {at}, and gets {describe(kind)} through `{site.key}`"
+                        yield self._subject.finding("type-mismatch", message, placed.path, "in", site.key)
+
+
+def _uses(subject: Subject, placed: Placed) -> Iterator[_Use]:
+    node = placed.node
+    signature = subject.signature(node)
+    referred = subject.referred(node)
+    if signature is not None:
+        for name, key in signature.inputs.items():
+            keys = ("in", name) if name in node.inputs else ()
+            what = f"the input `{name}` of `{node.state}`"
+            yield _Use(placed, keys, what, key.type, node.inputs.get(name, name))
+    for keys, found in expressions(subject, placed):
+        due: Any = None
+        what = f"`{keys[-1]}`"
+        if keys[0] == "guard":
+            due, what = bool, "the guard"
+        elif keys[0] == "foreach":
+            due = list[object] if keys[1] == "items" else int
+        elif signature is not None and keys[1] in signature.parameters:
+            due, what = signature.parameters[str(keys[1])].type, f"the parameter `{keys[1]}` of `{node.state}`"
+        elif referred is not None and keys[1] in referred.behavior.parameters:
+            parameter = referred.behavior.parameters[str(keys[1])]
+            due, what = parameter.value_type, f"the parameter `{keys[1]}` of `{node.behavior}`"
+        if due is not None:
+            yield _Use(placed, keys, what, due, only_name(found), found.value)
+
+
+def _reaching(resolver: Resolver, use: _Use) -> Sequence[tuple[Site | None, Kind]]:
+    if use.key is not None:
+        return resolver.before(use.placed.path, use.key)
+    return [(None, kind) for kind in resolver.of_value(use.value, use.placed.path)]
+
+
+def _complaint(kind: Kind, due: Any) -> str:
+    return complaint(kind.value, due) if isinstance(kind, Constant) else ""
+
+
+def _origin(subject: Subject, site: Site) -> str:
+    match site.origin:
+        case "parameter":
+            return f"the parameter `{site.key}`"
+        case "userdata":
+            return f"the initial value of `{site.key}`"
+        case "item" | "index":
+            return f"`{site.key}` of the rounds of `{site.path}`"
+        case "collect":
+            return f"what `{site.path}` collects"
+        case _:
+            return f"`{site.name}` of `{subject.run_path(site.path)}`"

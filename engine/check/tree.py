@@ -1,0 +1,95 @@
+"""Checks parts of behavior trees: children that are never asked, parts that never end, foreign behaviours."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Iterator
+from typing import Any, cast
+
+from engine.check.finding import Finding
+from engine.check.subject import Placed, Subject
+from engine.nearness import near_names
+
+
+def check_trees(subject: Subject) -> Iterator[Finding]:
+    """Find what can be known to be wrong with trees before a tick."""
+    for placed in subject.nodes.values():
+        if placed.in_tree and placed.is_part:
+            yield from _check_dead_children(subject, placed)
+            yield from _check_end(subject, placed)
+            if placed.node.behaviour is not None:
+                yield from _check_behaviour(subject, placed, placed.node.behaviour)
+
+
+def _check_dead_children(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    if placed.node.sequence is None and placed.node.selector is None:
+        return
+    onward, always = ("success", "fails") if placed.node.sequence is not None else ("failure", "succeeds")
+    children = subject.children(placed)
+    for number, child in enumerate(children[:-1]):
+        statuses = subject.statuses[child.path]
+        if statuses and onward not in statuses:
+            names = ", ".join(f"`{later.name}`" for later in children[number + 1 :][:3])
+            message = f"{names} can never be asked: `{child.name}` before it always {always}"
+            hint = "change the order, or give the outcomes that mean SUCCESS with `success`"
+            yield subject.finding("unreachable-node", message, children[number + 1].path, hint=hint)
+            return
+
+
+def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    inside = [subject.statuses[child.path] for child in subject.children(placed)]
+    if subject.statuses[placed.path] or not all(inside):
+        return
+    shown = " or ".join(sorted(inside[0]))
+    said = "shows every end of its child as RUNNING"
+    if placed.node.condition is not None:
+        said = f"waits for {placed.node.condition.status}, and its child only ends with {shown}"
+    hint = "leave one end as it is, or the tree goes on until it is stopped"
+    message = f"this `{placed.kind}` never ends: it {said}"
+    yield subject.finding("never-ends", message, placed.path, placed.kind, hint=hint, at_key=True)
+
+
+def _check_behaviour(subject: Subject, placed: Placed, name: str) -> Iterator[Finding]:
+    module_name, _, class_name = name.partition(":")
+    try:
+        base = importlib.import_module("py_trees.behaviour").Behaviour
+        found: Any = getattr(importlib.import_module(module_name), class_name)
+    except Exception as error:
+        # Importing a module of the user's runs it, and it may raise anything.
+        said = f"{type(error).__name__}: {error}"
+        message = f"`{name}` cannot be imported: {said}"
+        hint = "write it as package.module:Class"
+        yield subject.finding("broken-behaviour", message, placed.path, "behaviour", hint=hint)
+        return
+    if not (isinstance(found, type) and issubclass(found, cast("type", base))):
+        message = f"`{name}` is no subclass of py_trees.behaviour.Behaviour"
+        yield subject.finding("broken-behaviour", message, placed.path, "behaviour")
+        return
+    if inspect.isabstract(found):
+        message = f"`{name}` is abstract"
+        hint = "name a subclass that has an `update`"
+        yield subject.finding("broken-behaviour", message, placed.path, "behaviour", hint=hint)
+        return
+    yield from _check_arguments(subject, placed, name, found)
+
+
+def _check_arguments(subject: Subject, placed: Placed, name: str, kind: type[object]) -> Iterator[Finding]:
+    """Compare `with` with the constructor; `name` is given by the engine where it is left out."""
+    try:
+        known = inspect.signature(kind).parameters
+    except (TypeError, ValueError):
+        return  # some classes do not say what they take
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values()):
+        return
+    given = placed.node.parameters
+    for argument in given:
+        if argument not in known:
+            message = f"`{name}` has no parameter `{argument}`"
+            hint = near_names(argument, known)
+            yield subject.finding("unknown-parameter", message, placed.path, "with", argument, hint=hint, at_key=True)
+    for argument, parameter in known.items():
+        required = parameter.default is parameter.empty and parameter.kind is not parameter.VAR_POSITIONAL
+        if required and argument not in given and argument != "name":
+            message = f"`{name}` needs the parameter `{argument}`"
+            yield subject.finding("missing-parameter", message, placed.path, hint=f"add `{argument}: …` to `with`")

@@ -1,0 +1,195 @@
+"""Carries out one run for the command line: its clock, cell, journal, recording, signals, and its end."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import time
+from collections.abc import Awaitable, Callable, Coroutine
+from contextlib import AbstractAsyncContextManager, ExitStack, nullcontext
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from rich.console import Console
+
+from engine.cell import OpenCell
+from engine.cli.exit_code import ExitCode
+from engine.cli.interruption import Interruption
+from engine.cli.operator_console import OperatorConsole
+from engine.cli.progress import Progress
+from engine.clock import NothingCanWake, VirtualLoop, run_virtual
+from engine.document.cell import Cell
+from engine.document.faults import Faults
+from engine.event import Event
+from engine.faults import FaultPort
+from engine.journal import Journal, NullJournal
+from engine.plan import Plan
+from engine.recorder import Watcher
+from engine.recording import RecordingOrder, RunRecording
+from engine.run import Run, RunResult
+from engine.skill_port import BusPort, SkillPort
+from engine.supervision import Supervision
+from engine.watchdog import Watchdog
+
+T = TypeVar("T")
+MakeRun = Callable[[OpenCell, Journal | NullJournal, SkillPort | None], Awaitable[Run]]
+"""Makes the run, new or resumed, in an open cell and journal; what it refuses was not started."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """Everything around a run, read and checked before anything starts."""
+
+    make: MakeRun
+    cell: Cell | None
+    seed: int | None
+    journal: str
+    store: str | None
+    timeout_s: float | None
+    virtual: bool
+    quiet: bool
+    supervision: Supervision = field(default_factory=Supervision)
+    inputs: dict[str, object] = field(default_factory=dict[str, object])
+    recording: RecordingOrder | None = None
+    faults: Faults | None = None
+    watchers: tuple[Watcher, ...] = ()
+    reload: Callable[[], Plan] | None = None
+    """With an operator on the terminal: reads the behavior anew for a hot change."""
+
+
+@dataclass(kw_only=True)
+class Ended:
+    """How a run ended, with its events."""
+
+    result: RunResult
+    log: list[Event]
+    interrupted: bool
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """What the process says of it."""
+        if self.interrupted and not self.result.abandoned:
+            return ExitCode.INTERRUPTED
+        return exit_code(self.result)
+
+
+def exit_code(result: RunResult) -> ExitCode:
+    """Return what the process says of a run that was not interrupted."""
+    if result.status == "errored":
+        return ExitCode.ERRORED
+    return ExitCode.SUCCESS if result.success else ExitCode.OTHER_OUTCOME
+
+
+def carry_out(order: Order, *, report: Callable[[Ended], None]) -> ExitCode:
+    """Execute a run to its end, report it, and return the exit code.
+
+    A state that was abandoned may never end, and with it the loop: such a process ends right after
+    the report, with the cell at rest and the journal closed.
+
+    Raises:
+        FlexcellError: nothing was started.
+    """
+
+    async def main() -> Ended:
+        ended = await _execute(order)
+        if ended.result.abandoned:
+            report(ended)
+            _say(f"abandoned: {', '.join(ended.result.abandoned)}; the process ends without waiting for it")
+            sys.stdout.flush()
+            sys.stderr.flush()
+            os._exit(ended.exit_code)
+        return ended
+
+    ended = _on_clock(main(), virtual=order.virtual)
+    report(ended)
+    return ended.exit_code
+
+
+def _on_clock(main: Coroutine[Any, Any, T], *, virtual: bool) -> T:
+    return run_virtual(main) if virtual else asyncio.run(main)
+
+
+async def _execute(order: Order) -> Ended:
+    log: list[Event] = []
+    with ExitStack() as stack:
+        interruption = stack.enter_context(Interruption(_say))
+        journal = _journal(order, stack)
+        async with (
+            _recording(order) as recording,
+            OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell,
+        ):
+            started_unix_s = time.time()
+            faults = _faults(order, cell)
+            run = await order.make(cell, journal, faults)
+            if recording is not None:
+                recording.attach(
+                    run, cell.bus, started_unix_s=started_unix_s, inputs=order.inputs, supervision=order.supervision
+                )
+            for watcher in (log.append, *order.watchers):
+                run.watch(watcher)
+            if not order.quiet:
+                run.watch(Progress(Console(stderr=True)).show)
+            interruption.watch_over(run)
+            _watch_for_standstill(run)
+            if order.reload is not None:
+                stack.enter_context(OperatorConsole(run, say=_tell, reload=order.reload, policy=order.supervision))
+            with Watchdog():
+                result = await _within(order.timeout_s, run)
+    if faults is not None and order.quiet:
+        # With progress on the terminal these lines stand in it already.
+        for line in faults.unapplied():
+            _say(line)
+    return Ended(result=result, log=log, interrupted=bool(interruption.reason))
+
+
+async def _within(timeout_s: float | None, execution: Run) -> RunResult:
+    if timeout_s is None:
+        return await execution.execute()
+    loop = asyncio.get_running_loop()
+    timer = loop.call_later(timeout_s, execution.stop, f"it took longer than {timeout_s:g} s")
+    try:
+        return await execution.execute()
+    finally:
+        timer.cancel()
+
+
+def _watch_for_standstill(run: Run) -> None:
+    """End the run errored, with all that it has told, when virtual time cannot pass any more."""
+    loop = asyncio.get_running_loop()
+    if isinstance(loop, VirtualLoop):
+        loop.when_stuck = lambda error: run.fail(_standstill(run, error))
+
+
+def _standstill(run: Run, error: NothingCanWake) -> NothingCanWake:
+    waiting = [f"{each.path} ({', '.join(each.reasons)})" for each in run.control.view().waiting]
+    names = ", ".join([*run.active_states, *waiting]) or error.hint
+    return NothingCanWake(error.message, where=run.plan.root.path, hint=f"waiting for ever: {names}")
+
+
+def _faults(order: Order, cell: OpenCell) -> FaultPort | None:
+    if order.faults is None:
+        return None
+    return FaultPort(BusPort(cell.bus), order.faults, clock=cell.bus.clock, seed=order.seed or 0)
+
+
+def _recording(order: Order) -> AbstractAsyncContextManager[RunRecording | None]:
+    if order.recording is None:
+        return nullcontext()
+    return RunRecording.open(order.recording, inline=order.virtual)
+
+
+def _journal(order: Order, stack: ExitStack) -> Journal | NullJournal:
+    if order.journal == "none":
+        return NullJournal()
+    return stack.enter_context(Journal.open(order.journal, inline=order.virtual))
+
+
+def _say(line: str) -> None:
+    sys.stderr.write(f"flexcell: {line}\n")
+    sys.stderr.flush()
+
+
+def _tell(line: str) -> None:
+    sys.stderr.write(f"{line}\n")
+    sys.stderr.flush()

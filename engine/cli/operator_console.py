@@ -1,0 +1,335 @@
+"""An operator on the terminal: one command a line, and a line for whatever the run asks or waits for."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self, cast
+
+from engine.cli.line_input import LineInput
+from engine.control import LEVELS, Breakpoint
+from engine.control.step import StepMode
+from engine.errors import ControlError, FlexcellError
+from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded
+from engine.nearness import near_names
+from engine.plan import Plan
+from engine.run import Run
+from engine.settle import settle
+from engine.supervision import Supervision
+
+_MODES: tuple[StepMode, ...] = ("into", "over", "out")
+
+
+@dataclass(frozen=True)
+class _Command:
+    """One word that the operator can say."""
+
+    usage: str
+    meaning: str
+    do: Callable[[OperatorConsole, Sequence[str]], None]
+
+
+class _Misspoken(Exception):
+    """The words after a command are not what it needs."""
+
+
+class OperatorConsole:
+    """The operator of one run while it is entered; the end of input is the operator's leaving.
+
+    Args:
+        run: The run, not yet executing.
+        say: Shows the operator a line.
+        reload: Reads the behavior anew, for a hot change.
+        policy: What becomes of the run when the input ends.
+        descriptor: Where commands come from; standard input by default.
+    """
+
+    def __init__(
+        self,
+        run: Run,
+        *,
+        say: Callable[[str], None],
+        reload: Callable[[], Plan],
+        policy: Supervision,
+        descriptor: int | None = None,
+    ) -> None:
+        self.run = run
+        self.say = say
+        self._reload = reload
+        self._policy = policy
+        known = descriptor if descriptor is not None else _standard_input()
+        self._input = LineInput(known, line=self.obey, end=self._ended)
+        self._waiting: asyncio.Task[None] | None = None
+        self._rests = asyncio.Event()
+
+    def __enter__(self) -> Self:
+        self.run.watch(self._show)
+        self.run.control.attach_operator()
+        self._input.open()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._input.close()
+        self.run.recorder.unwatch(self._show)
+        if self._waiting is not None:
+            self._waiting.cancel()
+
+    def obey(self, line: str) -> None:
+        """Do what a line says, or say in one line why not."""
+        words = line.split()
+        if not words or self.run.ended:
+            return
+        command = COMMANDS.get(words[0])
+        if command is None:
+            self.say(f"there is no command {words[0]!r} ({near_names(words[0], COMMANDS)}; `help` lists them)")
+            return
+        try:
+            command.do(self, words[1:])
+        except _Misspoken as error:
+            self.say(f"{error}; usage: {command.usage}")
+        except FlexcellError as error:
+            self.say(str(error))
+
+    def reload(self) -> None:
+        """Let the behavior as its file is now take the place of the running one."""
+        report = self.run.change(self._reload())
+        for change in report.changes or ("the file means the same as before",):
+            self.say(f"changed: {change}")
+
+    def wait(self) -> None:
+        """Take no further line until the run rests: paused and confirmed, locked, or asking."""
+        self._input.hold()
+        self._waiting = asyncio.get_running_loop().create_task(self._until_rest(), name="operator waits")
+
+    async def _until_rest(self) -> None:
+        while not self.run.ended:
+            self._rests.clear()
+            # What was let go a moment ago must not be taken for resting.
+            await settle(depth=-1)
+            if self._at_rest():
+                break
+            await self._rests.wait()
+        self._input.release()
+
+    def _at_rest(self) -> bool:
+        view = self.run.control.view()
+        held = any({"lock", "autonomy"} & set(each.reasons) for each in view.waiting)
+        return held or (view.paused and view.confirmed)
+
+    def _show(self, event: Event) -> None:
+        if isinstance(event, GateReached | PauseConfirmed | RunEnded):
+            self._rests.set()
+        match event:
+            case OutcomeRequested():
+                orders = f"answer {event.path} | force {event.path} OUTCOME | repeat {event.path}"
+                self.say(f"? {event.path} wants to end with {event.outcome} (requires {event.required}): {orders}")
+            case GateReached():
+                self.say(f"{event.path} waits {_place(event)}: {', '.join(event.reasons)}")
+            case PauseConfirmed():
+                moving = f", but cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
+                self.say(f"paused, everything rests{moving}")
+            case OperatorChanged(status="lost"):
+                then = {"hold": "it will be paused", "continue": "it goes on", "stop": "it will be stopped"}
+                self.say(f"the input ended and with it the operator: {then[self._policy.loss_policy]}")
+            case _:
+                pass
+
+    def _ended(self) -> None:
+        if self.run.ended:
+            return
+        if self._policy.loss_policy == "continue":
+            self.run.control.detach_operator()
+        else:
+            self.run.control.lose_operator()
+
+
+def _place(event: GateReached) -> str:
+    if event.point == "before":
+        return "before its entry"
+    return f"with its outcome {event.outcome}" if event.outcome else "after its end"
+
+
+def _standard_input() -> int | None:
+    with suppress(AttributeError, OSError, ValueError):
+        return sys.stdin.fileno()
+    return None  # closed, or replaced by something that is no file
+
+
+def _one(words: Sequence[str], what: str) -> str:
+    if len(words) != 1:
+        raise _Misspoken(f"one {what} is needed" if not words else f"{' '.join(words[1:])!r} is too much")
+    return words[0]
+
+
+def _none(words: Sequence[str]) -> None:
+    if words:
+        raise _Misspoken(f"{' '.join(words)!r} is too much")
+
+
+def _pause(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    console.run.control.pause()
+
+
+def _resume(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    console.run.control.resume()
+
+
+def _step(console: OperatorConsole, words: Sequence[str]) -> None:
+    left = list(words)
+    mode: StepMode = cast(StepMode, left.pop(0)) if left and left[0] in _MODES else "into"
+    console.run.control.step(mode, _one(left, "path") if left else "")
+
+
+def _lock(console: OperatorConsole, words: Sequence[str]) -> None:
+    console.run.control.lock(_one(words, "path"))
+
+
+def _unlock(console: OperatorConsole, words: Sequence[str]) -> None:
+    console.run.control.unlock(_one(words, "path"))
+
+
+def _force(console: OperatorConsole, words: Sequence[str]) -> None:
+    if len(words) != 2:
+        raise _Misspoken("a path and an outcome are needed")
+    console.run.control.force(words[0], words[1])
+
+
+def _repeat(console: OperatorConsole, words: Sequence[str]) -> None:
+    console.run.control.repeat(_one(words, "path"))
+
+
+def _answer(console: OperatorConsole, words: Sequence[str]) -> None:
+    control = console.run.control
+    asking = [each.path for each in control.view().waiting if "autonomy" in each.reasons]
+    if not words and len(asking) != 1:
+        raise ControlError("nothing is asked" if not asking else f"which one: {', '.join(asking)}?")
+    control.answer(_one(words, "path") if words else asking[0])
+
+
+def _autonomy(console: OperatorConsole, words: Sequence[str]) -> None:
+    level = _one(words, "level")
+    if level not in LEVELS:
+        raise _Misspoken(f"{level!r} is none of {', '.join(LEVELS)}")
+    console.run.control.set_autonomy(level)
+
+
+def _break(console: OperatorConsole, words: Sequence[str]) -> None:
+    control = console.run.control
+    if not words:
+        for each in control.view().breakpoints or ("there are no breakpoints",):
+            console.say(_written(each) if isinstance(each, Breakpoint) else each)
+        return
+    control.set_breakpoints((*control.view().breakpoints, _breakpoint(words)))
+
+
+def _clear(console: OperatorConsole, words: Sequence[str]) -> None:
+    control = console.run.control
+    known = control.view().breakpoints
+    path = _one(words, "path") if words else ""
+    if path and all(each.path != path for each in known):
+        raise ControlError("there is no breakpoint", where=path, hint=near_names(path, [each.path for each in known]))
+    control.set_breakpoints([each for each in known if path and each.path != path])
+
+
+def _breakpoint(words: Sequence[str]) -> Breakpoint:
+    """Read `PATH [after] [hits N] [if EXPR]`, where the expression takes the rest up to `hits N` at its end."""
+    path, *left = words
+    when, hits, condition = "before", 1, None
+    if len(left) >= 2 and left[-2] == "hits":
+        hits, left = _count(left[-1]), left[:-2]
+    while left:
+        word = left.pop(0)
+        if word in ("before", "after"):
+            when = word
+        elif word == "hits" and left:
+            hits = _count(left.pop(0))
+        elif word == "if" and left:
+            condition, left = " ".join(left), []
+        else:
+            raise _Misspoken(f"{word!r} is not understood")
+    made = Breakpoint(path=path, when="after" if when == "after" else "before", condition=condition, hits=hits)
+    _ = made.template  # compiled now, so that a wrong expression is refused here
+    return made
+
+
+def _count(word: str) -> int:
+    if not word.isdecimal() or int(word) < 1:
+        raise _Misspoken(f"{word!r} is no count")
+    return int(word)
+
+
+def _written(each: Breakpoint) -> str:
+    condition = f" if {each.condition}" if each.condition is not None else ""
+    hits = f" hits {each.hits}" if each.hits > 1 else ""
+    return f"break {each.path} {each.when}{condition}{hits}"
+
+
+def _reload(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    console.reload()
+
+
+def _where(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    view = console.run.control.view()
+    paused = ("paused" if view.confirmed else "pausing") if view.paused else "running"
+    console.say(f"{paused}, autonomy {view.autonomy}, operator {view.operator}")
+    waiting = {each.path for each in view.waiting}
+    for path in console.run.active_states:
+        if path not in waiting:
+            console.say(f"  in {path}")
+    for each in view.waiting:
+        outcome = f" with {each.outcome}" if each.outcome else ""
+        console.say(f"  {each.point} {each.path}{outcome}: {', '.join(each.reasons)}")
+    for path in view.locks:
+        console.say(f"  lock {path}")
+    for each in view.breakpoints:
+        console.say(f"  {_written(each)}")
+
+
+def _wait(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    console.wait()
+
+
+def _stop(console: OperatorConsole, words: Sequence[str]) -> None:
+    console.run.stop(" ".join(words) or "the operator said stop")
+
+
+def _detach(console: OperatorConsole, words: Sequence[str]) -> None:
+    _none(words)
+    console.run.control.detach_operator()
+
+
+def _help(console: OperatorConsole, words: Sequence[str]) -> None:
+    for command in COMMANDS.values():
+        console.say(f"  {command.usage:44}{command.meaning}")
+
+
+COMMANDS: Mapping[str, _Command] = {
+    "pause": _Command("pause", "hold everything", _pause),
+    "resume": _Command("resume", "let it go on", _resume),
+    "step": _Command("step [into|over|out] [PATH]", "one step of a paused run", _step),
+    "break": _Command("break [PATH [after] [if EXPR] [hits N]]", "pause there; alone: list them", _break),
+    "clear": _Command("clear [PATH]", "remove breakpoints", _clear),
+    "lock": _Command("lock PATH", "hold the outcome of a node", _lock),
+    "unlock": _Command("unlock PATH", "let it pass", _unlock),
+    "force": _Command("force PATH OUTCOME", "end a node so", _force),
+    "repeat": _Command("repeat PATH", "run a node again", _repeat),
+    "answer": _Command("answer [PATH]", "agree to a requested outcome", _answer),
+    "autonomy": _Command("autonomy off|low|high|full", "what passes without being asked", _autonomy),
+    "reload": _Command("reload", "go on with the file as it is now", _reload),
+    "where": _Command("where", "where the run is", _where),
+    "wait": _Command("wait", "take no further line until it rests or asks", _wait),
+    "detach": _Command("detach", "leave it to itself", _detach),
+    "stop": _Command("stop [REASON]", "stop the run", _stop),
+    "help": _Command("help", "this list", _help),
+}

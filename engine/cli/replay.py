@@ -1,0 +1,151 @@
+"""`flexcell replay`: runs recorded runs again and says where they first do something else."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from engine.cli.exit_code import ExitCode
+from engine.document import load_behavior
+from engine.errors import FlexcellError
+from engine.junit import Case, Problem, Suite, class_name, write_junit
+from engine.plan import Catalogue
+from engine.recorded_run import read_run
+from engine.recording import Recording, load_recording
+from engine.registry import load_states
+from engine.replay import Difference, ReplayReport, recording_of
+from engine.replay import replay as replay_recording
+
+
+def replay(
+    recordings: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="REC...",
+            help="Recordings made with `flexcell run --record`; with --journal, ids of runs.",
+            show_default=False,
+        ),
+    ],
+    behavior: Annotated[
+        Path | None, typer.Option(help="Run this version of the behavior instead of the recorded one.")
+    ] = None,
+    journal: Annotated[Path | None, typer.Option(help="Replay runs of this journal directory.")] = None,
+    junit: Annotated[Path | None, typer.Option(help="Write the results here as JUnit XML.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
+) -> None:
+    """Run recorded runs again, in virtual time and without robots: the recorded answers stand in for them.
+
+    Exit code 0: everything happened again and nothing else. 4: something differs; the first
+    difference is named. 2: a recording, or the behavior, cannot be used.
+    """
+    catalogue = load_states()
+    results = [_replayed(name, catalogue, behavior, journal) for name in recordings]
+    if junit is not None:
+        write_junit(junit, [_suite(*each) for each in zip(recordings, results, strict=True)])
+    if json:
+        _print_json(recordings, results)
+    else:
+        for name, result in zip(recordings, results, strict=True):
+            sys.stderr.writelines(f"{line}\n" for line in _lines(name, result))
+    raise typer.Exit(_exit_code(results))
+
+
+def _replayed(
+    name: str, catalogue: Catalogue, behavior: Path | None, journal: Path | None
+) -> ReplayReport | FlexcellError:
+    """Replay one; a bad recording is reported and the others go on."""
+    try:
+        changed = load_behavior(behavior) if behavior is not None else None
+        return replay_recording(_load(name, journal), catalogue, behavior=changed)
+    except FlexcellError as error:
+        return error
+
+
+def _load(name: str, journal: Path | None) -> Recording:
+    return load_recording(Path(name)) if journal is None else recording_of(read_run(journal, name))
+
+
+def _exit_code(results: list[ReplayReport | FlexcellError]) -> ExitCode:
+    if any(isinstance(result, FlexcellError) for result in results):
+        return ExitCode.BAD_INPUT
+    if any(isinstance(result, ReplayReport) and not result.same for result in results):
+        return ExitCode.REPLAY_DIFFERS
+    return ExitCode.SUCCESS
+
+
+def _lines(name: str, result: ReplayReport | FlexcellError) -> Iterator[str]:
+    if isinstance(result, FlexcellError):
+        # The error mostly says itself which file it is about.
+        yield f"flexcell: {result}" if name in str(result) else f"flexcell: {name}: {result}"
+        return
+    if result.difference is None:
+        cut = "" if result.recording.complete else ", where the recording was cut off"
+        yield f"{name}: the same, {result.compared} events{cut}"
+        return
+    yield f"{name}: differs: {result.difference}"
+    for line in result.difference.before:
+        yield f"  after {line}"
+
+
+def _print_json(names: list[str], results: list[ReplayReport | FlexcellError]) -> None:
+    rows = [_row(name, result) for name, result in zip(names, results, strict=True)]
+    sys.stdout.write(msgspec.json.encode({"replays": rows}).decode() + "\n")
+
+
+def _row(name: str, result: ReplayReport | FlexcellError) -> dict[str, object]:
+    if isinstance(result, FlexcellError):
+        return {"recording": name, "status": "unusable", "error": str(result)}
+    description = result.recording.description
+    return {
+        "recording": name,
+        "status": "same" if result.same else "differs",
+        "run": description.run,
+        "behavior": description.behavior,
+        "events": result.compared,
+        "complete": result.recording.complete,
+        "difference": _difference(result.difference),
+        "duration_s": round(result.duration_s, 6),
+    }
+
+
+def _difference(difference: Difference | None) -> dict[str, object] | None:
+    if difference is None:
+        return None
+    return {
+        "event": difference.number,
+        "time_s": difference.time_s,
+        "path": difference.path,
+        "recorded": difference.recorded,
+        "replayed": difference.replayed,
+        "detail": difference.detail,
+        "before": difference.before,
+        "message": str(difference),
+    }
+
+
+def _suite(name: str, result: ReplayReport | FlexcellError) -> Suite:
+    if isinstance(result, FlexcellError):
+        problem = Problem(kind="error", type="unusable", message=str(result))
+        case = Case(name=name, classname="replay", time_s=0.0, problem=problem)
+        return Suite(name=name, file=name, cases=(case,))
+    description, found = result.recording.description, result.difference
+    problem = (
+        Problem(kind="failure", type="differs", message=str(found), text=found.explained())
+        if found is not None
+        else None
+    )
+    case = Case(name=Path(name).stem, classname=class_name(name), time_s=result.duration_s, problem=problem)
+    properties = {
+        "run": description.run,
+        "behavior": description.behavior,
+        "document_sha256": description.document,
+        "seed": str(description.seed),
+        "clock": description.clock,
+        "events": str(result.compared),
+    }
+    return Suite(name=description.behavior, file=name, cases=(case,), properties=properties)

@@ -1,0 +1,191 @@
+"""`flexcell resume`: goes on with a run whose engine died, from its last durable event."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from engine.cell import OpenCell
+from engine.cli.execution import Ended, Order, carry_out
+from engine.cli.exit_code import ExitCode
+from engine.cli.inputs import read_plan, read_plan_anew
+from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
+from engine.cli.run_report import print_json, print_result
+from engine.document.cell import Cell, load_cell
+from engine.errors import ControlError
+from engine.journal import Journal, NullJournal, encode_event_log
+from engine.launch import Resumption, plan_resume, resume_run
+from engine.plan import Catalogue
+from engine.recorded_run import RecordedRun, read_run
+from engine.registry import load_states
+from engine.resume import RERUN, NeedsAnswers
+from engine.run import Run
+from engine.skill_port import SkillPort
+from engine.supervision import Supervision
+
+
+def resume(
+    run: Annotated[str, typer.Argument(help="The run, as `flexcell runs` names it.", show_default=False)],
+    journal: Annotated[str, typer.Option(help="Directory of the journal of runs.")] = ".flexcell",
+    answer: Annotated[
+        list[str] | None,
+        typer.Option(help="PATH=rerun or PATH=OUTCOME, for a state that was in mid-work; may be repeated."),
+    ] = None,
+    changed: Annotated[
+        bool, typer.Option("--changed", help="Go on in the behavior as its file is now, where that is possible.")
+    ] = False,
+    behavior: Annotated[
+        Path | None, typer.Option(help="The behavior, where its file is no longer where it was.")
+    ] = None,
+    cell: Annotated[Path | None, typer.Option(help="The cell, where its file is no longer where it was.")] = None,
+    clock: Annotated[
+        Literal["virtual", "real"] | None, typer.Option(help="As the run was started, by default.")
+    ] = None,
+    take_over: Annotated[
+        bool, typer.Option("--take-over", help="Also when a process drives it: that one can write no more and stops.")
+    ] = False,
+    events: Annotated[Path | None, typer.Option(help="Write the new events here, one JSON object a line.")] = None,
+    timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
+    operator: Operator = False,
+    autonomy: Autonomy = None,
+    operator_loss: Loss = "hold",
+    demand_operator: Demand = False,
+    breakpoints: Breakpoints = False,
+    paused: Paused = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object on stdout, nothing else.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Show no progress.")] = False,
+) -> None:
+    """Go on with an interrupted run.
+
+    What had ended is not done again. A state in mid-work follows its `resume` policy; one that asks
+    is asked for on the terminal, or must be answered with --answer. Exit codes are those of `run`.
+    """
+    catalogue = load_states()
+    found = read_run(journal, run)
+    file = behavior or Path(found.origin.behavior)
+    plan = read_plan(file, catalogue)
+    options = OperatorOptions(
+        autonomy=autonomy,
+        operator=operator,
+        loss=operator_loss,
+        demand=demand_operator or found.origin.demand_operator,
+        breakpoints=breakpoints,
+        paused=paused,
+    )
+    decide = partial(
+        plan_resume,
+        found,
+        plan,
+        catalogue=catalogue,
+        demanded=demand_operator,
+        changed=changed,
+        take_over=take_over,
+    )
+    answers = _read_answers(answer or [])
+    try:
+        resumption = decide(answers=answers)
+    except NeedsAnswers as questions:
+        answers = {**answers, **_asked(questions)}
+        resumption = decide(answers=answers)
+    if not quiet and not json:
+        _tell(resumption)
+    supervision = options.supervision(file, autonomy=resumption.autonomy)
+    order = Order(
+        make=partial(_make, resumption, catalogue, answers, supervision),
+        cell=_read_cell(cell, found),
+        seed=found.origin.seed,
+        journal=journal,
+        store=found.origin.store,
+        timeout_s=timeout,
+        virtual=(clock or found.origin.clock) == "virtual",
+        quiet=quiet or json,
+        supervision=supervision,
+        reload=partial(read_plan_anew, file, catalogue) if operator else None,
+    )
+
+    def report(ended: Ended) -> None:
+        encoded = encode_event_log(ended.log)
+        if events is not None:
+            events.write_bytes(encoded)
+        if json:
+            print_json(ended.result, encoded, len(ended.log))
+        else:
+            print_result(ended.result)
+
+    raise typer.Exit(carry_out(order, report=report))
+
+
+async def _make(
+    resumption: Resumption,
+    catalogue: Catalogue,
+    answers: Mapping[str, str],
+    supervision: Supervision,
+    cell: OpenCell,
+    journal: Journal | NullJournal,
+    skills: SkillPort | None,
+) -> Run:
+    if isinstance(journal, NullJournal):
+        raise ControlError("a run is resumed in its journal", where=resumption.found.id, hint="give --journal DIR")
+    return await resume_run(
+        resumption,
+        cell=cell,
+        journal=journal,
+        catalogue=catalogue,
+        answers=answers,
+        supervision=supervision,
+        skills=skills,
+    )
+
+
+def _read_cell(file: Path | None, found: RecordedRun) -> Cell | None:
+    path = file or (Path(found.origin.cell) if found.origin.cell is not None else None)
+    return load_cell(path) if path is not None else None
+
+
+def _read_answers(given: Sequence[str]) -> dict[str, str]:
+    answers: dict[str, str] = {}
+    for pair in given:
+        path, equals, answer = pair.partition("=")
+        if not (path and equals and answer):
+            raise ControlError(f"{pair!r} is not PATH=rerun or PATH=OUTCOME", where="--answer")
+        answers[path] = answer
+    return answers
+
+
+def _asked(questions: NeedsAnswers) -> dict[str, str]:
+    """Return what the person at the terminal says; without a terminal print the questions and end."""
+    if not (sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()):
+        for question in questions.questions:
+            ways = ", ".join((RERUN, *question.outcomes))
+            sys.stderr.write(f"{question.path}: what became of it? --answer {question.path}=… ({ways})\n")
+        raise typer.Exit(ExitCode.BAD_INPUT)
+    answers: dict[str, str] = {}
+    for question in questions.questions:
+        ways = (RERUN, *question.outcomes)
+        said = ""
+        while said not in ways:
+            said = typer.prompt(f"{question.path} was in mid-work: {', '.join(ways)}?", err=True).strip()
+        answers[question.path] = said
+    return answers
+
+
+def _tell(resumption: Resumption) -> None:
+    found, checkpoint = resumption.found, resumption.checkpoint
+    for change in resumption.changes:
+        sys.stderr.write(f"changed: {change}\n")
+    if checkpoint is None:
+        sys.stderr.write(f"{found.id} begins anew: nothing of it had become durable\n")
+        return
+    where = f"goes on after event {checkpoint.read_seq}"
+    if found.origin.cell is not None:
+        where += ", the world brought to where it was" if resumption.restores else ", the cell as it is"
+    sys.stderr.write(f"{found.id} {where}\n")
+    for path in checkpoint.rerun:
+        sys.stderr.write(f"  again: {path}\n")
+    for path, outcome in checkpoint.taken.items():
+        sys.stderr.write(f"  taken as {outcome}: {path}\n")

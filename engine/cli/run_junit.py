@@ -1,0 +1,42 @@
+"""What `flexcell run --junit` tells a CI server of a run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.cause import describe
+from engine.junit import Case, Problem, Suite, class_name, write_junit
+from engine.plan import Plan
+from engine.run import RunResult
+
+
+def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, seed: int | None, clock: str) -> None:
+    """Write the file: one suite with one case.
+
+    Raises:
+        FlexcellError: it cannot be written.
+    """
+    case = Case(name=plan.name, classname=class_name(file), time_s=result.duration_s, problem=_problem(result))
+    properties = {
+        "run": result.run,
+        "behavior": plan.name,
+        "document_sha256": plan.document_hash,
+        "seed": "" if seed is None else str(seed),
+        "clock": clock,
+        "status": result.status,
+        "outcome": result.outcome or "",
+    }
+    write_junit(path, [Suite(name=plan.name, file=str(file), cases=(case,), properties=properties)])
+
+
+def _problem(result: RunResult) -> Problem | None:
+    if result.success:
+        return None
+    why = describe(result.cause) if result.cause is not None else ""
+    said = result.outcome or result.status
+    return Problem(
+        kind="failure" if result.status == "finished" else "error",
+        type=said,
+        message=f"{said}: {why}" if why else said,
+        text="\nbecause ".join([said, *why.split(" because ")]) if why else said,
+    )

@@ -1,0 +1,202 @@
+"""`flexcell runs`: lists the runs of a journal and shows where one stands."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+from rich.table import Column, Table
+
+from engine.cli.run_report import cause_links, print_cause
+from engine.event import (
+    Cause,
+    Commanded,
+    Event,
+    GateReached,
+    OperatorChanged,
+    OutcomeRequested,
+    RunEnded,
+    StopRequested,
+)
+from engine.history import History
+from engine.journal import RunRecord, encode_event, list_runs
+from engine.plan import Plan, new_plan
+from engine.recorded_run import RecordedRun, read_run
+from engine.registry import load_states
+from engine.resume import read_history
+
+_LAST_EVENTS = 10
+_PIPE_WIDTH = 200
+
+app = typer.Typer(help="List the runs of a journal and show where one stands.", invoke_without_command=True)
+
+JournalPlace = Annotated[str, typer.Option("--journal", help="Directory of the journal of runs.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+
+
+class RunLine(msgspec.Struct, frozen=True, kw_only=True):
+    """One run in the list; `status` is running, interrupted, finished, stopped or errored."""
+
+    id: str
+    behavior: str
+    status: str
+    started: str
+    events: int
+    engines: int
+
+
+class RunSummary(RunLine, frozen=True, kw_only=True):
+    """Where one run stood at its last durable event, and what was done to it."""
+
+    outcome: str | None
+    cause: list[dict[str, object]]
+    active: tuple[str, ...]
+    userdata: dict[str, object]
+    scopes: dict[str, dict[str, object]]
+    parameters: dict[str, object]
+    operator: list[Event]
+    last: list[Event]
+    world_at: int | None
+    """The event up to which the simulated world is known."""
+
+
+@app.callback()
+def runs(context: typer.Context, journal: JournalPlace = ".flexcell", json: AsJson = False) -> None:
+    """List the runs, oldest first; one whose engine died shows as interrupted."""
+    if context.invoked_subcommand is not None:
+        return
+    lines = [_line(record) for record in list_runs(journal)]
+    if json:
+        sys.stdout.write(msgspec.json.encode(lines).decode() + "\n")
+        return
+    # The id is there to be copied: it is never cut short.
+    widest = max((len(line.id) for line in lines), default=0)
+    run_column = Column("run", min_width=widest, no_wrap=True)
+    table = Table(run_column, "behavior", "status", "started (UTC)", "events", box=None)
+    for line in lines:
+        table.add_row(line.id, line.behavior, line.status, line.started, str(line.events))
+    # In a pipe nothing is folded or cut short: its reader looks for whole words.
+    Console(width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
+
+
+@app.command("show")
+def show(
+    run: Annotated[str, typer.Argument(help="The run, as the list names it.", show_default=False)],
+    journal: JournalPlace = ".flexcell",
+    events: Annotated[bool, typer.Option("--events", help="Print all its events, one JSON object a line.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Show where a run stood: active states, data, what the operator did, why it ended."""
+    found = read_run(journal, run)
+    if events:
+        for event in found.events:
+            sys.stdout.buffer.write(encode_event(event) + b"\n")
+        return
+    summary = _summary(found)
+    if json:
+        sys.stdout.write(msgspec.json.encode(summary).decode() + "\n")
+    else:
+        _print(summary, _end(found))
+
+
+def _line(record: RunRecord) -> RunLine:
+    return RunLine(
+        id=record.id,
+        behavior=record.behavior,
+        status="interrupted" if record.interrupted else record.status,
+        started=datetime.fromtimestamp(record.started_unix_s, UTC).strftime("%Y-%m-%d %H:%M:%S"),
+        events=record.last_seq,
+        engines=record.epoch,
+    )
+
+
+def _summary(found: RecordedRun) -> RunSummary:
+    line = _line(found.record)
+    history = _history(found)
+    end = _end(found)
+    return RunSummary(
+        **msgspec.structs.asdict(line),
+        outcome=end.outcome if end is not None else None,
+        cause=cause_links(end.cause if end is not None else None),
+        active=history.active if history is not None and not history.ended else (),
+        userdata=dict(history.userdata()) if history is not None else {},
+        scopes={path: dict(values) for path, values in history.scopes().items() if path and values}
+        if history is not None
+        else {},
+        parameters=history.parameters if history is not None else found.origin.parameters,
+        operator=[event for event in found.effective if isinstance(event, Commanded | OperatorChanged | StopRequested)],
+        last=list(found.effective[-_LAST_EVENTS:]),
+        world_at=found.world.seq if found.world is not None else None,
+    )
+
+
+def _end(found: RecordedRun) -> RunEnded | None:
+    last = found.events[-1] if found.events else None
+    return last if isinstance(last, RunEnded) else None
+
+
+def _history(found: RecordedRun) -> History | None:
+    """Return where it stood; the behavior it executed is in the journal itself."""
+    behavior = found.behavior()
+    plan: Plan | None = new_plan(behavior, load_states()) if behavior is not None else None
+    return read_history(plan, found.id, found.events) if plan is not None else None
+
+
+def _print(summary: RunSummary, end: RunEnded | None) -> None:
+    console = Console(soft_wrap=True, highlight=False, markup=False)
+    ended = f" with {summary.outcome}" if summary.outcome else ""
+    engines = f", {summary.engines} engines" if summary.engines > 1 else ""
+    console.print(f"{summary.id}: {summary.behavior}, {summary.status}{ended}")
+    console.print(f"started {summary.started} UTC, {summary.events} events{engines}")
+    if summary.world_at is not None:
+        console.print(f"the simulated world is known at event {summary.world_at}")
+    cause: Cause | None = end.cause if end is not None else None
+    print_cause(cause, console)
+    _print_values(console, "parameters", summary.parameters)
+    _print_values(console, "userdata", summary.userdata)
+    for path, values in summary.scopes.items():
+        _print_values(console, f"userdata of {path}", values)
+    if summary.active:
+        console.print("active:")
+        for path in summary.active:
+            console.print(f"  {path}")
+    _print_events(console, "operator:", summary.operator)
+    _print_events(console, "last events:", summary.last)
+
+
+def _print_values(console: Console, title: str, values: dict[str, object]) -> None:
+    if values:
+        console.print(f"{title}:")
+    for key, value in values.items():
+        console.print(f"  {key} = {msgspec.json.encode(value).decode()}")
+
+
+def _print_events(console: Console, title: str, events: Sequence[Event]) -> None:
+    if events:
+        console.print(title)
+    for event in events:
+        console.print(f"  {event.seq:6} {event.time_s:9.3f} s  {_words(event)}")
+
+
+def _words(event: Event) -> str:
+    """Say an event in one line."""
+    kind = str(type(event).__struct_config__.tag or "")
+    match event:
+        case GateReached():
+            return f"gate {event.point} {event.path}: {', '.join(event.reasons)}"
+        case OutcomeRequested():
+            return f"{kind} {event.path} {event.outcome}"
+        case _:
+            fields = {name: getattr(event, name) for name in event.__struct_fields__ if name not in ("seq", "time_s")}
+            shown = [_short(value) for value in fields.values() if value not in (None, "", (), {})]
+            return " ".join([kind, *shown])
+
+
+def _short(value: object) -> str:
+    text = value if isinstance(value, str) else msgspec.json.encode(value).decode()
+    return text if len(text) <= 80 else f"{text[:79]}…"

@@ -1,0 +1,110 @@
+"""A run as its journal holds it: how it was started, its events, the world at its end, and what it executed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from engine.document import Behavior, load_behavior
+from engine.errors import DocumentError, FlexcellError, JournalError
+from engine.event import AnyEvent, BehaviorChanged, Event, RunStarted
+from engine.journal import (
+    RunOrigin,
+    RunRecord,
+    WorldState,
+    find_run,
+    journal_path,
+    read_events,
+    read_origin,
+    read_world,
+)
+from engine.recording import Documents, collect_documents
+from engine.resume import effective
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordedRun:
+    """One run of a journal, as of now."""
+
+    place: Path
+    record: RunRecord
+    origin: RunOrigin
+    events: tuple[AnyEvent, ...]
+    world: WorldState | None
+
+    @property
+    def id(self) -> str:
+        """Its name."""
+        return self.record.id
+
+    @cached_property
+    def effective(self) -> tuple[Event, ...]:
+        """Its events without those that were done anew after a crash."""
+        return tuple(effective(self.events))
+
+    @cached_property
+    def document(self) -> str:
+        """The content hash of the version of the behavior that it was executing last."""
+        changes = [event.document for event in self.events if isinstance(event, RunStarted | BehaviorChanged)]
+        return changes[-1] if changes else self.record.document
+
+    def knows_world_at(self, seq: int) -> bool:
+        """Tell whether the simulated world is known as it was at one of its events."""
+        return self.world is not None and self.world.seq == seq
+
+    def require_event(self, seq: int) -> None:
+        """Check that it has an event.
+
+        Raises:
+            DocumentError: it has no such event.
+        """
+        last = self.effective[-1].seq if self.effective else 0
+        if not 1 <= seq <= last:
+            raise DocumentError(f"run {self.id} has no event {seq}", hint=f"it has 1 to {last}")
+
+    def behavior(self) -> Behavior | None:
+        """Return the behavior as the run began it; None where the journal does not hold it.
+
+        Raises:
+            FlexcellError: the stored documents are damaged.
+        """
+        origin = self.origin
+        if not origin.documents:
+            return None
+        texts = {name: text.encode() for name, text in origin.documents.items()}
+        with TemporaryDirectory(prefix="flexcell-") as folder:
+            return load_behavior(Documents(behavior=origin.document, texts=texts).unpack(Path(folder)))
+
+
+def read_run(place: Path | str, run_id: str) -> RecordedRun:
+    """Read everything that a journal has of a run.
+
+    Raises:
+        JournalError: there is no such run, or the journal does not tell how it was started.
+    """
+    path = journal_path(place)
+    record = find_run(path, run_id)
+    origin = read_origin(path, run_id)
+    if origin is None:
+        raise JournalError(
+            f"the journal does not tell how run {run_id} was started", where=path, hint="start it again from its file"
+        )
+    return RecordedRun(
+        place=path,
+        record=record,
+        origin=origin,
+        events=read_events(path, run_id),
+        world=read_world(path, run_id),
+    )
+
+
+def kept_documents(behavior: Behavior) -> tuple[str, dict[str, str]]:
+    """Return the name and the texts under which a journal keeps what a behavior is made of; empty where it cannot."""
+    try:
+        found = collect_documents(behavior)
+        return found.behavior, {name: text.decode() for name, text in found.texts.items()}
+    except (FlexcellError, UnicodeDecodeError):
+        # A file that went away since it was loaded: the run goes on, only a changed document cannot be compared.
+        return "", {}

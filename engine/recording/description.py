@@ -1,0 +1,94 @@
+"""What a recording says about the run that it holds: enough to run it again."""
+
+from __future__ import annotations
+
+import platform
+import zlib
+from collections.abc import Mapping
+from importlib.metadata import version
+from typing import Literal
+
+import msgspec
+
+from engine.errors import RecordingError
+from engine.supervision import Supervision
+
+FORMAT = 1
+RECORD_NAME = "flexcell"
+"""The name of the MCAP metadata record that holds it."""
+_CHECKSUM = "crc32"
+
+
+class Description(msgspec.Struct, frozen=True, kw_only=True):
+    """One run: which behavior, what it was given, on which clock, recorded how."""
+
+    format: int = FORMAT
+    run: str
+    behavior: str
+    document: str
+    """The meaning hash of the behavior."""
+    behavior_file: str
+    """The attachment that is the behavior; the others are what it refers to."""
+    cell_file: str = ""
+    parameters: dict[str, object] = {}
+    inputs: dict[str, object] = {}
+    seed: int = 0
+    clock: Literal["virtual", "real"]
+    supervision: Supervision = Supervision()
+    """How it was watched over from the start."""
+    started_unix_s: float = 0.0
+    epoch_ns: int = 0
+    """What the run's time 0 is in the times of the file: 0 on a virtual clock, the wall clock on a real one."""
+    topic_rate_hz: float = 0.0
+    """At most that many messages of a topic were kept a second."""
+    topics: tuple[str, ...] = ()
+    versions: dict[str, str] = {}
+
+
+def present_versions() -> dict[str, str]:
+    """Return the versions that may matter when a replay differs."""
+    return {
+        "flexcell": version("flexcell"),
+        "python": platform.python_version(),
+        "msgspec": version("msgspec"),
+        "cel-expr-python": version("cel-expr-python"),
+    }
+
+
+def to_metadata(description: Description) -> dict[str, str]:
+    """Return the key-value pairs of the metadata record: text as it is, everything else as JSON."""
+    plain: dict[str, object] = msgspec.to_builtins(description)
+    pairs = {key: each if isinstance(each, str) else msgspec.json.encode(each).decode() for key, each in plain.items()}
+    return {**pairs, _CHECKSUM: _checksum(pairs)}
+
+
+def from_metadata(pairs: Mapping[str, str], *, where: object) -> Description:
+    """Read a description back.
+
+    Raises:
+        RecordingError: it is none, or of a later version.
+    """
+    if pairs.get(_CHECKSUM) != _checksum(pairs):
+        raise RecordingError("its description is damaged", where=where, hint="record it again")
+    texts = {field.encode_name for field in msgspec.structs.fields(Description) if field.type in (str, _CLOCK)}
+    try:
+        known = {key: each for key, each in pairs.items() if key != _CHECKSUM}
+        plain = {key: each if key in texts else msgspec.json.decode(each) for key, each in known.items()}
+        if plain.get("format") != FORMAT:
+            raise RecordingError(
+                f"this recording has format {plain.get('format')}, not {FORMAT}", where=where, hint="record it again"
+            )
+        return msgspec.convert(plain, Description)
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise RecordingError(
+            f"its description does not fit this version: {error}", where=where, hint="record it again"
+        ) from error
+
+
+def _checksum(pairs: Mapping[str, str]) -> str:
+    """Return a checksum of the pairs; MCAP has none for metadata."""
+    content = sorted((key, each) for key, each in pairs.items() if key != _CHECKSUM)
+    return f"{zlib.crc32(msgspec.json.encode(content)):08x}"
+
+
+_CLOCK = Literal["virtual", "real"]

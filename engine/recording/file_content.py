@@ -1,0 +1,217 @@
+"""The records of a recording as they lie in the file, whole or cut off in mid-record.
+
+Whatever is in a file that calls itself a recording, reading it ends in records or in one
+`RecordingError`.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import BinaryIO
+
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import (
+    Attachment,
+    AttachmentIndex,
+    Channel,
+    Chunk,
+    ChunkIndex,
+    Footer,
+    McapRecord,
+    Message,
+    Metadata,
+    MetadataIndex,
+    Schema,
+)
+from mcap.stream_reader import breakup_chunk
+from mcap.writer import MCAP0_MAGIC
+
+from engine.errors import RecordingError
+
+MAX_CHUNK = 256 * 2**20
+"""Bytes that one chunk may unfold to; a larger one is taken for damage."""
+
+_FRAME = 9  # opcode and length before the content of every record
+_FOOTER = _FRAME + 20
+_MAGIC = len(MCAP0_MAGIC)
+_KINDS: Mapping[int, Callable[[ReadDataStream], McapRecord]] = {
+    Opcode.SCHEMA: Schema.read,
+    Opcode.CHANNEL: Channel.read,
+    Opcode.CHUNK: Chunk.read,
+    Opcode.CHUNK_INDEX: ChunkIndex.read,
+    Opcode.ATTACHMENT: Attachment.read,
+    Opcode.ATTACHMENT_INDEX: AttachmentIndex.read,
+    Opcode.METADATA: Metadata.read,
+    Opcode.METADATA_INDEX: MetadataIndex.read,
+    Opcode.FOOTER: Footer.read,
+}
+
+
+@dataclass(kw_only=True)
+class FileContent:
+    """What was read: metadata and attachments by name, messages of one topic in file order."""
+
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict[str, dict[str, str]])
+    attachments: dict[str, bytes] = field(default_factory=dict[str, bytes])
+    messages: list[Message] = field(default_factory=list[Message])
+    complete: bool = False
+    """Whether the file was closed properly."""
+
+
+def read_content(path: Path, topic: str) -> FileContent:
+    """Read one topic of a recording, by its index where it has one.
+
+    Raises:
+        RecordingError: the file cannot be read, is no MCAP file, or is damaged.
+    """
+    with _reading(path) as stream:
+        return _by_index(stream, topic) or _in_sequence(stream, topic)
+
+
+@contextmanager
+def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
+    """Open a file and give what goes through its records from the start, as often as it is called.
+
+    The records end where the file was cut off; chunks come unfolded. Where the file is damaged,
+    going through it raises whatever the parsing stumbles over.
+
+    Raises:
+        OSError: it cannot be opened.
+        RecordingError: it is no MCAP file.
+    """
+    with path.open("rb") as stream:
+        _require_magic(stream, path)
+        yield lambda: _records(stream, _MAGIC)
+
+
+@contextmanager
+def _reading(path: Path) -> Generator[BinaryIO]:
+    try:
+        with path.open("rb") as stream:
+            _require_magic(stream, path)
+            yield stream
+    except RecordingError:
+        raise
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise RecordingError(f"cannot read this file: {reason}", where=path, hint="check its path") from error
+    except Exception as error:
+        # Parsing raises whatever it stumbles over; for the reader all of it is a damaged file.
+        what = " ".join(str(error).split()) or type(error).__name__
+        raise RecordingError(f"this file is damaged: {what}", where=path, hint="record it again") from error
+
+
+def _require_magic(stream: BinaryIO, path: Path) -> None:
+    if stream.read(_MAGIC) != MCAP0_MAGIC:
+        raise RecordingError("this is not an MCAP file", where=path, hint="give what --record wrote")
+
+
+def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
+    """Read with the index at the end of the file; None where there is none."""
+    size = stream.seek(0, 2)
+    start = _index_start(stream, size)
+    if start is None:
+        return None
+    content = FileContent(complete=True)
+    index = list(_records(stream, start))
+    wanted = {record.id for record in index if isinstance(record, Channel) and record.topic == topic}
+    for record in index:
+        match record:
+            case ChunkIndex():
+                if wanted.intersection(record.message_index_offsets):
+                    chunk = _records(stream, record.chunk_start_offset, only=True)
+                    content.messages += [m for m in chunk if isinstance(m, Message) and m.channel_id in wanted]
+            case AttachmentIndex() | MetadataIndex():
+                for found in _records(stream, record.offset, only=True):
+                    _keep(found, content)
+            case _:
+                pass
+    return content
+
+
+def _index_start(stream: BinaryIO, size: int) -> int | None:
+    if size < 2 * _MAGIC + _FOOTER:
+        return None
+    stream.seek(size - _FOOTER - _MAGIC)
+    tail = stream.read()
+    if tail[_FOOTER:] != MCAP0_MAGIC or tail[0] != Opcode.FOOTER:
+        return None
+    footer = Footer.read(ReadDataStream(BytesIO(tail[_FRAME:_FOOTER])))
+    if footer.summary_start == 0:
+        return None
+    stream.seek(footer.summary_start)
+    checked = stream.read(size - _MAGIC - footer.summary_start)[:-4]
+    if footer.summary_crc and zlib.crc32(checked) != footer.summary_crc:
+        raise ValueError("the checksum of its index is wrong")
+    return footer.summary_start
+
+
+def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
+    content = FileContent()
+    wanted: set[int] = set()
+    for record in _records(stream, _MAGIC):
+        match record:
+            case Channel():
+                if record.topic == topic:
+                    wanted.add(record.id)
+            case Message():
+                if record.channel_id in wanted:
+                    content.messages.append(record)
+            case Footer():
+                content.complete = stream.read(_MAGIC) == MCAP0_MAGIC
+            case _:
+                _keep(record, content)
+    return content
+
+
+def _keep(record: McapRecord, content: FileContent) -> None:
+    if isinstance(record, Metadata):
+        content.metadata[record.name] = record.metadata
+    elif isinstance(record, Attachment):
+        content.attachments[record.name] = record.data
+
+
+def _records(stream: BinaryIO, offset: int, *, only: bool = False) -> Iterator[McapRecord]:
+    """Go through the records from `offset` to the footer or to where the file was cut off."""
+    size = stream.seek(0, 2)
+    while offset + _FRAME <= size:
+        stream.seek(offset)
+        frame = stream.read(_FRAME)
+        opcode, length = frame[0], int.from_bytes(frame[1:], "little")
+        if offset + _FRAME + length > size:
+            return
+        yield from _parsed(opcode, stream.read(length))
+        if only or opcode == Opcode.FOOTER:
+            return
+        offset += _FRAME + length
+
+
+def _parsed(opcode: int, content: bytes) -> Iterator[McapRecord]:
+    data = ReadDataStream(BytesIO(content))
+    if opcode == Opcode.MESSAGE:
+        yield Message.read(data, len(content))
+        return
+    read = _KINDS.get(opcode)
+    if read is None:
+        return
+    if opcode == Opcode.ATTACHMENT and zlib.crc32(content[:-4]) != int.from_bytes(content[-4:], "little"):
+        raise ValueError("the checksum of a document in it is wrong")
+    record = read(data)
+    if isinstance(record, Chunk):
+        yield from _unfolded(record)
+    else:
+        yield record
+
+
+def _unfolded(chunk: Chunk) -> list[McapRecord]:
+    told = zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
+    if not 0 <= told <= MAX_CHUNK:
+        raise ValueError(f"a chunk says that it unfolds to {told} bytes")
+    return breakup_chunk(chunk, validate_crc=True)

@@ -1,0 +1,85 @@
+"""A recording as it is read back: what run it was, its documents, its events with their exact times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from mcap.records import Message
+
+from engine.errors import JournalError, RecordingError
+from engine.event import AnyEvent, RunEnded
+from engine.journal import decode_event
+from engine.recording.description import RECORD_NAME, Description, from_metadata
+from engine.recording.documents import Documents
+from engine.recording.file_content import FileContent, read_content
+from engine.recording.finished_file import EVENT_TOPIC, PART, part_file
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedEvent:
+    """One event and when it happened; finer than its own `time_s`, which is rounded."""
+
+    event: AnyEvent
+    at_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """One recorded run."""
+
+    path: Path
+    description: Description
+    documents: Documents
+    events: tuple[RecordedEvent, ...]
+    resolution_s: float = 1e-9
+    """How finely `at_s` is known."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether the end of the run is in it; else the process that wrote it was killed, or its disk full."""
+        return bool(self.events) and isinstance(self.events[-1].event, RunEnded)
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording. One that a killed process left is read from `<path>.part` as far as it goes.
+
+    Raises:
+        RecordingError: it cannot be read, is damaged, or is no recording of a run.
+    """
+    left = part_file(path)
+    file = left if not path.exists() and left.exists() else path
+    content = read_content(file, EVENT_TOPIC)
+    if not content.complete and file.suffix != PART:
+        raise RecordingError(
+            "this file was cut off", where=file, hint=f"rename it to *{PART} to use what there is of it"
+        )
+    if RECORD_NAME not in content.metadata:
+        raise RecordingError("this is not a recording of a run", where=file, hint="give what --record wrote")
+    description = from_metadata(content.metadata[RECORD_NAME], where=file)
+    documents = Documents(
+        behavior=description.behavior_file, cell=description.cell_file, texts=dict(content.attachments)
+    )
+    return Recording(
+        path=file,
+        description=description,
+        documents=documents,
+        events=tuple(_events(content, file)),
+    )
+
+
+def _events(content: FileContent, file: Path) -> Iterator[RecordedEvent]:
+    zero_ns: int | None = None
+    for message in content.messages:
+        event = _event(message, file)
+        if zero_ns is None:
+            zero_ns = message.log_time - round(event.time_s * 1e9)
+        yield RecordedEvent(event, (message.log_time - zero_ns) / 1e9)
+
+
+def _event(message: Message, file: Path) -> AnyEvent:
+    try:
+        return decode_event(message.data)
+    except JournalError as error:
+        raise RecordingError(error.message, where=file, hint="it is damaged or of another version") from error

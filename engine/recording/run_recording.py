@@ -1,0 +1,175 @@
+"""Records one run into an MCAP file: its events, its documents, and what the bus carries meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import msgspec
+
+from engine.bus import SkillBus
+from engine.errors import JournalError, RecordingError
+from engine.event import AnyEvent, Event
+from engine.journal import encode_event
+from engine.recording.channel_schema import channel_schema
+from engine.recording.description import RECORD_NAME, Description, present_versions, to_metadata
+from engine.recording.documents import YAML_TYPE, Documents
+from engine.recording.finished_file import EVENT_TOPIC, finish, part_file, recovered_file
+from engine.recording.foxglove import Log, log_line
+from engine.recording.live_file import LiveFile, require_unused
+from engine.recording.topic_tap import TopicTap
+from engine.run import Run
+from engine.supervision import Supervision
+
+DEFAULT_RATE_HZ = 50.0
+LOG_TOPIC = "/foxglove/log"
+
+_log = logging.getLogger("flexcell.recording")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordingOrder:
+    """What to record, and where to."""
+
+    path: Path
+    documents: Documents
+    rate_hz: float = DEFAULT_RATE_HZ
+    """At most that many messages of a topic are kept a second; 0 keeps none."""
+    topics: Sequence[str] = ("*",)
+    """Names of topics, may hold `*` and `?`."""
+
+
+class RunRecording:
+    """One run on its way into a file, from before its start to after its end; an async context.
+
+    While it goes on the file is `<path>.part`. Make it, with `open`, before anything starts; then
+    `attach` the run before it is executed. Nothing that happens to the file reaches the run.
+    """
+
+    def __init__(self, order: RecordingOrder, file: LiveFile) -> None:
+        self._order = order
+        self._file = file
+        self._tap: TopicTap | None = None
+        self._bus: SkillBus | None = None
+        self._run: Run | None = None
+        self._zero_s = 0.0
+        self._epoch_ns = 0
+        self._events = 0
+        self._event_channel = 0
+        self._log_channel = 0
+
+    @classmethod
+    def open(cls, order: RecordingOrder, *, inline: bool) -> Self:
+        """Create the file; what a killed process left of an earlier one is kept beside it.
+
+        Args:
+            order: What to record.
+            inline: Write on the calling thread, as behaves well on a virtual clock.
+
+        Raises:
+            RecordingError: it cannot be created, or another process records into it.
+        """
+        part = part_file(order.path)
+        require_unused(part)
+        if part.is_file():
+            kept = recovered_file(order.path)
+            try:
+                finish(part, kept)
+                _log.warning("a recording was cut off here; what there is of it is in %s", kept)
+            except RecordingError as error:
+                # What cannot be read any more is no reason to refuse the next recording.
+                _log.warning("a recording was cut off here and is lost: %s", error)
+        return cls(order, LiveFile.open(part, inline=inline))
+
+    def attach(
+        self,
+        run: Run,
+        bus: SkillBus,
+        *,
+        started_unix_s: float,
+        inputs: Mapping[str, object] | None = None,
+        supervision: Supervision | None = None,
+    ) -> None:
+        """Record this run from its first event on."""
+        order, file = self._order, self._file
+        self._run, self._bus = run, bus
+        self._zero_s = bus.clock.now_s()
+        self._epoch_ns = 0 if bus.clock.virtual else round(started_unix_s * 1e9)
+        description = Description(
+            run=run.id,
+            behavior=run.plan.name,
+            document=run.plan.document_hash,
+            behavior_file=order.documents.behavior,
+            cell_file=order.documents.cell,
+            parameters=msgspec.to_builtins(run.parameters),
+            inputs=msgspec.to_builtins(dict(inputs or {})),
+            seed=run.seed,
+            clock="virtual" if bus.clock.virtual else "real",
+            supervision=supervision or Supervision(),
+            started_unix_s=started_unix_s,
+            epoch_ns=self._epoch_ns,
+            topic_rate_hz=order.rate_hz,
+            topics=tuple(order.topics),
+            versions=present_versions(),
+        )
+        file.describe(RECORD_NAME, to_metadata(description))
+        for name, text in order.documents.texts.items():
+            file.attach(name, text, media_type=YAML_TYPE)
+        self._open_channels()
+        run.watch(self._take)
+        if order.rate_hz > 0:
+            self._tap = TopicTap(file, now_ns=self._now_ns, rate_hz=order.rate_hz, patterns=order.topics)
+            self._tap.open(bus)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file and finish it; a failure is a warning, as the run is over and well."""
+        if self._run is not None:
+            self._run.recorder.unwatch(self._take)
+        if self._tap is not None:
+            self._tap.close()
+        closing = asyncio.get_running_loop().run_in_executor(None, self._finish)
+        await asyncio.shield(closing)
+
+    def _finish(self) -> None:
+        self._file.close()
+        if self._file.left_out:
+            _log.warning("%d messages were left out of %s: the disk is too slow", self._file.left_out, self._order.path)
+        try:
+            finish(part_file(self._order.path), self._order.path)
+        except RecordingError as error:
+            _log.warning("%s", error)
+
+    def _open_channels(self) -> None:
+        file = self._file
+        events = channel_schema(AnyEvent, title="flexcell.Event")
+        self._event_channel = file.channel(EVENT_TOPIC, "flexcell.Event", events, metadata={})
+        log = channel_schema(Log, title="foxglove.Log")
+        self._log_channel = file.channel(LOG_TOPIC, "foxglove.Log", log, metadata={})
+
+    def _take(self, event: Event) -> None:
+        self._events += 1
+        now_ns = self._now_ns()
+        try:
+            encoded = encode_event(event)
+        except JournalError as error:
+            # With an event missing it could not be replayed; better that it ends here.
+            self._file.give_up(error.message)
+            return
+        self._file.write(self._event_channel, now_ns, encoded, sequence=self._events)
+        line = log_line(event, now_ns)
+        if line is not None:
+            self._file.write_if_quick(self._log_channel, now_ns, msgspec.json.encode(line), sequence=self._events)
+
+    def _now_ns(self) -> int:
+        bus = self._bus
+        return self._epoch_ns + (round((bus.clock.now_s() - self._zero_s) * 1e9) if bus is not None else 0)

@@ -1,0 +1,117 @@
+"""Records what the topics of a bus carry, each at most so many times a second."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+import msgspec
+
+from engine.bus import SkillBus, Subscription, Topic
+from engine.recording.channel_schema import channel_schema
+from engine.recording.foxglove import VIEWS, View
+from engine.recording.live_file import LiveFile
+
+_SLACK_NS = 1000
+"""A message that comes this much early is on time: clocks round."""
+
+_log = logging.getLogger("flexcell.recording")
+
+
+@dataclass(kw_only=True)
+class _Recorded:
+    """One topic on its way into the file."""
+
+    channel: int
+    view: View | None
+    view_channel: int
+    due_ns: int = 0
+    last: object = None
+    count: int = 0
+
+
+class TopicTap:
+    """Subscribes to the topics whose names match, those that are made later too.
+
+    Args:
+        file: Where messages go.
+        now_ns: The time of the recording.
+        rate_hz: At most that many messages of a topic are kept a second.
+        patterns: Names, may hold `*` and `?`.
+    """
+
+    def __init__(self, file: LiveFile, *, now_ns: Callable[[], int], rate_hz: float, patterns: Sequence[str]) -> None:
+        self._file = file
+        self._now_ns = now_ns
+        self._period_ns = round(1e9 / rate_hz)
+        self._rate_hz = rate_hz
+        self._patterns = tuple(patterns)
+        self._recorded: dict[str, _Recorded] = {}
+        self._subscriptions: list[tuple[Topic[Any], Subscription[Any]]] = []
+        self._unwatch: Callable[[], None] = lambda: None
+
+    def open(self, bus: SkillBus) -> None:
+        """Record from now on, beginning with the newest message of each topic."""
+        self._unwatch = bus.watch_topics(self._add)
+
+    def close(self) -> None:
+        """Record the newest message of each topic where it was left out, and nothing more."""
+        self._unwatch()
+        for topic, subscription in self._subscriptions:
+            subscription.close()
+            try:
+                newest = topic.latest
+                if newest is not None and newest != self._recorded[topic.name].last:
+                    self._write(topic.name, newest)
+            except Exception:
+                # As above; the run is over, and the other topics have last messages too.
+                _log.exception("the last message of topic %s is not recorded", topic.name)
+        self._subscriptions.clear()
+
+    def _add(self, topic: Topic[Any]) -> None:
+        if not any(fnmatchcase(topic.name, pattern) for pattern in self._patterns):
+            return
+        if not issubclass(topic.kind, msgspec.Struct):
+            _log.warning("topic %s is not recorded: its messages are no structs", topic.name)
+            return
+        try:
+            self._recorded[topic.name] = self._channels(topic)
+            if topic.latest is not None:
+                self._write(topic.name, topic.latest)
+        except Exception:
+            # Types and messages are a robot's; what cannot be written must not hurt who publishes it.
+            _log.exception("topic %s is not recorded", topic.name)
+            return
+        subscription = topic.subscribe(lambda message: self._take(topic.name, message))
+        self._subscriptions.append((topic, subscription))
+
+    def _channels(self, topic: Topic[Any]) -> _Recorded:
+        limit = {"max_rate_hz": f"{self._rate_hz:g}"}
+        name = f"flexcell.{topic.kind.__name__}"
+        channel = self._file.channel(f"/{topic.name}", name, channel_schema(topic.kind, title=name), metadata=limit)
+        view = VIEWS.get(topic.kind)
+        if view is None:
+            return _Recorded(channel=channel, view=None, view_channel=0)
+        schema = channel_schema(view.kind, title=view.schema_name)
+        shown = self._file.channel(view.topic(topic.name), view.schema_name, schema, metadata=limit)
+        return _Recorded(channel=channel, view=view, view_channel=shown)
+
+    def _take(self, name: str, message: msgspec.Struct) -> None:
+        if self._now_ns() >= self._recorded[name].due_ns - _SLACK_NS:
+            self._write(name, message)
+
+    def _write(self, name: str, message: object) -> None:
+        recorded = self._recorded[name]
+        now_ns = self._now_ns()
+        # From where it was due, not from now: else jitter would thin out what comes at about this rate.
+        recorded.due_ns = max(recorded.due_ns, now_ns - self._period_ns) + self._period_ns
+        recorded.last = message
+        recorded.count += 1
+        encoded = msgspec.json.encode(message)
+        self._file.write_if_quick(recorded.channel, now_ns, encoded, sequence=recorded.count)
+        if recorded.view is not None:
+            shown = msgspec.json.encode(recorded.view.show(message, now_ns))
+            self._file.write_if_quick(recorded.view_channel, now_ns, shown, sequence=recorded.count)

@@ -1,0 +1,26 @@
+"""The virtual event loop of a replay: it can let one thing go before everything else that is ready."""
+
+from __future__ import annotations
+
+from asyncio import Handle
+from collections import deque
+from collections.abc import Callable
+from typing import cast
+
+from engine.clock import VirtualLoop
+
+
+class ReplayLoop(VirtualLoop):
+    """A `VirtualLoop` whose queue can be jumped.
+
+    In the recorded run an answer came between two other events of one instant, and the order of
+    the queue then is not known any more; the order of the events is.
+    """
+
+    def go_first(self, callback: Callable[[], object]) -> None:
+        """Call back, and run what becomes ready by it before what is ready already."""
+        ready = cast("deque[Handle]", getattr(self, "_ready"))  # noqa: B009 - asyncio's own queue, of no public name
+        before = len(ready)
+        callback()
+        woken = [ready.pop() for _ in range(len(ready) - before)]
+        ready.extendleft(woken)

@@ -1,0 +1,73 @@
+"""Does to a replayed run what was done to the recorded one from outside: stops, commands, an operator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import msgspec
+
+from engine.control import Breakpoint, Control
+from engine.errors import FlexcellError, RecordingError
+from engine.event import Cause, Commanded, OperatorChanged, StopRequested
+from engine.replay.failure import error_of
+from engine.replay.story import Command, Intervention
+from engine.run import Run
+
+_COMMANDS: Mapping[str, Callable[[Control, Commanded], None]] = {
+    "pause": lambda control, _: control.pause(),
+    "resume": lambda control, _: control.resume(),
+    "step": lambda control, event: control.step(_text(event, "mode"), event.path),
+    "lock": lambda control, event: control.lock(event.path),
+    "unlock": lambda control, event: control.unlock(event.path),
+    "force": lambda control, event: control.force(event.path, _text(event, "outcome")),
+    "repeat": lambda control, event: control.repeat(event.path),
+    "answer": lambda control, event: control.answer(event.path),
+    "autonomy": lambda control, event: control.set_autonomy(_text(event, "level")),
+    "breakpoints": lambda control, event: control.set_breakpoints(_breakpoints(event)),
+}
+_OPERATOR: Mapping[str, Callable[[Control], None]] = {
+    "attached": Control.attach_operator,
+    "detached": Control.detach_operator,
+    "lost": Control.lose_operator,
+}
+
+
+def require_known(event: Command) -> None:
+    """Refuse what cannot be done again.
+
+    Raises:
+        RecordingError: this version does not know the command.
+    """
+    if isinstance(event, Commanded) and event.command not in _COMMANDS:
+        raise RecordingError(f"event {event.seq}: the command `{event.command}` cannot be replayed")
+
+
+def intervene(run: Run, each: Intervention) -> None:
+    """Do it again; raises ControlError where the run does not allow it now."""
+    match each.event:
+        case StopRequested() as event:
+            if each.failure is not None:
+                run.fail(_error(event, each.failure))
+            else:
+                run.stop(event.reason)
+        case OperatorChanged() as event:
+            _OPERATOR[event.status](run.control)
+        case Commanded() as event:
+            _COMMANDS[event.command](run.control, event)
+
+
+def _error(event: StopRequested, failure: Cause) -> FlexcellError:
+    """Return the error with its message and its hint apart again, as the stop says only the message."""
+    error = error_of(failure)
+    error.hint = error.message.removeprefix(event.reason).removeprefix(" (").removesuffix(")") or None
+    error.message = event.reason
+    return error
+
+
+def _text(event: Commanded, name: str) -> Any:
+    return event.arguments.get(name, "")
+
+
+def _breakpoints(event: Commanded) -> tuple[Breakpoint, ...]:
+    return msgspec.convert(event.arguments.get("breakpoints", ()), tuple[Breakpoint, ...])

@@ -1,0 +1,74 @@
+"""Looks for the order of the answers of one instant with which a behavior tells the recorded story again.
+
+In the recorded run an answer took some turns of the loop from its device to the state that waited,
+during which others that were ready at that instant did things that left no event. How many turns
+is not recorded, and must not make a difference where any number gives the story again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+
+from engine.event import (
+    Answered,
+    Commanded,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    OperatorChanged,
+    Received,
+    StopRequested,
+)
+from engine.recording import RecordedEvent
+from engine.replay.attempt import Attempt
+from engine.replay.timetable import NOT_LATE
+
+_ANSWERS = (Answered, GoalFinished, GoalHeld, GoalResumed, Received, StopRequested, Commanded, OperatorChanged)
+_MOST_TURNS = 4
+_MOST_ANSWERS = 8
+_TOGETHER = 3
+_INSTANT_S = 1e-9
+_EFFORT = 20_000
+"""Events to be gone through in the search, at most."""
+
+
+def search_order(
+    first: Attempt, attempt: Callable[[Mapping[int, int]], Attempt], story: Sequence[RecordedEvent]
+) -> Attempt:
+    """Return the attempt that comes furthest, beginning with `first`; always the same one."""
+    best = first
+    left = max(1, _EFFORT // len(story))
+    while not best.same and best.met < len(story):
+        for turns in _variants(best, story):
+            left -= 1
+            tried = attempt(turns)
+            if tried.same or tried.met > best.met:
+                best = tried
+                break
+            if left <= 0:
+                return best
+        else:
+            return best
+    return best
+
+
+def _variants(best: Attempt, story: Sequence[RecordedEvent]) -> Iterator[Mapping[int, int]]:
+    """Go through other orders of the answers of the instant at which an attempt failed.
+
+    One answer after the other is moved, the last one first, then the last few together.
+    """
+    instant_s = story[best.met].at_s
+    places: list[int] = []
+    for place in range(best.met, -1, -1):
+        if abs(story[place].at_s - instant_s) > _INSTANT_S or len(places) == _MOST_ANSWERS:
+            break
+        if isinstance(story[place].event, _ANSWERS):
+            places.append(place)
+    for turns in (NOT_LATE, *range(1, _MOST_TURNS + 1)):
+        for place in places:
+            if best.turns.get(place, 0) != turns:
+                yield {**best.turns, place: turns}
+    last = places[:_TOGETHER]
+    for moved in product(range(_MOST_TURNS), repeat=len(last)):
+        yield {**best.turns, **dict(zip(last, moved, strict=True))}

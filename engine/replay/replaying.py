@@ -1,0 +1,78 @@
+"""Runs a recorded run again, in virtual time and without its robots, and tells the first difference."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+
+from engine.document import Behavior, load_behavior
+from engine.event import Event
+from engine.plan import Catalogue, new_plan
+from engine.recording import Recording
+from engine.replay.attempt import Attempt
+from engine.replay.difference import Difference
+from engine.replay.loop import ReplayLoop
+from engine.replay.order import search_order
+from engine.replay.story import story_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReplayReport:
+    """What came of a replay."""
+
+    recording: Recording
+    difference: Difference | None
+    """None when the run was the same."""
+    events: tuple[Event, ...]
+    """What happened this time."""
+    compared: int
+    """How many recorded events came again."""
+    duration_s: float
+    """How long the replay took, on the wall clock."""
+
+    @property
+    def same(self) -> bool:
+        """Whether everything recorded came again and nothing else."""
+        return self.difference is None
+
+
+def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | None = None) -> ReplayReport:
+    """Run a recording again, with another version of its behavior if one is given.
+
+    Raises:
+        RecordingError: it cannot be replayed.
+        DocumentError: the behavior cannot be run with what was given to the recorded one.
+    """
+    started_s = perf_counter()
+    story = story_of(recording)
+    plan = new_plan(behavior or recorded_behavior(recording), catalogue)
+
+    def attempt(turns: Mapping[int, int]) -> Attempt:
+        again = Attempt(recording, plan, story, turns)
+        ReplayLoop().run_main(again.run())
+        return again
+
+    again = attempt({})
+    if recording.description.clock == "virtual":
+        again = search_order(again, attempt, story)
+    return ReplayReport(
+        recording=recording,
+        difference=again.difference,
+        events=tuple(again.events),
+        compared=again.met,
+        duration_s=perf_counter() - started_s,
+    )
+
+
+def recorded_behavior(recording: Recording) -> Behavior:
+    """Return the behavior as it was when the run was recorded.
+
+    Raises:
+        RecordingError: it is not in the recording.
+        DocumentError: this version cannot read it.
+    """
+    with tempfile.TemporaryDirectory(prefix="flexcell-replay-") as folder:
+        return load_behavior(recording.documents.unpack(Path(folder)))

@@ -1,0 +1,123 @@
+"""Runs a behavior headless in virtual time for a test: what the pytest fixture `flexcell_run` does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AsyncExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from engine.bus import SkillBus
+from engine.cell import OpenCell
+from engine.check import check_behavior
+from engine.clock import new_clock, run_virtual
+from engine.document import Behavior, load_behavior
+from engine.document.cell import Cell, load_cell
+from engine.document.faults import load_faults
+from engine.errors import DocumentError
+from engine.event import Event
+from engine.faults import FaultPort
+from engine.plan import Catalogue, new_plan
+from engine.recorder import Watcher
+from engine.run import Run, RunResult
+from engine.skill_port import BusPort
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ran:
+    """A run that is over: how it ended and everything that happened."""
+
+    result: RunResult
+    events: tuple[Event, ...]
+
+    @property
+    def outcome(self) -> str | None:
+        """Its outcome, None where it was stopped or ended with an error."""
+        return self.result.outcome
+
+
+class RunBehavior(Protocol):
+    """The type of the fixture `flexcell_run`, see `run_behavior`."""
+
+    def __call__(
+        self,
+        file: Path | str,
+        *,
+        parameters: Mapping[str, object] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        seed: int | None = None,
+        cell: Path | str | None = None,
+        prepare: Callable[[SkillBus], object] | None = None,
+        faults: Path | str | None = None,
+        watchers: Sequence[Watcher] = (),
+    ) -> Ran:
+        """Run a behavior to its end."""
+        ...
+
+
+def run_behavior(
+    file: Path | str,
+    *,
+    catalogue: Catalogue,
+    store: Path,
+    parameters: Mapping[str, object] | None = None,
+    inputs: Mapping[str, object] | None = None,
+    seed: int | None = None,
+    cell: Path | str | None = None,
+    prepare: Callable[[SkillBus], object] | None = None,
+    faults: Path | str | None = None,
+    watchers: Sequence[Watcher] = (),
+) -> Ran:
+    """Run a behavior file to its end in virtual time.
+
+    Args:
+        file: The behavior.
+        catalogue: The states that it may use.
+        store: The store file of the run, so that tests leave the cell's own alone.
+        parameters: Values for its parameters.
+        inputs: Initial userdata.
+        seed: Of random choices and of the jitter of parts; parts lie exactly without one.
+        cell: The cell to run it in; the one the behavior names by default.
+        prepare: Puts fakes of a test on an empty bus; then no cell is opened.
+        faults: A fault document.
+        watchers: Called with every event, such as those of a coverage.
+
+    Raises:
+        DocumentError: the behavior has errors, or was given what it does not take.
+    """
+    behavior = load_behavior(Path(file))
+    for finding in check_behavior(behavior, catalogue):
+        if finding.severity == "error":
+            raise DocumentError(finding.message, where=finding.position, hint=finding.hint)
+    plan = new_plan(behavior, catalogue)
+    document = load_faults(Path(faults)) if faults is not None else None
+    events: list[Event] = []
+
+    async def main() -> RunResult:
+        async with AsyncExitStack() as stack:
+            if prepare is not None:
+                bus = await stack.enter_async_context(SkillBus(new_clock()))
+                prepare(bus)
+            else:
+                opened = OpenCell(_cell(behavior, cell), seed=seed, store_path=str(store))
+                bus = (await stack.enter_async_context(opened)).bus
+            run = Run(
+                plan,
+                run=behavior.name,
+                bus=bus,
+                parameters=parameters,
+                inputs=inputs,
+                seed=seed or 0,
+                skills=FaultPort(BusPort(bus), document, clock=bus.clock, seed=seed or 0) if document else None,
+            )
+            for watcher in (events.append, *watchers):
+                run.watch(watcher)
+            return await run.execute()
+
+    return Ran(result=run_virtual(main()), events=tuple(events))
+
+
+def _cell(behavior: Behavior, cell: Path | str | None) -> Cell | None:
+    file = Path(cell) if cell is not None else behavior.cell_file
+    return load_cell(file) if file is not None else None

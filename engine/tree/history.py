@@ -1,0 +1,128 @@
+"""What the events of a run tell of one activation of a tree, so that another can go on from there.
+
+`mark_of` takes from an event what matters; `standings` folds marks, in order, into how each part
+stood. That is enough: composites of py_trees keep nothing that does not follow from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged
+
+
+class Mark(NamedTuple):
+    """One thing that happened to a part: its path, what, and the run's time.
+
+    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME` or `attempt NUMBER`.
+    """
+
+    path: str
+    what: str
+    at_s: float
+
+
+@dataclass
+class Standing:
+    """How one part stood at the end of its marks."""
+
+    status: str = "invalid"
+    since_s: float = 0.0
+    order: int = -1
+    """Which of the marks was the last one of this part."""
+    over: int = -1
+    """Which was the last one by which it was not RUNNING: what is older belongs to an earlier activation."""
+    ended_s: float | None = None
+    """When it was last RUNNING no more; None where it never was."""
+    final: str | None = None
+    """The first status that a one-shot keeps: success wins over an earlier failure."""
+    first: str | None = None
+    """The first final status at all."""
+    attempt: int = 1
+    rounds: int = 0
+    """How often it has begun a further round in this activation."""
+    outcome: str | None = None
+    target: str | None = None
+    read: bool = True
+    """For a leaf that has ended: whether anything followed, so that a tick has read its end."""
+
+
+def mark_of(event: Event) -> Mark | None:
+    """Return what an event tells of a part of a tree, None for events that tell nothing."""
+    match event:
+        case StatusChanged():
+            return Mark(event.path, event.status, event.time_s)
+        case Entered():
+            return Mark(event.path, "entered", event.time_s)
+        case Exited():
+            what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
+            return Mark(event.path, what, event.time_s)
+        case Diverted():
+            # An operator names an outcome; timeout, guard and on_error name a status.
+            said = "outcome" if event.by in ("operator", "start") else "target"
+            return Mark(event.path, f"{said} {event.target}", event.time_s)
+        case Retried():
+            return Mark(event.path, f"attempt {event.attempt}", event.time_s)
+        case _:
+            return None
+
+
+def marks_of(kept: Iterable[tuple[object, ...]]) -> Iterator[Mark]:
+    """Go through marks that were kept as plain tuples; what is none is passed over."""
+    for each in kept:
+        match each:
+            case (str(path), str(what), float() | int() as at_s):
+                yield Mark(path, what, at_s)
+            case _:
+                pass
+
+
+def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
+    """Return how each part stood after these marks."""
+    found: dict[str, Standing] = {}
+    unread: list[Standing] = []
+    for number, mark in enumerate(marks):
+        standing = found.setdefault(mark.path, Standing())
+        standing.order = number
+        standing.over = number if mark.what in ("success", "failure", "invalid") else standing.over
+        what, _, name = mark.what.partition(" ")
+        ended = what in ("outcome", "target", "failed")
+        own_retry = what == "attempt" and any(other is standing for other in unread)
+        if not ended and not own_retry:
+            for other in unread:
+                other.read = True
+            unread.clear()
+        if ended:
+            standing.read = False
+            unread.append(standing)
+        _fold(standing, what, name, mark.at_s)
+    return found
+
+
+def _fold(standing: Standing, what: str, name: str, at_s: float) -> None:
+    before = standing.status
+    match what:
+        case "attempt":
+            # A node's own retry runs it again; a retry that is a decorator is RUNNING anyway.
+            standing.attempt = int(name)
+            standing.status = "running"
+            standing.read = True
+        case "outcome" | "target" | "failed":
+            standing.status = "ended"
+            standing.outcome = name if what == "outcome" else None
+            standing.target = name if what == "target" else None
+        case "entered":
+            standing.status = "running"
+        case _:
+            standing.rounds = standing.rounds + 1 if what == before == "running" else 0
+            standing.attempt = standing.attempt if what == "running" else 1
+            standing.status = what
+    if what in ("success", "failure"):
+        standing.first = standing.first or what
+        standing.final = what if standing.final != "success" else "success"
+    if before == "running" and standing.status != "running":
+        standing.ended_s = at_s
+    if standing.status != before or what == "attempt":
+        standing.since_s = at_s

@@ -1,0 +1,178 @@
+"""Puts a freshly grown tree into the state in which another activation of it stood.
+
+Leaves that were at work are begun again (their own points say from where); timers go on with what
+was left of them; a py_trees behaviour that was RUNNING begins anew, as nobody knows its inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from py_trees import composites, decorators
+from py_trees.behaviour import Behaviour
+from py_trees.common import OneShotPolicy, ParallelPolicy, Status
+from py_trees.decorators import Decorator
+
+from engine.node import Left
+from engine.tree.decorators import Condition, Cooldown, Remap, Repeat, Retry, Timeout
+from engine.tree.growth import Growth
+from engine.tree.history import Standing
+from engine.tree.leaf import TreeLeaf
+from engine.tree.parallel import Parallel
+
+_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
+_FINAL = (Status.SUCCESS, Status.FAILURE)
+_NEVER = Standing()
+
+Branches = Mapping[str, Mapping[str, object]]
+"""What branches of parallels had written, by the path of the branch."""
+
+
+def restore(root: Behaviour, growth: Growth, known: Mapping[str, Standing], branches: Branches) -> bool:
+    """Give every part the state it stood in; return whether a tick is due at once.
+
+    Args:
+        root: The tree as grown.
+        growth: What its parts share.
+        known: How each part stood, by path.
+        branches: Values of the branches of parallels that were at work.
+    """
+    restoring = _Restoring(growth, known, branches, growth.execution.recorder.now_s())
+    if not restoring.part(root):
+        restoring.tick_due = True
+    # In the order in which they had begun, so that those which end together end in the same order.
+    for leaf, _ in sorted(restoring.going_on, key=lambda each: each[1]):
+        leaf.go_on()
+    return restoring.tick_due
+
+
+@dataclass
+class _Restoring:
+    growth: Growth
+    known: Mapping[str, Standing]
+    branches: Branches
+    now_s: float
+    tick_due: bool = False
+    going_on: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
+
+    def part(self, node: Behaviour) -> bool:
+        """Restore a part and everything below it; tell whether anything there will wake the tree."""
+        part = self.growth.parts[node]
+        standing = self.known.get(part.path, _NEVER)
+        if standing.status != "running" and self._last(node) > standing.order:
+            # It was in its first tick, and had not come to tell its status.
+            self.tick_due = True
+            standing = replace(standing, status="running", since_s=self.now_s, attempt=1, rounds=0)
+        if isinstance(node, TreeLeaf):
+            return self._leaf(node, standing)
+        if part.foreign is not None:
+            # Its own state is lost; it is INVALID, so the tick that is due initialises it again.
+            return False
+        node.status = _STATUS.get(standing.status, Status.INVALID)
+        self.growth.statuses.take(node)
+        running = node.status is Status.RUNNING
+        if isinstance(node, Parallel) and running:
+            node.restore(self.branches)
+        wakes = [self.part(child) for child in node.children]
+        awake = any(wakes)
+        if isinstance(node, Decorator):
+            awake = self._decorator(node, standing) or awake
+        if running:
+            unread = self._unread(node, standing)
+            for child in unread:
+                _echo(child)
+            if isinstance(node, composites.Composite):
+                node.current_child = unread[0] if unread else self._current(node, standing)
+            # A tick was under way, or had just ended, when it was cut: it is done again.
+            self.tick_due = self.tick_due or bool(unread) or not awake
+        return awake
+
+    def _unread(self, node: Behaviour, standing: Standing) -> list[Behaviour]:
+        """Return the children whose end a RUNNING part had not come to read."""
+        ended = [child for child in node.children if child.status in _FINAL and self._order(child) > standing.over]
+        if isinstance(node, composites.Parallel):
+            failed = any(child.status is Status.FAILURE for child in ended)
+            return ended if failed or isinstance(node.policy, ParallelPolicy.SuccessOnOne) else []
+        if isinstance(node, composites.Composite):
+            final = Status.FAILURE if isinstance(node, composites.Sequence) else Status.SUCCESS
+            decisive = [child for child in ended if child.status is final]
+            last = node.children[-1]
+            return decisive[:1] or ([last] if last in ended else [])
+        match node:
+            case Repeat() | Retry():
+                again = Status.SUCCESS if isinstance(node, Repeat) else Status.FAILURE
+                told = standing.order > max(self._last(node), self._order(node.children[0]))
+                return [] if told and node.children[0].status is again else ended
+            case Remap():
+                return [child for child in ended if node.shown[child.status] is not Status.RUNNING]
+            case Condition():
+                return [child for child in ended if child.status is node.succeed_status]
+            case _:
+                return ended
+
+    def _current(self, node: composites.Composite, standing: Standing) -> Behaviour:
+        """Return the child at which a composite with memory goes on."""
+        passed = Status.SUCCESS if isinstance(node, composites.Sequence) else Status.FAILURE
+        following = 0
+        for index, child in enumerate(node.children):
+            if child.status is Status.RUNNING:
+                return child
+            if child.status is passed and self._order(child) > standing.over:
+                following = index + 1
+        return node.children[min(following, len(node.children) - 1)]
+
+    def _order(self, node: Behaviour) -> int:
+        """Return which of the marks was the last one of a part."""
+        return self.known.get(self.growth.parts[node].path, _NEVER).order
+
+    def _last(self, node: Behaviour) -> int:
+        """Return which of the marks was the last one by which something below a part was at work, or ended."""
+        found = -1
+        for child in node.children:
+            standing = self.known.get(self.growth.parts[child].path, _NEVER) if child in self.growth.parts else _NEVER
+            own = standing.order if standing.status != "invalid" else -1
+            found = max(found, own, self._last(child))
+        return found
+
+    def _leaf(self, leaf: TreeLeaf, standing: Standing) -> bool:
+        execution = self.growth.execution
+        path = leaf.plan.node.path
+        told_again = not standing.read and path in execution.points
+        if standing.status == "running" or told_again:
+            leaf.status = Status.RUNNING
+            self.going_on.append((leaf, standing.order))
+            return True
+        execution.points.pop(path, None)
+        if standing.status == "ended" and (standing.outcome is not None or standing.target is not None):
+            leaf.restore(Left(standing.outcome or "", standing.target))
+        return False
+
+    def _decorator(self, node: Behaviour, standing: Standing) -> bool:
+        """Restore what a decorator keeps; tell whether it has set a timer."""
+        elapsed_s = self.now_s - standing.since_s
+        match node:
+            case Timeout() | Retry() | Remap() | Condition():
+                node.restore(standing, elapsed_s)
+            case Cooldown():
+                ended_s = standing.since_s if standing.first is not None else 0.0
+                node.restore(standing, self.now_s - max(standing.ended_s or 0.0, ended_s))
+            case Repeat():
+                node.success = standing.rounds
+            case decorators.OneShot():
+                kept = standing.first if node.policy is OneShotPolicy.ON_COMPLETION else standing.final
+                node.final_status = _STATUS[kept] if kept is not None and _STATUS[kept] in node.policy.value else None
+            case _:
+                pass
+        path = self.growth.parts[node].path
+        return self.growth.alarms.pending(path)
+
+
+def _echo(node: Behaviour) -> None:
+    """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+
+    def tick() -> Iterator[Behaviour]:
+        del vars(node)["tick"]
+        yield node
+
+    vars(node)["tick"] = tick

@@ -1,0 +1,133 @@
+"""`flexcell run --record` and `flexcell replay`: exit codes, lines, JSON and JUnit of the installed command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from engine.journal import list_runs
+from tests.engine.cli.command import Said, flexcell
+
+WAIT = """
+flexcell: 1
+name: wait
+parameters: {pause: {type: number, default: 60, minimum: 0, maximum: 3600, unit: s}}
+userdata: {flag: true}
+outcomes: [finished, failed]
+success: [finished]
+root:
+  machine:
+    initial: wait
+    states:
+      wait: {state: flow.Wait, with: {duration_s: "${pause}"}, transitions: {done: choose}}
+      choose: {state: flow.Decide, with: {when: "${flag}"}, transitions: {"true": finished, "false": failed}}
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A folder with a behavior."""
+    (tmp_path / "wait.yaml").write_text(WAIT, encoding="utf-8")
+    return tmp_path
+
+
+def record(project: Path, *arguments: str) -> Said:
+    """Record a run in virtual time."""
+    return flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--record", "run.mcap", *arguments, cwd=project)
+
+
+def test_what_was_recorded_replays_the_same(project: Path) -> None:
+    assert record(project, "-p", "pause=1800").code == 0
+    (project / "wait.yaml").unlink()
+    said = flexcell("replay", "run.mcap", cwd=project)
+    assert (said.code, said.out, said.err) == (0, "", "run.mcap: the same, 10 events\n")
+
+
+def test_inputs_of_the_run_are_those_of_the_replay(project: Path) -> None:
+    assert record(project, "--input", "flag=false").code == 1
+    assert flexcell("replay", "run.mcap", cwd=project).code == 0
+
+
+def test_a_difference_is_exit_code_4_and_one_line_with_both_sides(project: Path) -> None:
+    record(project)
+    (project / "changed.yaml").write_text(WAIT.replace("done: choose", "done: failed"), encoding="utf-8")
+    said = flexcell("replay", "run.mcap", "--behavior", "changed.yaml", cwd=project)
+    assert said.code == 4
+    assert said.err.splitlines()[0] == (
+        "run.mcap: differs: event 5 at 60.000 s, root: "
+        "recorded `transition wait: done → choose`; replayed `transition wait: done → failed`"
+    )
+
+
+def test_json_and_junit_tell_all_of_several(project: Path) -> None:
+    record(project)
+    (project / "bad.mcap").write_bytes(b"no recording")
+    (project / "changed.yaml").write_text(WAIT.replace("done: choose", "done: failed"), encoding="utf-8")
+    said = flexcell(
+        "replay", "run.mcap", "bad.mcap", "--behavior", "changed.yaml", "--json", "--junit", "r.xml", cwd=project
+    )
+    assert said.code == 2
+    differs, unusable = json.loads(said.out)["replays"]
+    assert (differs["status"], differs["difference"]["path"], differs["events"]) == ("differs", "root", 4)
+    assert unusable == {
+        "recording": "bad.mcap",
+        "status": "unusable",
+        "error": "bad.mcap: this is not an MCAP file (give what --record wrote)",
+    }
+    suites = ElementTree.parse(project / "r.xml").getroot()
+    assert [(suite.get("failures"), suite.get("errors")) for suite in suites] == [("1", "0"), ("0", "1")]
+    properties = {each.get("name"): each.get("value") for each in suites.iter("property")}
+    assert properties["run"] == differs["run"]
+    assert len(properties["document_sha256"] or "") == 64
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ("nowhere.mcap",),
+            "flexcell: nowhere.mcap: cannot read this file: No such file or directory (check its path)",
+        ),
+        (("wait.yaml",), "flexcell: wait.yaml: this is not an MCAP file (give what --record wrote)"),
+        (("run.mcap", "--behavior", "no.yaml"), "no.yaml:1:1: cannot read this file"),
+        (("some-run", "--journal", "."), "there is no journal here"),
+    ],
+)
+def test_what_cannot_be_replayed_is_exit_code_2_and_one_line(
+    project: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    record(project)
+    said = flexcell("replay", *arguments, cwd=project)
+    assert (said.code, said.out, said.err.count("\n")) == (2, "", 1)
+    assert message in said.err
+
+
+def test_a_run_of_the_journal_replays_too(project: Path) -> None:
+    flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--journal", "journal", "-p", "pause=5", cwd=project)
+    (run,) = list_runs(project / "journal")
+    (project / "wait.yaml").unlink()
+    said = flexcell("replay", run.id, "--journal", "journal", cwd=project)
+    assert (said.code, said.err) == (0, f"{run.id}: the same, 10 events\n")
+
+
+def test_a_recording_that_cannot_be_begun_starts_nothing(project: Path) -> None:
+    said = flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--record", "no/run.mcap", cwd=project)
+    assert (said.code, said.out) == (2, "")
+    assert "the recording cannot be created: No such file or directory" in said.err
+    assert said.err.count("\n") == 1
+    assert not (project / ".flexcell").exists() or list_runs(project / ".flexcell") == ()
+
+
+def test_the_result_of_a_run_as_junit(project: Path) -> None:
+    said = flexcell(
+        "run", "wait.yaml", "--clock", "virtual", "-q", "--junit", "r.xml", "--input", "flag=false", cwd=project
+    )
+    assert said.code == 1
+    (suite,) = ElementTree.parse(project / "r.xml").getroot()
+    assert (suite.get("name"), suite.get("failures"), suite.get("time")) == ("wait", "1", "60.000")
+    failure = suite.find("./testcase/failure")
+    assert failure is not None
+    assert failure.get("type") == "failed"

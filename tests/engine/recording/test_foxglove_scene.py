@@ -1,0 +1,39 @@
+"""The drawn cell in Foxglove: each body as the primitive that it is, in its frame."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from engine.messages import SceneDescription, VisualGeometry
+from engine.recording.foxglove_scene import scene_update
+from engine.recording.foxglove_types import Color, Time, Vector3
+
+WHITE = (1.0, 1.0, 1.0, 1.0)
+
+
+def _body(kind: str, size_m: tuple[float, ...] = (), **more: Any) -> VisualGeometry:
+    return VisualGeometry(name=kind, frame="f", kind=kind, size_m=size_m, rgba=WHITE, xyz=(1.0, 0.0, 0.0), **more)
+
+
+def test_every_kind_of_body_has_its_primitive() -> None:
+    vertices = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+    bodies = (
+        _body("box", (1.0, 2.0, 3.0)),
+        _body("sphere", (0.5,)),
+        _body("cylinder", (0.5, 2.0)),
+        _body("mesh", vertices=vertices, faces=struct.pack("<3I", 0, 1, 2)),
+    )
+    box, sphere, cylinder, mesh = scene_update(SceneDescription(geometries=bodies), 1_500_000_000).entities
+    assert (box.timestamp, box.frame_id, box.frame_locked, box.cubes[0].size) == (
+        Time(1, 500_000_000), "f", True, Vector3(1.0, 2.0, 3.0),
+    )  # fmt: skip
+    assert box.cubes[0].pose.position == Vector3(1.0, 0.0, 0.0)
+    assert sphere.spheres[0].size == Vector3(1.0, 1.0, 1.0)
+    assert cylinder.cylinders[0].size == Vector3(1.0, 1.0, 2.0)
+    assert mesh.triangles[0].points == (Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0))
+    assert (mesh.triangles[0].indices, mesh.triangles[0].color) == ((0, 1, 2), Color(*WHITE))
+
+
+def test_a_body_of_an_unknown_kind_is_left_out() -> None:
+    assert scene_update(SceneDescription(geometries=(_body("blob"),)), 0).entities == ()

@@ -1,0 +1,68 @@
+"""The engine and the reference interpreter tell the same of random behaviors, to the instant."""
+
+from __future__ import annotations
+
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from engine.event import RunEnded, RunStarted
+from engine.journal import encode_event_log
+from tests.engine.reference.activation import lines_of, story_of
+from tests.engine.reference.engine_run import run_to_end
+from tests.engine.reference.interpreter import Interpreter, TooLong
+from tests.engine.reference.random_behaviors import STOPS, Case, cases
+
+COMPARING = settings(
+    max_examples=200,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
+)
+
+
+@given(cases(), STOPS)
+@COMPARING
+def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -> None:
+    """Status, outcome, userdata, and every activation with its times."""
+    reference = Interpreter(case.behavior)
+    try:
+        status, outcome, userdata = reference.run(stop_at_s)
+    except TooLong:
+        assume(False)
+        raise
+    assume(not reference.ties)
+    told = run_to_end(case.behavior, stop_at_s)
+    result = told.result
+    assert story_of(lines_of(told.events)) == story_of(reference.log)
+    assert (result.status, result.outcome, dict(result.userdata)) == (status, outcome, userdata)
+
+
+@given(cases(), st.sampled_from([0.0, 1.0, 2.0, 3.0, 4.0, 12.05]))
+@COMPARING
+def test_a_run_ends_and_leaves_nothing_behind(case: Case, stop_at_s: float) -> None:
+    """Stopped at the instants of other things: numbered without gaps, all left once, nothing after the end."""
+    try:
+        Interpreter(case.behavior).run(12.05)
+    except TooLong:
+        assume(False)
+    told = run_to_end(case.behavior, stop_at_s)
+    story_of(lines_of(told.events))
+    assert [event.seq for event in told.events] == list(range(1, len(told.events) + 1))
+    assert [event.time_s for event in told.events] == sorted(event.time_s for event in told.events)
+    assert isinstance(told.events[0], RunStarted)
+    ends = [event for event in told.events if isinstance(event, RunEnded)]
+    assert told.events[-1:] == tuple(ends)
+    assert (ends[0].status, ends[0].outcome) == (told.result.status, told.result.outcome)
+    assert told.result.status in ("finished", "stopped", "errored")
+    assert (told.result.outcome is not None) == (told.result.status == "finished")
+
+
+@given(cases(), STOPS | st.sampled_from([0.0, 1.0, 2.0]), st.integers(0, 3))
+@settings(COMPARING, max_examples=60)
+def test_the_same_seed_gives_the_same_bytes(case: Case, stop_at_s: float, seed: int) -> None:
+    """Twice the same run, whatever happens at one instant."""
+    try:
+        Interpreter(case.behavior).run(12.05)
+    except TooLong:
+        assume(False)
+    first, second = (encode_event_log(run_to_end(case.behavior, stop_at_s, seed).events) for _ in range(2))
+    assert first == second

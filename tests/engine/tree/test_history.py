@@ -1,0 +1,172 @@
+"""A tree that was cut goes on from its events as if nothing had happened."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import cast
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from engine.event import Entered, Event, Exited, StatusChanged
+from engine.execution import Execution
+from engine.leaf import Leaf
+from engine.node import Entry
+from engine.plan import Plan
+from engine.state import Outcome
+from engine.tree import Tree, TreeRunner, mark_of
+from engine.tree.history import Mark
+from engine.userdata import Scope
+from tests.engine.tree.run_tree import Told, run_plan, tree_plan
+from tests.engine.tree.scripted_states import REMAINING
+from tests.engine.tree.specimen import Specimen, trees
+
+END_S = 6.125
+
+
+@dataclass(frozen=True, kw_only=True)
+class _GoingOn(Tree):
+    """A tree that begins where the marks end."""
+
+    history: tuple[Mark, ...] = ()
+    branches: Mapping[str, Mapping[str, object]] | None = None
+
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Tick it to its end."""
+        runner = TreeRunner(
+            self.root, path=path, scope=scope, execution=execution, history=self.history, branches=self.branches
+        )
+        return await runner.run()
+
+
+def _cut(plan: Plan, told: Told, at_s: float, branches: Mapping[str, Mapping[str, object]] | None = None) -> Told:
+    """Run what is left of a run that was cut between two instants."""
+    before = [event for event in told.events if event.time_s <= at_s]
+    marks = [mark._replace(at_s=mark.at_s - at_s) for event in before if (mark := mark_of(event)) is not None]
+    counts: dict[str, int] = {}
+    opened: dict[str, float] = {}
+    for event in before:
+        if isinstance(event, Entered) and event.kind == "state":
+            counts[event.path] = event.visit
+            opened[event.path] = event.time_s
+        elif isinstance(event, Exited):
+            opened.pop(event.path, None)
+    REMAINING.clear()
+    REMAINING.update({path: _due(plan, path, counts[path], since_s) - at_s for path, since_s in opened.items()})
+    work = plan.root.work
+    assert isinstance(work, Tree)
+    root = replace(plan.root, work=_GoingOn(root=work.root, history=tuple(marks), branches=branches))
+    return run_plan(replace(plan, root=root), stop_at_s=(END_S - at_s,), instant_limit=100, counts=counts)
+
+
+def _due(plan: Plan, path: str, count: int, since_s: float) -> float:
+    work = plan.nodes[path].work
+    assert isinstance(work, Leaf)
+    script = cast("dict[str, list[tuple[float, bool]]]", work.parameters.value)["script"]
+    return since_s + script[min(count, len(script)) - 1][0]
+
+
+def _told(events: Sequence[Event], since_s: float, shift_s: float) -> list[str]:
+    """Say what happens after a moment, without what is begun anew at that moment itself."""
+    lines: list[str] = []
+    for event in events:
+        at_s = event.time_s + shift_s
+        if at_s <= since_s or at_s >= END_S - 0.125:
+            continue
+        match event:
+            case Entered():
+                lines.append(f"{at_s} +{event.path}")
+            case Exited():
+                lines.append(f"{at_s} -{event.path} {event.preempted or event.outcome}")
+            case StatusChanged():
+                lines.append(f"{at_s} {event.path} {event.status}")
+            case _:
+                pass
+    return lines
+
+
+@given(specimen=trees(durations=[0.5, 1.0, 2.0, 0.0], polling=False), data=st.data())
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+def test_a_tree_goes_on_as_if_it_had_not_been_cut(specimen: Specimen, data: st.DataObject) -> None:
+    """At any moment between two instants: the same leaves at the same times, the same statuses, the same end."""
+    plan = tree_plan(json.dumps(specimen.document()))
+    whole = run_plan(plan, stop_at_s=(END_S,), instant_limit=100)
+    moments = [at * 0.25 + 0.125 for at in range(24) if at * 0.25 + 0.125 < whole.result.duration_s]
+    assume(whole.result.status != "errored" and moments)
+    at_s = data.draw(st.sampled_from(moments))
+    rest = _cut(plan, whole, at_s)
+    # What coincides may come in another order: timers were begun in another order after the cut.
+    assert sorted(_told(rest.events, at_s, at_s)) == sorted(_told(whole.events, at_s, 0.0))
+    assert rest.result.outcome == whole.result.outcome
+    if whole.result.outcome is not None:
+        assert rest.result.duration_s + at_s == pytest.approx(whole.result.duration_s)
+
+
+def _goes_on(
+    tree: str, at_s: float, head: str = "", branches: Mapping[str, Mapping[str, object]] | None = None
+) -> Told:
+    """Cut a tree and compare what comes after with the whole; return the rest."""
+    plan = tree_plan(tree, head=head)
+    whole = run_plan(plan, stop_at_s=(END_S,), instant_limit=100)
+    rest = _cut(plan, whole, at_s, branches)
+    # What coincides may come in another order: timers were begun in another order after the cut.
+    assert sorted(_told(rest.events, at_s, at_s)) == sorted(_told(whole.events, at_s, 0.0))
+    assert rest.result.outcome == whole.result.outcome
+    return rest
+
+
+@pytest.mark.parametrize("at_s", [0.5, 1.5, 3.5, 4.5])
+def test_a_cooldown_goes_on_cooling_down(at_s: float) -> None:
+    """It is asked again three seconds after it had ended."""
+    _goes_on(
+        """
+        selector:
+          memory: false
+          children:
+            - cooldown: {after: 3 s, child: {state: test.Act, with: {script: [[1, false], [1, true]]}}}
+            - {state: test.Act, with: {script: [[9, true]]}}
+        """,
+        at_s,
+    )
+
+
+@pytest.mark.parametrize("at_s", [0.5, 1.25, 2.5, 3.5, 5.5])
+def test_a_retry_goes_on_waiting_for_its_next_attempt(at_s: float) -> None:
+    """With what is left of the wait."""
+    _goes_on("retry: {times: 3, backoff: 1 s, child: {state: test.Act, with: {script: [[1, false]]}}}", at_s)
+
+
+def test_branches_of_a_parallel_keep_what_they_had_written() -> None:
+    """Apart from one another, until the parallel ends."""
+    rest = _goes_on(
+        """
+        parallel:
+          - sequence: [{state: test.Write, with: {value: 7}}, {state: test.Act, with: {script: [[2, true]]}}]
+          - {state: test.Act, with: {script: [[3, true]]}}
+        """,
+        1.5,
+        head="userdata: {value: 0}",
+        branches={"root/parallel/sequence": {"value": 7}},
+    )
+    assert rest.result.userdata == {"value": 7}
+
+
+def test_a_py_trees_behaviour_begins_anew() -> None:
+    """Nobody knows how far it had come: it counts four ticks again, from the cut on."""
+    tree = "sequence: [{behaviour: 'py_trees.behaviours:TickCounter', with: {duration: 4, completion_status: SUCCESS}}]"
+    plan = tree_plan(tree)
+    rest = _cut(plan, run_plan(plan), 0.25)
+    assert (rest.result.outcome, rest.result.duration_s) == ("success", pytest.approx(0.4))
+
+
+def test_an_end_that_no_tick_had_read_is_read_first() -> None:
+    """The engine died between the end of the first leaf and the tick; the second is begun at once."""
+    plan = tree_plan("sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]")
+    told = run_plan(plan)
+    seq = next(event.seq for event in told.events if isinstance(event, Exited) and event.path.endswith("/a"))
+    cut = Told(told.result, tuple(event for event in told.events if event.seq <= seq))
+    rest = _cut(plan, cut, 1.0)
+    assert (rest.story, rest.result.outcome) == (["0 +sequence/b", "0 -sequence/b yes"], "success")

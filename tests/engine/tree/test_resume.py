@@ -1,0 +1,133 @@
+"""A run gone on with from each of its events inside a tree ends as it did: nothing is lost or done twice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from engine.bus import SkillBus
+from engine.clock import new_clock, run_virtual
+from engine.event import Entered, Event, Exited
+from engine.history import History
+from engine.journal import decode_event, encode_event
+from engine.plan import Plan
+from engine.run import Run
+from tests.engine.tree.run_tree import Told, tree_plan
+from tests.engine.tree.scripted_states import COUNTS
+
+TREES = {
+    "a sequence of actions": """
+        sequence:
+          - {state: test.Act, name: a, with: {script: [[1, true]]}}
+          - {state: test.Write, name: w, with: {value: 5, after_s: 1}}
+          - guard: {when: "${value == 5}", child: {state: test.Act, name: b, with: {script: [[1, true]]}}}
+    """,
+    "rounds of a parallel": """
+        repeat:
+          times: 3
+          child:
+            sequence:
+              - {state: test.Act, name: a, with: {script: [[1, true]]}}
+              - parallel:
+                  - {state: test.Act, name: b, with: {script: [[1, true]]}}
+                  - sequence:
+                      - {state: test.Count, name: w, success: [more, full], with: {up_to: 9}}
+                      - {state: test.Act, name: c, with: {script: [[3, true]]}}
+              - {state: test.Check, name: d}
+    """,
+    "attempts of a retry": """
+        retry:
+          times: 5
+          backoff: 0.5
+          child:
+            sequence:
+              - {state: test.Act, name: a, with: {script: [[1, true]]}}
+              - {state: test.Act, name: b, with: {script: [[1, false], [1, false], [1, true]]}}
+    """,
+    "a timeout, alternatives and a one-shot": """
+        sequence:
+          - one_shot: {child: {state: test.Write, with: {value: 1}}}
+          - selector:
+              - timeout: {after: 2 s, child: {state: test.Act, name: slow, with: {script: [[9, true]]}}}
+              - {state: test.Act, name: no, with: {script: [[1, false]]}}
+              - {state: test.Act, name: yes, with: {script: [[1, true]]}}
+    """,
+    "machines and trees inside": """
+        sequence:
+          - machine:
+              initial: one
+              states:
+                one: {state: test.Write, with: {value: 1, after_s: 1}, transitions: {done: two}}
+                two: {state: test.Act, with: {script: [[1, true]]}, transitions: {yes: fine, no: wrong}}
+          - tree: {repeat: {times: 2, child: {state: test.Act, with: {script: [[1, true]]}}}}
+          - {state: test.Give, with: {outcome: c, after_s: 1}, retry: {times: 1, outcomes: [c], backoff: 1 s},
+             success: [c]}
+    """,
+    "a check that watches": """
+        sequence:
+          memory: false
+          children:
+            - {state: test.Check, name: clear}
+            - parallel:
+                - {state: test.Act, name: a, with: {script: [[1, true]]}}
+                - {state: test.Act, name: b, with: {script: [[2, true]]}}
+    """,
+}
+
+
+def _run(plan: Plan, known: list[Event] | None) -> Told:
+    events: list[Event] = []
+    COUNTS.clear()
+    for event in known or ():
+        if isinstance(event, Exited) and not event.preempted:
+            COUNTS[event.path] = event.visit
+
+    async def main() -> Told:
+        async with SkillBus(new_clock()) as bus:
+            history = History(plan, run="r1").read(known) if known is not None else None
+            run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
+            run.watch(events.append)
+            return Told(await run.execute(), tuple(events))
+
+    return run_virtual(main())
+
+
+def _plain(events: list[Event]) -> list[Event]:
+    return [decode_event(encode_event(event)) for event in events]
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_a_run_resumed_after_any_of_its_events_ends_the_same(name: str) -> None:
+    """Also where the engine died in the middle of a tick."""
+    plan = tree_plan(TREES[name], head="userdata: {value: 0, count: 0}")
+    whole = _run(plan, None)
+    assert whole.result.outcome == "success"
+    for count in range(1, len(whole.events)):
+        known = _plain(list(whole.events[:count]))
+        rest = _run(plan, known)
+        assert rest.result.outcome == "success", whole.events[count - 1]
+        assert rest.result.userdata == whole.result.userdata, whole.events[count - 1]
+        finished = [(e.path, e.visit) for e in known if isinstance(e, Exited) and not e.preempted]
+        again = {(e.path, e.visit) for e in rest.events if isinstance(e, Entered)}
+        assert again.isdisjoint(finished), whole.events[count - 1]
+
+
+@pytest.mark.parametrize("name", TREES)
+def test_actions_that_had_ended_are_not_done_again(name: str) -> None:
+    """Each is entered as often as without the crash, once more where it was cut in mid-work."""
+    plan = tree_plan(TREES[name], head="userdata: {value: 0, count: 0}")
+    whole = _run(plan, None)
+    for count in range(1, len(whole.events)):
+        known = _plain(list(whole.events[:count]))
+        rest = _run(plan, known)
+        for leaf in plan.nodes.values():
+            if leaf.work.kind != "state" or leaf.name == "clear" or leaf.retry is not None:
+                continue
+            ended = _ends((*known, *rest.events), leaf.path)
+            due = _ends(whole.events, leaf.path)
+            assert len(ended) == len(due), (leaf.path, whole.events[count - 1])
+
+
+def _ends(events: Sequence[Event], path: str) -> list[Exited]:
+    return [e for e in events if isinstance(e, Exited) and e.path == path and not e.preempted]
