@@ -11,21 +11,15 @@ import re
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import PurePosixPath
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from msgspec import Meta
 
 from engine.document.conversion import Strict
 from engine.document.duration import Duration, seconds
 
-NodeKind = Literal[
-    "state",
-    "machine",
-    "concurrency",
-    "priority",
-    "tree",
-    "foreach",
-    "behavior",
+PlainKind = Literal["state", "machine", "concurrency", "priority", "tree", "foreach", "behavior"]
+TreeKind = Literal[
     "sequence",
     "selector",
     "parallel",
@@ -36,26 +30,13 @@ NodeKind = Literal[
     "remap",
     "condition",
     "behaviour",
-    "retry",
-    "timeout",
-    "guard",
 ]
-KINDS: tuple[NodeKind, ...] = ("state", "machine", "concurrency", "priority", "tree", "foreach", "behavior")
-TREE_KINDS: tuple[NodeKind, ...] = (
-    "sequence",
-    "selector",
-    "parallel",
-    "inverter",
-    "one_shot",
-    "repeat",
-    "cooldown",
-    "remap",
-    "condition",
-    "behaviour",
-)
 """Kinds that stand only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
 Wrapper = Literal["retry", "timeout", "guard"]
-WRAPPERS: tuple[Wrapper, ...] = ("retry", "timeout", "guard")
+NodeKind = PlainKind | TreeKind | Wrapper
+KINDS: tuple[PlainKind, ...] = get_args(PlainKind)
+TREE_KINDS: tuple[TreeKind, ...] = get_args(TreeKind)
+WRAPPERS: tuple[Wrapper, ...] = get_args(Wrapper)
 """Keys of every node that, given a `child` inside a tree, are decorators of it."""
 
 Key = Annotated[str, Meta(pattern="^[A-Za-z_][A-Za-z0-9_]{0,63}$", description="Letters, digits and `_`")]

@@ -167,11 +167,10 @@ class Interpreter:
         rounds = node.foreach
         assert rounds is not None
         given = scope.evaluate(rounds.items if rounds.times is None else rounds.times)
-        if rounds.times is not None and isinstance(given, int):
-            given = list(range(given))
-        if not isinstance(given, list):
+        if not isinstance(given, list if rounds.times is None else int):
             raise Failed(path)
-        for number, item in enumerate(cast("list[object]", given)):
+        items = cast("list[object]", given) if rounds.times is None else list(range(cast("int", given)))
+        for number, item in enumerate(items):
             index = {rounds.index: number} if rounds.index is not None else {}
             inner = Scope({**rounds.userdata, rounds.item: item, **index}, scope)
             end = self.perform(rounds.child, f"{path}/child", inner, now_s, deadline_s)
