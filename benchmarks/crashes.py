@@ -58,7 +58,8 @@ def main() -> int:
     options = parser.parse_args()
     written: dict[str, list[Trial]] = {}
     print(
-        "| behavior | crash points | engines | ended as without crash | effects twice | wall s |\n|---|---|---|---|---|---|"
+        "| behavior | crash points | engines | ended as without crash | effects twice | wall s |\n"
+        "|---|---|---|---|---|---|"
     )
     for name in options.subject or SUBJECTS:
         started_s = time.perf_counter()

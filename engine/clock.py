@@ -139,7 +139,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._timers = 0
         self._working = 0
         self._outside = 0
-        self._idle_waiters: list[tuple[int, asyncio.Future[None]]] = []
+        self._idle_waiters: list[tuple[float, asyncio.Future[None]]] = []
 
     def time(self) -> float:
         """Virtual seconds since the loop was made."""
@@ -165,7 +165,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Count (+1) or discount (-1) something real that will wake the loop, such as a server."""
         self._outside += change
 
-    async def idle(self, depth: int) -> None:
+    async def idle(self, depth: float) -> None:
         """Return when nothing more is ready at this instant; the deepest waiter goes first, alone."""
         waiter: asyncio.Future[None] = self.create_future()
         entry = (depth, waiter)

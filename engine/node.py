@@ -21,6 +21,7 @@ from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, preempt
+from engine.settle import settle
 from engine.state import Outcome, State
 from engine.userdata import Scope
 
@@ -239,6 +240,9 @@ class Node:
         timer = execution.suspensions.timer(self.path, max(0.0, timeout.after_s - elapsed_s))
         try:
             await asyncio.wait({body, timer.future}, return_when=asyncio.FIRST_COMPLETED)
+            if not body.done():
+                # What ends at this very instant is in time; everything inside decides before we do.
+                await settle(depth=self.path.count("/") - 0.5)
         except asyncio.CancelledError:
             await preempt((body,), overdue(execution, self.path))
             raise

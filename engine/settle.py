@@ -10,7 +10,7 @@ _QUIET_TURNS = 8
 """Loop turns a finished goal needs to travel from its future to the branch that awaits it."""
 
 
-async def settle(*, depth: int) -> None:
+async def settle(*, depth: float) -> None:
     """Let the present instant play out; deeper containers decide before shallower ones.
 
     On a virtual loop this is exact: time cannot pass before. On a real loop there is no such

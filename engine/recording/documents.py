@@ -66,8 +66,9 @@ def collect_documents(behavior: Behavior, cell: Cell | None = None) -> Documents
 
 def _texts(behavior: Behavior) -> Iterator[tuple[Path, bytes]]:
     file = behavior.file.resolve()
-    # A behavior made in Python or parsed from text has no file of its own; JSON is read like YAML.
-    yield file, _read(file) if file.is_file() else msgspec.json.format(msgspec.json.encode(behavior.document))
+    # A behavior made in Python or parsed from text has no file of its own, whatever lies in the place of one.
+    own = Path(behavior.source.file) == behavior.file and file.is_file()
+    yield file, _read(file) if own else msgspec.json.format(msgspec.json.encode(behavior.document))
     for target in behavior.references.values():
         yield from _texts(target)
 

@@ -40,8 +40,6 @@ class Interpreter:
 
     behavior: Behavior
     log: list[Line] = field(default_factory=list[Line])
-    ties: bool = False
-    """Whether something else happened at the very instant of a timeout around it."""
     budget: list[int] = field(default_factory=lambda: [400])
 
     def run(self, stop_at_s: float) -> tuple[str, str | None, dict[str, object]]:
@@ -75,9 +73,7 @@ class Interpreter:
         if node.timeout is None:
             return self._retried(node, path, scope, now_s, deadline_s)
         late_s = now_s + node.timeout.after_s
-        before = len(self.log)
         end = self._retried(node, path, scope, now_s, min(late_s, deadline_s))
-        self.ties |= any(time_s == late_s and not preempted for _, time_s, _, _, preempted in self.log[before:])
         if not end.preempted:
             return end
         if late_s > deadline_s or end.at_s > deadline_s:
@@ -197,7 +193,6 @@ class Interpreter:
         inner = Scope({**target.document.userdata, **bind_parameters(target.parameters, given), **flows_in})
         beyond = Interpreter(target, self.log, budget=self.budget)
         end = beyond.perform(target.root, f"{path}/root", inner, now_s, deadline_s)
-        self.ties |= beyond.ties
         if end.preempted or end.failed:
             return end
         for key, source in node.outputs.items():

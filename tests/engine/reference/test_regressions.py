@@ -13,9 +13,6 @@ from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter
 
 HEAD = "flexcell: 1\nname: t\noutcomes: [x, y]\nroot:\n"
-UNSETTLED = pytest.mark.xfail(
-    strict=True, reason="a timeout decides before the instant at which it is due has played out inside its node"
-)
 STATE = """
 machine:
   initial: s
@@ -69,9 +66,9 @@ def _behavior(root: str) -> Behavior:
     "root",
     [
         pytest.param(STATE, id="state"),
-        pytest.param(BRANCH, id="branch", marks=UNSETTLED),
-        pytest.param(LATER_TIMEOUT_INSIDE, id="state with a later timeout", marks=UNSETTLED),
-        pytest.param(SAME_TIMEOUT_INSIDE, id="state with the same timeout", marks=UNSETTLED),
+        pytest.param(BRANCH, id="branch"),
+        pytest.param(LATER_TIMEOUT_INSIDE, id="state with a later timeout"),
+        pytest.param(SAME_TIMEOUT_INSIDE, id="state with the same timeout"),
     ],
 )
 def test_what_ends_at_the_very_instant_of_its_timeout_has_ended(root: str) -> None:
@@ -81,7 +78,6 @@ def test_what_ends_at_the_very_instant_of_its_timeout_has_ended(root: str) -> No
     assert run_to_end(behavior, 10.0).result.outcome == "x"
 
 
-@UNSETTLED
 def test_a_machine_goes_on_at_the_very_instant_of_its_timeout() -> None:
     """The transition of the state that just ended is taken, and its successor preempted."""
     behavior = _behavior(GOES_ON)

@@ -29,7 +29,6 @@ def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -
     except TooLong:
         assume(False)
         raise
-    assume(not reference.ties)
     told = run_to_end(case.behavior, stop_at_s)
     result = told.result
     assert story_of(lines_of(told.events)) == story_of(reference.log)

@@ -128,4 +128,3 @@ def test_many_crashes_in_a_row_change_nothing(name: str) -> None:
         known += _plain(list(rest.events[:3]))
     assert rest.result.outcome == "good"
     assert rest.result.userdata == whole.result.userdata
-
