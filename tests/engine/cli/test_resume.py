@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
+import pty
 import resource
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from engine.event import Called, GateReached, RunResumed
 from engine.journal import list_runs
-from tests.engine.cli.command import flexcell
+from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.cli.process import JOURNAL, entered, events_in, run_id_in, runs_in, started, until
 
 CELL = "flexcell: 1\ncell: shelf\nstore: {kind: sqlite, path: store.db}\n"
@@ -231,3 +234,20 @@ def test_what_is_no_interrupted_run_is_refused(tmp_path: Path) -> None:
     assert "this run is over (finished)" in over.err
     unknown = flexcell("resume", run_id_in(tmp_path) + "x", cwd=tmp_path)
     assert (unknown.code, "did you mean" in unknown.err) == (2, True)
+
+
+def test_on_a_terminal_it_asks_until_the_answer_fits(tmp_path: Path) -> None:
+    run = killed(tmp_path, TWO.replace("RESUME", "ask"), at="root/second")
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        [FLEXCELL, "resume", run, "-q"], cwd=tmp_path, stdin=theirs, stderr=theirs, stdout=subprocess.PIPE
+    ) as process:
+        os.close(theirs)
+        os.write(ours, b"perhaps\ndone\n")
+        shown = b""
+        while b"finished" not in shown:
+            shown += os.read(ours, 4096)
+        process.communicate(timeout=60)
+    os.close(ours)
+    assert process.returncode == 0
+    assert shown.count(b"root/second was in mid-work: rerun, done?") == 2

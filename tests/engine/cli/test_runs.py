@@ -9,7 +9,7 @@ import pytest
 
 from engine.event import Entered, Exited
 from tests.engine.cli.command import Said, flexcell
-from tests.engine.cli.process import entered, events_in, run_id_in, started, until
+from tests.engine.cli.process import entered, events_in, run_id_in, runs_in, started, until
 
 STEPS = """
 flexcell: 1
@@ -54,7 +54,7 @@ def test_runs_are_listed_with_their_state(behavior: Path) -> None:
     assert flexcell("runs", cwd=folder).code == 2
     finished(behavior)
     with started("run", behavior, "-q", "-p", "long=3000", cwd=folder) as process:
-        until(process, folder, entered("root/two/wait"))
+        until(process, folder, lambda events: len(runs_in(folder)) == 2 and entered("root/two/wait")(events))
         lines = json.loads(flexcell("runs", "--json", cwd=folder).out)
         assert [(line["behavior"], line["status"]) for line in lines] == [("steps", "finished"), ("steps", "running")]
     said = flexcell("runs", cwd=folder)
