@@ -75,8 +75,11 @@ def _key(key: KeySignature) -> str:
 
 def _findings() -> str:
     lines = ["# Findings of `flexcell check`", "", "Generated from the code by `docs/make_reference.py`.", ""]
+    lines += ["`flexcell check --explain CODE` prints the page of a finding.", ""]
     lines += ["| code | severity | meaning |", "|---|---|---|"]
-    lines += [f"| `{code}` | {severity} | {meaning} |" for code, (severity, meaning) in CODES.items()]
+    lines += [
+        f"| [`{code}`](../findings/{code}.md) | {severity} | {meaning} |" for code, (severity, meaning) in CODES.items()
+    ]
     return "\n".join(lines) + "\n"
 
 

@@ -13,7 +13,7 @@ from engine.check.component import components
 from engine.check.finding import Finding
 from engine.check.flow.read import Read
 from engine.check.subject import Placed, Subject
-from engine.document.node import FOREACH_OUTCOMES, Node
+from engine.document.node import FOREACH_OUTCOMES, Concurrency, Node
 
 _SHOWN = 6
 
@@ -66,10 +66,11 @@ class Instants:
             ends = self._seen(children[0])
             onward = frozenset(node.foreach.next) or self._subject.nominal[children[0].path]
             exhausted, broken = FOREACH_OUTCOMES
+            if not node.foreach.items and not node.foreach.times:
+                return frozenset((exhausted,))
             return frozenset(([exhausted] if ends & onward else []) + ([broken] if ends - onward else []))
         if node.concurrency is not None:
-            # Branches are started as tasks, and starting them counts as waiting.
-            return frozenset()
+            return self._of_branches(node.concurrency, children)
         return self._of_tree(placed, children)
 
     def _referred(self, referred: Subject) -> frozenset[str]:
@@ -88,6 +89,17 @@ class Instants:
                 reached.add(name)
                 due += self.ways(by_name[name]) if name in by_name else ()
         return frozenset(reached - set(by_name))
+
+    def _of_branches(self, container: Concurrency, children: Sequence[Placed]) -> frozenset[str]:
+        seen = {child.name: self._seen(child) for child in children}
+        found = {
+            rule.outcome
+            for rule in container.rules
+            if all(outcome in seen.get(name, ()) for name, outcome in rule.when.items())
+        }
+        if container.otherwise is not None and all(seen.values()):
+            found.add(container.otherwise)
+        return frozenset(found)
 
     def _of_tree(self, placed: Placed, children: Sequence[Placed]) -> frozenset[str]:
         """A tree ends at once when each of its leaves does; anything else is left to the run."""

@@ -17,7 +17,6 @@ from engine.check.subject import Placed, Subject
 from engine.errors import ExpressionError
 
 _MOST_ROUTES = 100
-_MOST_CONTEXTS = 1000
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ class _Kinds:
         self._subject = subject
         self._resolver = resolver
         self._routes = 0
-        self._contexts = 0
+        self._refused: dict[int, dict[str, _Refusal]] = {}
 
     def node(self, placed: Placed) -> Iterator[Finding]:
         for use in _uses(self._subject, placed):
@@ -86,24 +85,41 @@ class _Kinds:
         """Find uses inside a referred behavior that do not take what is passed in here."""
         referred = self._subject.referred(placed.node)
         inner = self._resolver.inner(placed.path)
-        self._contexts += 1
-        if referred is None or inner is None or self._contexts > _MOST_CONTEXTS:
+        if referred is None or inner is None:
             return
-        told: set[str] = set()
-        for other in referred.nodes.values():
-            for use in _uses(referred, other) if other.path in inner.flow.before else ():
-                try:
-                    reaching = _reaching(inner, use)
-                except ExpressionError:
-                    continue
-                for site, kind in reaching:
-                    if site is None or site.path != BEHAVIOR or site.key not in placed.node.inputs or site.key in told:
-                        continue
-                    if fit(kind, use.due) is Fit.NO:
-                        told.add(site.key)
-                        at = f"at `{other.path}` of `{placed.node.behavior}`"
-                        message = f"{use.takes}, {at}, and gets {describe(kind)} through `{site.key}`"
-                        yield self._subject.finding("type-mismatch", message, placed.path, "in", site.key)
+        if id(inner) not in self._refused:
+            self._refused[id(inner)] = {refusal.key: refusal for refusal in _refusals(referred, inner)}
+        for name, refusal in self._refused[id(inner)].items():
+            if name in placed.node.inputs:
+                where = f"{refusal.takes}, at `{refusal.path}` of `{placed.node.behavior}`"
+                message = f"{where}, and {'gets' if refusal.always else 'may get'} {refusal.gets} through `{name}`"
+                code = "type-mismatch" if refusal.always else "maybe-type-mismatch"
+                yield self._subject.finding(code, message, placed.path, "in", name)
+
+
+@dataclass(frozen=True)
+class _Refusal:
+    """A node inside a referred behavior that does not take an initial value that was passed in."""
+
+    key: str
+    path: str
+    takes: str
+    gets: str
+    always: bool
+
+
+def _refusals(referred: Subject, inner: Resolver) -> Iterator[_Refusal]:
+    for other in referred.nodes.values():
+        for use in _uses(referred, other) if other.path in inner.flow.before else ():
+            try:
+                reaching = _reaching(inner, use)
+            except ExpressionError:
+                continue  # told where the behavior itself is checked, if it is always so
+            wrong = [(site, kind) for site, kind in reaching if fit(kind, use.due) is Fit.NO]
+            for site, kind in wrong:
+                if site is not None and site.path == BEHAVIOR:
+                    always = len(wrong) == len(reaching)
+                    yield _Refusal(site.key, other.path, use.takes, describe(kind), always)
 
 
 def _uses(subject: Subject, placed: Placed) -> Iterator[_Use]:

@@ -1,10 +1,15 @@
-"""How writes of branches that run side by side are merged, for each end of their container."""
+"""How writes of branches that run side by side are merged, for each end of their container.
+
+All branches write into scopes of their own, merged in document order. At an end that names some of
+them, those have ended as it says; the others may have been stopped anywhere.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 
-from engine.check.flow.effect import NOTHING, Effect, either
+from engine.check.flow.effect import Effect, either
 from engine.check.flow.graph import Way
 from engine.check.flow.site import Sites
 from engine.check.subject import Placed
@@ -17,14 +22,12 @@ def concurrency_ends(
 ) -> dict[str, int]:
     """Return what holds at each end of a concurrency container."""
     container = placed.node.concurrency
-    writers = _writers(children, ways)
+    branches = _Branches(children, ways, entry)
     ends: dict[str, int] = {}
     for rule in container.rules if container is not None else ():
-        effects = [_ended(child, ways, rule.when.get(child.name)) for child in writers]
-        ends[rule.outcome] = ends.get(rule.outcome, 0) | _merged(entry, effects, sites)
+        ends[rule.outcome] = ends.get(rule.outcome, 0) | branches.merged(rule.when)
     if container is not None and container.otherwise is not None:
-        effects = [either(way.effect for way in ways[child.path]) for child in writers]
-        ends[container.otherwise] = ends.get(container.otherwise, 0) | _merged(entry, effects, sites)
+        ends[container.otherwise] = ends.get(container.otherwise, 0) | branches.all_ended(sites)
     return ends
 
 
@@ -32,32 +35,72 @@ def parallel_ends(placed: Placed, children: Sequence[Placed], ways: Ways, entry:
     """Return what holds when a parallel of a tree succeeds and when it fails."""
     group = placed.node.parallel
     policy = "all" if group is None or isinstance(group, tuple) else group.policy
-    writers = _writers(children, ways)
-    due: list[Sequence[Placed]] = [[child for child in children if policy == "all" or child.name in policy]]
+    branches = _Branches(children, ways, entry)
+    names = [child.name for child in children if policy in ("all", "one") or child.name in policy]
     if policy == "one":
-        due = [[child] for child in children]
-    succeeded = 0
-    for succeeding in due:
-        effects = [_ended(child, ways, "success" if child in succeeding else None) for child in writers]
-        succeeded |= _merged(entry, effects, sites)
-    failed = _merged(entry, [_ended(child, ways, None) for child in writers], sites)
-    return {"success": succeeded, "failure": failed}
+        succeeded = 0
+        for name in names:
+            succeeded |= branches.merged({name: "success"})
+    else:
+        succeeded = branches.merged(dict.fromkeys(names, "success"))
+    return {"success": succeeded, "failure": branches.merged({})}
 
 
-def _writers(children: Sequence[Placed], ways: Ways) -> list[Placed]:
-    return [child for child in children if any(way.effect.keys for way in ways[child.path])]
+class _Branches:
+    """The branches that write anything, and what they may write.
 
+    A site belongs to one branch, so what a branch may write can be taken out of what all may.
+    """
 
-def _ended(child: Placed, ways: Ways, label: str | None) -> Effect:
-    """Return the effect of a child that has ended so; of one that may be stopped anywhere without a label."""
-    ended = [way.effect for way in ways[child.path] if way.label == label]
-    if ended:
-        return either(ended)
-    return either(way.effect.perhaps() for way in ways[child.path])
+    def __init__(self, children: Sequence[Placed], ways: Ways, entry: int) -> None:
+        self._entry = entry
+        self._ways = {
+            child.name: ways[child.path] for child in children if any(way.effect.keys for way in ways[child.path])
+        }
 
+    def merged(self, ended: Mapping[str, str]) -> int:
+        """Return what holds when some branches have ended as named."""
+        named = [name for name in self._ways if name in ended] if ended else []
+        taken_out = 0
+        for name in named:
+            taken_out |= self._perhaps[name]
+        fact = self._entry | self._later[""] & ~taken_out
+        for name in named:
+            effect = self._ended(name, ended[name])
+            # What branches behind it may write comes after what it has certainly written.
+            fact = fact & ~((effect.kill | effect.defines) & ~self._later[name]) | effect.gen
+        return fact
 
-def _merged(entry: int, effects: Iterable[Effect], sites: Sites) -> int:
-    fact = entry
-    for effect in effects:
-        fact = effect.after(fact, sites) if effect is not NOTHING else fact
-    return fact
+    def all_ended(self, sites: Sites) -> int:
+        """Return what holds when all branches have ended, somehow."""
+        fact = self._entry
+        for ways in self._ways.values():
+            fact = either(way.effect for way in ways).after(fact, sites)
+        return fact
+
+    @cached_property
+    def _perhaps(self) -> Mapping[str, int]:
+        found: dict[str, int] = {}
+        for name, ways in self._ways.items():
+            gen = 0
+            for way in ways:
+                gen |= way.effect.gen
+            found[name] = gen
+        return found
+
+    @cached_property
+    def _later(self) -> Mapping[str, int]:
+        """What the branches behind each one may write; under no name, what all may."""
+        found: dict[str, int] = {}
+        together = 0
+        for name in reversed(self._ways):
+            found[name] = together
+            together |= self._perhaps[name]
+        found[""] = together
+        return found
+
+    def _ended(self, name: str, label: str) -> Effect:
+        ended = [way.effect for way in self._ways[name] if way.label == label]
+        if ended:
+            return either(ended)
+        return either(way.effect.perhaps() for way in self._ways[name])

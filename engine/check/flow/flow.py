@@ -59,10 +59,6 @@ class Flow:
         """Return what holds when the behavior has ended, however it has."""
         return self._end
 
-    def earlier_attempts(self, path: str) -> Effect:
-        """Return what attempts of a node before its last one may have written."""
-        return self._attempts.get(path, NOTHING)
-
     def enter(self, placed: Placed, fact: int) -> int:
         """Return what holds where a container begins when `fact` holds before it."""
         own = self.own_keys(placed.path)
@@ -99,7 +95,7 @@ class Flow:
             sites=self.sites,
         )
         self.behind[placed.path] = found.behind
-        return {0: found.before}, found.ends
+        return {0: found.before} if found.before is not None else {}, found.ends
 
     def _register(self) -> None:
         """Number all places before anything is worked out, for an effect must know what it replaces."""

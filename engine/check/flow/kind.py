@@ -109,6 +109,18 @@ def in_expression(kinds: Sequence[Kind]) -> ValueType:
     return found[0]
 
 
+def same(one: Kind, other: Kind) -> bool:
+    """Tell whether two kinds are one; Python takes true for 1, and 1 for 1.0."""
+    if isinstance(one, Constant) and isinstance(other, Constant):
+        return type(one.value) is type(other.value) and one.value == other.value
+    return one == other
+
+
+def without_value(kind: Kind) -> Kind:
+    """Return the type of a kind, where more is known of it."""
+    return kind if isinstance(kind, Typed) else Typed(_OF_EXPRESSION[_word(kind)])
+
+
 def fit(kind: Kind, annotation: Any) -> Fit:
     """Tell whether values of a kind are accepted where an annotation declares what is due."""
     if isinstance(kind, Constant):

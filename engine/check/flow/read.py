@@ -49,7 +49,8 @@ def expressions(subject: Subject, placed: Placed) -> Iterator[tuple[tuple[str | 
         if isinstance(found, Template) and not found.constant:
             yield ("with", name), found
     for keys, found in conditions(placed).items():
-        if isinstance(found, Template) and not found.constant:
+        # Without names it is the same in every run, which is told elsewhere.
+        if isinstance(found, Template) and found.names:
             yield keys, found
 
 

@@ -15,11 +15,12 @@ from engine.check.flow.kind import (
     Kind,
     Listed,
     Mapped,
-    describe,
     in_expression,
     item_kinds,
     of_annotation,
     of_expression,
+    same,
+    without_value,
 )
 from engine.check.flow.site import Site
 from engine.check.subject import Subject, template
@@ -30,17 +31,34 @@ from engine.errors import ExpressionError
 Kinds = tuple[Kind, ...]
 _ROUNDS = 8
 _MOST = 16
+_MOST_USES = 100
+"""Uses of a behavior with different kinds of values that are told apart."""
+_MOST_CONSTANTS = 32
+"""Values that are told apart for one key; of more, only the types are."""
 
 
 class Flows:
-    """The flow of each behavior of a check, worked out when first asked for."""
+    """The flow of each behavior of a check, and what reaches its keys in the uses made of it."""
 
-    def __init__(self, make: Mapping[int, Flow]) -> None:
-        self._flows = make
+    def __init__(self, made: Mapping[int, Flow]) -> None:
+        self._flows = made
+        self._resolvers: dict[int, list[tuple[Mapping[str, Kinds], Resolver]]] = {}
 
     def of(self, subject: Subject) -> Flow:
         """Return the facts about the keys of a behavior."""
         return self._flows[id(subject)]
+
+    def resolver(self, subject: Subject, given: Mapping[str, Kinds]) -> Resolver:
+        """Return the kinds of the keys of a behavior that is given these initial values."""
+        known = self._resolvers.setdefault(id(subject), [])
+        for others, resolver in known:
+            if others == given:
+                return resolver
+        if len(known) >= _MOST_USES:
+            return self.resolver(subject, known[0][0])
+        made = Resolver(self.of(subject), self, given)
+        known.append((given, made))
+        return made
 
 
 class Resolver:
@@ -56,13 +74,9 @@ class Resolver:
         self.flow = flow
         self._flows = flows
         self._given = dict(given or {})
-        self._known: dict[Site, Kinds] = {}
-        self._inner: dict[str, Resolver] = {}
+        self._written: dict[str, list[tuple[Kind, int]]] = {}
+        """By key, each kind that is written to it, with the bits of the places that write it."""
         self._settle()
-
-    def of_site(self, site: Site) -> Kinds:
-        """Return what a place may write."""
-        return self._known.get(site, ())
 
     def before(self, path: str, key: str) -> tuple[tuple[Site, Kind], ...]:
         """Return what a key may be when the node at `path` is entered, and where it comes from."""
@@ -97,15 +111,12 @@ class Resolver:
         given = {
             name: _united(kind for _, kind in self.before(path, source)) for name, source in placed.node.inputs.items()
         }
-        known = self._inner.get(path)
-        if known is None or known._given != given:
-            known = self._inner[path] = Resolver(self._flows.of(referred), self._flows, given)
-        return known
+        return self._flows.resolver(referred, given)
 
     def _reaching(self, key: str, fact: int) -> tuple[tuple[Site, Kind], ...]:
-        if key not in self.flow.sites:
-            return ()
-        return tuple((site, kind) for site in self.flow.sites.places(key, fact) for kind in self.of_site(site))
+        """Return the kinds that reach, each with the first place that it comes from."""
+        found = [(fact & places, kind) for kind, places in self._written.get(key, ()) if fact & places]
+        return tuple((self.flow.sites.first(places), kind) for places, kind in found)
 
     def _settle(self) -> None:
         """Work out all places; those that pass on what reaches them are asked until nothing changes."""
@@ -115,18 +126,27 @@ class Resolver:
             if kinds is None:
                 passing.append(site)
             else:
-                self._known[site] = kinds
+                self._add(site, kinds)
         for _ in range(_ROUNDS):
-            changed = [site for site in passing if self._passed_anew(site)]
+            changed = [site for site in passing if self._add(site, self._passed(site))]
             if not changed:
                 return
         for site in passing:
-            self._known[site] = (ANYTHING,)
+            self._add(site, (ANYTHING,))
 
-    def _passed_anew(self, site: Site) -> bool:
-        before = self._known.get(site, ())
-        self._known[site] = _united((*before, *self._passed(site)))
-        return self._known[site] != before
+    def _add(self, site: Site, kinds: Kinds) -> bool:
+        """Note what a place writes; tell whether that was news."""
+        written = self._written.setdefault(site.key, [])
+        bit = 1 << site.number
+        news = False
+        for found in kinds:
+            kind = found if len(written) < _MOST_CONSTANTS else without_value(found)
+            index = next((number for number, (known, _) in enumerate(written) if same(known, kind)), len(written))
+            if index == len(written):
+                written.append((kind, 0))
+            news = news or not written[index][1] & bit
+            written[index] = (kind, written[index][1] | bit)
+        return news
 
     def _declared(self, site: Site) -> Kinds | None:
         """Return the kinds of a place that does not depend on what reaches it, None for others."""
@@ -212,8 +232,7 @@ def parameter_kinds(parameter: Parameter) -> Kinds:
 def _united(kinds: Iterable[Kind]) -> Kinds:
     found: list[Kind] = []
     for kind in kinds:
-        # Names are compared too, for Python takes true for 1.
-        if not any(kind == other and describe(kind) == describe(other) for other in found):
+        if not any(same(kind, other) for other in found):
             found.append(kind)
         if len(found) > _MOST:
             return (ANYTHING,)

@@ -18,7 +18,8 @@ EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 class Rounds:
     """The facts of a foreach: in each round, behind a round that others may follow, and at its ends."""
 
-    before: int
+    before: int | None
+    """None where there is certainly no round."""
     behind: int
     ends: dict[str, int]
 
@@ -46,6 +47,8 @@ def foreach_facts(
         seen: Gives what is seen of an effect outside the round.
         sites: The places.
     """
+    if not rounds.items and not rounds.times:
+        return Rounds(None, 0, {EXHAUSTED: entry})
     again = [way.effect for way in child if way.label in onward]
     inside = either(again)
     outside = seen(inside)

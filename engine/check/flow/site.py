@@ -81,6 +81,10 @@ class Sites:
                 found |= self.defined_bits(key) | self.undefined_bit(key)
         return found
 
+    def first(self, fact: int) -> Site:
+        """Return the first place, in document order, of those in `fact`."""
+        return self._sites[(fact & -fact).bit_length() - 1 - self._first]
+
     def places(self, key: str, fact: int) -> tuple[Site, ...]:
         """Return the places from which a key may come where `fact` holds, in document order."""
         of_key = (fact & self.defined_bits(key)) >> self._first

@@ -70,3 +70,37 @@ def test_machines_read_json_github_and_sarif(tmp_path: Path) -> None:
     results = {result["ruleId"]: result for result in sarif["runs"][0]["results"]}
     region = results["unknown-target"]["locations"][0]["physicalLocation"]["region"]
     assert region == {"startLine": 9, "startColumn": finding["column"]}
+    assert finding["page"] == "docs/findings/unknown-target.md"
+
+
+def test_the_text_form_says_how_to_learn_more(tmp_path: Path) -> None:
+    """The last line on stderr is the command that explains the first finding; the command prints its page."""
+    (tmp_path / "bad.yaml").write_text(GOOD.replace("flow.Wait", "flow.Wiat"), encoding="utf-8")
+    said = flexcell("check", "bad.yaml", cwd=tmp_path)
+    assert said.err.splitlines() == [
+        "1 checked: 1 errors, 0 warnings",
+        "what a finding means: flexcell check --explain unknown-state",
+    ]
+    page = (Path(__file__).resolve().parents[3] / "docs" / "findings" / "unknown-state.md").read_text(encoding="utf-8")
+    explained = flexcell("check", "--explain", "unknown-state", cwd=tmp_path)
+    assert (explained.code, explained.out) == (0, page)
+
+
+def test_a_kind_of_finding_that_is_not_there_is_bad_usage(tmp_path: Path) -> None:
+    """One line with a near name; so is to check nothing."""
+    said = flexcell("check", "--explain", "unknown-stat", cwd=tmp_path)
+    assert (said.code, "did you mean unknown-state" in said.err) == (2, True)
+    assert flexcell("check", cwd=tmp_path).code == 2
+
+
+def test_the_entries_of_the_behaviors_own_cell_are_known(tmp_path: Path) -> None:
+    """The command line finds them as the editor does."""
+    home = "{state: motion.MoveJoints, with: {robot: left, target: {entry: hom}}"
+    home += ", transitions: {reached: finished, failed: finished}}"
+    text = GOOD.replace("name: good", "name: good\ncell: cell.yaml").replace("initial: wait", "initial: home")
+    (tmp_path / "b.yaml").write_text(text.split("      wait:")[0] + f"      home: {home}\n", encoding="utf-8")
+    cell = "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\nrobots: {left: {model: panda}}\n"
+    (tmp_path / "cell.yaml").write_text(cell + "store: {kind: sqlite, path: x.db, seed: e.yaml}\n", encoding="utf-8")
+    (tmp_path / "e.yaml").write_text("flexcell: 1\njoints: {home: [0]}\n", encoding="utf-8")
+    (finding,) = json.loads(flexcell("check", "b.yaml", "--json", cwd=tmp_path).out)
+    assert (finding["code"], finding["hint"]) == ("missing-entry", "did you mean home?")

@@ -1,0 +1,108 @@
+"""What the check says of userdata is what runs of random behaviors do."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Iterable
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from engine.bus import SkillBus
+from engine.check import Finding, check_behavior
+from engine.clock import new_clock, run_virtual
+from engine.document import parse_behavior
+from engine.event import Cause, Entered, Event, Exited, RunEnded
+from engine.plan import new_plan
+from engine.run import Run
+from tests.engine.check.data_states import CATALOGUE
+from tests.engine.check.random_behaviors import Plain, behaviors
+
+UNDEFINED = {"undefined-key", "undeclared-name"}
+MAYBE = {"maybe-undefined-key"}
+SEEDS = range(3)
+SETTINGS = settings(
+    max_examples=150,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
+)
+
+
+def checked(document: Plain) -> tuple[Finding, ...]:
+    """Check a document given as plain data."""
+    return check_behavior(parse_behavior(json.dumps(document), file="random.json"), CATALOGUE)
+
+
+def events_of(document: Plain, seed: int) -> list[Event]:
+    """Run a document for at most a hundred virtual seconds and return its events."""
+    plan = new_plan(parse_behavior(json.dumps(document), file="random.json"), CATALOGUE)
+    events: list[Event] = []
+
+    async def main() -> None:
+        run = Run(plan, run="r", bus=SkillBus(new_clock()), seed=seed, instant_limit=300)
+        run.watch(events.append)
+        # Some loops go round without letting time pass.
+        run.watch(lambda event: run.stop("far enough") if event.seq == 3000 else None)
+        asyncio.get_running_loop().call_later(100.0, run.stop, "long enough")
+        await run.execute()
+
+    run_virtual(main())
+    return events
+
+
+def causes(events: Iterable[Event]) -> list[Cause]:
+    """Return everything that made a node fail, down to the first cause."""
+    found: list[Cause] = []
+    for event in events:
+        cause = event.cause if isinstance(event, Exited) else None
+        while cause is not None:
+            found.append(cause)
+            cause = cause.because
+    return found
+
+
+@SETTINGS
+@given(behaviors())
+def test_a_key_that_a_run_misses_was_found_before(document: Plain) -> None:
+    """Every read of an undefined key in a run stands at a node for which the check has said so."""
+    findings = checked(document)
+    said = {finding.path for finding in findings if finding.code in UNDEFINED | MAYBE}
+    for seed in SEEDS:
+        missed = [cause for cause in causes(events_of(document, seed)) if "is read but not defined" in cause.message]
+        assert {cause.nodes[0].partition(" at ")[0] for cause in missed} <= said
+
+
+@SETTINGS
+@given(behaviors())
+def test_what_is_said_for_certain_never_goes_well(document: Plain) -> None:
+    """A node with a finding that leaves no doubt never ends with an outcome."""
+    certain = {f.path for f in checked(document) if f.code in {*UNDEFINED, "type-mismatch"}}
+    for seed in SEEDS:
+        events = events_of(document, seed)
+        # A foreach that collects reads only at the end of a round that others follow.
+        rounds = {event.path for event in events if isinstance(event, Entered) and event.kind == "foreach"}
+        went_well = {event.path for event in events if isinstance(event, Exited) and event.outcome}
+        assert not (certain - rounds) & went_well
+
+
+@SETTINGS
+@given(behaviors(safe=True), st.integers(0, 5))
+def test_a_behavior_in_order_has_no_error_and_runs(document: Plain, seed: int) -> None:
+    """No error is found in it, it can be planned, and no run of it ends with an error."""
+    errors = [finding for finding in checked(document) if finding.severity == "error"]
+    assert errors == []
+    ended = [event for event in events_of(document, seed) if isinstance(event, RunEnded)]
+    assert [event.status for event in ended] != ["errored"], ended
+
+
+@SETTINGS
+@given(behaviors())
+def test_a_value_that_does_not_fit_in_a_run_was_found_before(document: Plain) -> None:
+    """Every value that a node does not take stands at a node for which the check has said so."""
+    # Nothing as an initial value means that a run is to give one, of whatever kind.
+    document["userdata"] = {key: value for key, value in document["userdata"].items() if value is not None}
+    said = {finding.path for finding in checked(document) if finding.code in {"type-mismatch", "maybe-type-mismatch"}}
+    for seed in SEEDS:
+        wrong = [cause for cause in causes(events_of(document, seed)) if " fit" in cause.message]
+        assert {cause.nodes[0].partition(" at ")[0] for cause in wrong} <= said

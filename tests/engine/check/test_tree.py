@@ -1,0 +1,103 @@
+"""Parts of trees: which can never be asked, never end, and what py_trees classes take."""
+
+from __future__ import annotations
+
+import pytest
+
+from engine.check.status import BOTH, FAILURE, NEVER, SUCCESS, Statuses, end_statuses
+from engine.document import parse_behavior
+from tests.engine.check.checking import findings_in, said_of
+
+HEAD = "flexcell: 1\nname: t\noutcomes: [success, failure]\nroot:\n  tree:\n    "
+LOG = "{state: flow.Log, with: {message: a}}"
+DECIDE = "{state: gripper.CheckHeld, with: {gripper: left}}"
+
+
+@pytest.mark.parametrize(
+    ("part", "children", "expected"),
+    [
+        ("sequence: [<a>, <b>]", (BOTH, SUCCESS), BOTH),
+        ("sequence: [<a>, <b>]", (SUCCESS, SUCCESS), SUCCESS),
+        ("sequence: [<a>, <b>]", (FAILURE, SUCCESS), FAILURE),
+        ("selector: [<a>, <b>]", (FAILURE, BOTH), BOTH),
+        ("selector: [<a>, <b>]", (BOTH, SUCCESS), SUCCESS),
+        ("selector: [<a>, <b>]", (NEVER, BOTH), NEVER),
+        ("parallel: [<a>, <b>]", (SUCCESS, SUCCESS), SUCCESS),
+        ("parallel: [<a>, <b>]", (SUCCESS, BOTH), BOTH),
+        ("parallel: {policy: one, children: [<a>, <b>]}", (FAILURE, SUCCESS), BOTH),
+        ("parallel: {policy: [b], children: [<a>, <b>]}", (FAILURE, FAILURE), FAILURE),
+        ("inverter: {child: <a>}", (SUCCESS,), FAILURE),
+        ("remap: {success: failure, child: <a>}", (SUCCESS,), FAILURE),
+        ("remap: {success: running, child: <a>}", (BOTH,), FAILURE),
+        ("remap: {success: running, child: <a>}", (SUCCESS,), NEVER),
+        ("remap: {running: failure, child: <a>}", (SUCCESS,), BOTH),
+        ("condition: {status: failure, child: <a>}", (SUCCESS,), NEVER),
+        ("condition: {status: failure, child: <a>}", (BOTH,), SUCCESS),
+        ("condition: {status: running, child: <a>}", (SUCCESS,), SUCCESS),
+        ("timeout: {after: 1, child: <a>}", (SUCCESS,), BOTH),
+        ("cooldown: {after: 1, child: <a>}", (SUCCESS,), BOTH),
+        ("guard: {when: '${x}', child: <a>}", (SUCCESS,), BOTH),
+        ("retry: {times: 1, child: <a>}", (FAILURE,), FAILURE),
+        ("repeat: {times: 2, child: <a>}", (SUCCESS,), SUCCESS),
+        ("one_shot: {child: <a>}", (BOTH,), BOTH),
+    ],
+)
+def test_the_ends_of_a_part_follow_from_those_of_its_children(
+    part: str, children: tuple[Statuses, ...], expected: Statuses
+) -> None:
+    """As py_trees would have them."""
+    text = part.replace("<a>", "{state: x.A, name: a}").replace("<b>", "{state: x.B, name: b}")
+    node = parse_behavior(f"{HEAD}{text}\n", file="t.yaml").root.children
+    (only,) = node.values()
+    assert end_statuses(only, list(zip(only.children, children, strict=True))) == expected
+
+
+def test_nobody_is_asked_after_a_child_that_decides() -> None:
+    """A selector after success, a sequence after failure; `success` on a leaf changes what means what."""
+    assert said_of(f"{HEAD}selector: [{LOG}, {DECIDE}]\n") == ["unreachable-node root/selector/CheckHeld"]
+    assert said_of(f"{HEAD}sequence: [{{inverter: {{child: {LOG}}}}}, {DECIDE}]\n") == [
+        "unreachable-node root/sequence/CheckHeld"
+    ]
+    assert said_of(f"{HEAD}selector: [{DECIDE}, {LOG}]\n") == []
+    always = "{state: gripper.CheckHeld, with: {gripper: left}, success: [held, lost]}"
+    assert said_of(f"{HEAD}selector: [{always}, {LOG}]\n") == ["unreachable-node root/selector/Log"]
+
+
+def test_a_part_that_never_ends_is_told_once() -> None:
+    """Not again for the parts around it."""
+    never = f"{{remap: {{success: running, failure: running, child: {DECIDE}}}}}"
+    assert said_of(f"{HEAD}sequence: [{{inverter: {{child: {never}}}}}]\n") == [
+        "never-ends root/sequence/inverter/remap"
+    ]
+
+
+def test_an_end_that_never_occurs_need_not_be_connected() -> None:
+    """A tree that only succeeds is connected with `success`; to connect `failure` as well does no harm."""
+    tree = "{tree: {sequence: [{state: flow.Wait, with: {duration_s: 1}}]}, transitions: {success: good%s}}"
+    text = "root:\n  machine:\n    initial: tree\n    states:\n      tree: " + tree + "\n"
+    assert said_of(text % "") == []
+    assert said_of(text % ", failure: bad") == []
+    assert said_of(
+        (text % "").replace("flow.Wait, with: {duration_s: 1}", "gripper.CheckHeld, with: {gripper: l}")
+    ) == ["unconnected-outcome root/tree"]
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "expected"),
+    [
+        ("py_trees.behaviours:Success", "", None),
+        ("py_trees.behaviours:TickCounter", "duration: 2, completion_status: SUCCESS", None),
+        ("py_trees.behaviours:TickCounter", "duration: 2", "missing-parameter"),
+        ("py_trees.behaviours:TickCounter", "duration: 2, completion_status: SUCCESS, x: 1", "unknown-parameter"),
+        ("py_trees.behaviours:Nothing", "", "broken-behaviour"),
+        ("no.such.module:Thing", "", "broken-behaviour"),
+        ("pathlib:Path", "", "broken-behaviour"),
+        ("py_trees.behaviour:Behaviour", "", "broken-behaviour"),
+        ("py_trees", "", "broken-behaviour"),
+        (":", "", "broken-behaviour"),
+    ],
+)
+def test_a_py_trees_class_must_be_there_and_take_what_it_is_given(name: str, given: str, expected: str | None) -> None:
+    """The engine gives the name where it is left out."""
+    text = f'{HEAD}sequence: [{{behaviour: "{name}", with: {{{given}}}}}, {DECIDE}]\n'
+    assert [finding.code for finding in findings_in(text)] == ([expected] if expected else [])
