@@ -177,6 +177,8 @@ class History:
                 failed=left.outcome is None and left.diverted is None,
                 cause=left.cause,
                 passed=left.passed,
+                attempt=left.attempt,
+                elapsed_s=self.time_s - left.since_s,
             )
         return Checkpoint(
             run=self.run,

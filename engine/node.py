@@ -15,41 +15,15 @@ import msgspec
 
 from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
-from engine.document.expression import Template
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
+from engine.measure import Guard, Retry, Timeout
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, preempt
 from engine.settle import settle
 from engine.state import Outcome, State
 from engine.userdata import Scope
-
-
-@dataclass(frozen=True, kw_only=True)
-class Timeout:
-    """Preempt the node after `after_s` and go to `target`."""
-
-    after_s: float
-    target: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Retry:
-    """Run the node up to `times` more, waiting `backoff_s` doubled each time, on these outcomes or errors."""
-
-    times: int
-    backoff_s: float = 0.0
-    outcomes: tuple[str, ...] = ()
-    errors: bool = True
-
-
-@dataclass(frozen=True, kw_only=True)
-class Guard:
-    """Enter the node only when `when` is true, else leave it for `target`."""
-
-    when: Template
-    target: str
 
 
 class Left(msgspec.Struct, frozen=True):
@@ -150,27 +124,15 @@ class Node:
         """
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
-        if point is not None and point.failed:
-            # It had ended with this error, and nobody had handled it when the engine died.
-            raise StateError(point.cause.message if point.cause is not None else "failed", where=self.path)
-        if point is not None and not point.active:
-            left = Left(point.left or "", point.diverted, point.cause)
-            if not execution.goes_on:
-                self._record_diverted(execution, "start", point.left or point.diverted or "", point.cause)
-            if point.passed or not gate.armed:
-                return left
-            order = await self._after(left, scope, execution)
-            if order is None:
-                return left
-            if order.outcome is not None:
-                return self._forced(order.outcome, execution)
         while True:
             left = None
             order: Order | None = None
             try:
-                if gate.armed and point is None:
+                if point is not None and not point.active:
+                    left = await self._gone_on(point, scope, execution)
+                elif gate.armed and point is None:
                     order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
-                if order is None:
+                if order is None and left is None:
                     node = execution.latest(self.path, self)
                     if node._plain:
                         left = await node._attempt(scope, execution, point)
@@ -183,13 +145,27 @@ class Node:
             except FlexcellError:
                 self._ordered(execution)
                 raise
-            point = None
-            if left is not None and gate.armed:
+            passed, point = point is not None and point.passed, None
+            if left is not None and gate.armed and not passed:
                 order = await self._after(left, scope, execution)
             if order is None and left is not None:
                 return left
             if order is not None and order.outcome is not None:
                 return self._forced(order.outcome, execution)
+
+    async def _gone_on(self, point: Point, scope: Scope, execution: Execution) -> Left:
+        """Do with how it had ended what there was no time for any more: retry, on_error."""
+        if not execution.goes_on:
+            self._record_diverted(execution, "start", point.left or point.diverted or "", point.cause)
+        elif point.diverted is None and not point.passed and not self._plain:
+            return await self._guarded(scope, execution, point)
+        return self._stood(point)
+
+    def _stood(self, point: Point) -> Left:
+        if point.failed:
+            # It had ended with this error, and nobody had handled it when the engine died.
+            raise StateError(point.cause.message if point.cause is not None else "failed", where=self.path)
+        return Left(point.left or "", point.diverted, point.cause)
 
     async def _after(self, left: Left, scope: Scope, execution: Execution) -> Order | None:
         visit = execution.visits.get(self.path, 0)
@@ -263,7 +239,10 @@ class Node:
         while True:
             again: Cause | None
             try:
-                left = await self._attempt(scope, execution, point)
+                if point is not None and not point.active:
+                    left = self._stood(point)
+                else:
+                    left = await self._attempt(scope, execution, point)
                 if retry is None or left.outcome not in retry.outcomes or attempt > retry.times:
                     return left
                 again = under(f"outcome {left.outcome}", left.cause, where=self.path)

@@ -15,8 +15,9 @@ from engine.document.signature import read_signature
 from engine.errors import DocumentError, ExpressionError
 from engine.foreach import ForEach
 from engine.leaf import Leaf
+from engine.measure import Guard, Retry, Timeout
 from engine.nearness import near_names
-from engine.node import Guard, Node, Retry, Timeout, Work
+from engine.node import Node, Work
 from engine.priority import Priority
 from engine.reference import Reference
 from engine.registry import state_by_path

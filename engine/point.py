@@ -12,9 +12,9 @@ from engine.event import Cause
 class Point:
     """One node of a run that is to be gone on with.
 
-    A node that has `left` (an outcome) is only asked for its transition; with `passed` the gate has
-    let it go already. An active container goes on with the children that have points of their
-    own; an active state is entered again.
+    A node that has `left` (an outcome) is asked for its retry and its transition; with `passed` the
+    gate has let it go already, or somebody has decided for it. An active container goes on with the
+    children that have points of their own; an active state is entered again.
     """
 
     visit: int

@@ -105,7 +105,7 @@ def resumed(
             raise ControlError(f"there is no outcome {outcome!r}", where=path, hint=near_names(outcome, known))
         said = f"the engine died in the middle of it; taken as {outcome}"
         cause = Cause(message=said, where=path, kind="Resumed")
-        points[path] = Point(visit=points[path].visit, left=outcome, cause=cause)
+        points[path] = Point(visit=points[path].visit, left=outcome, cause=cause, passed=True)
     return replace(
         checkpoint,
         seq=last_seq,

@@ -128,3 +128,23 @@ def test_many_crashes_in_a_row_change_nothing(name: str) -> None:
         known += _plain(list(rest.events[:3]))
     assert rest.result.outcome == "good"
     assert rest.result.userdata == whole.result.userdata
+
+
+TRIES = {
+    "by outcome": "{state: test.Give, with: {outcome: c, after_s: 1}, retry: {times: 2, outcomes: [c]}, "
+    "transitions: {a: bad, b: bad, c: good}}",
+    "by error": "{state: test.Raise, retry: {times: 2, backoff: 1}, on_error: good, transitions: {done: bad}}",
+}
+
+
+@pytest.mark.parametrize("name", TRIES)
+def test_a_crash_between_an_end_and_its_retry_loses_no_attempt(name: str) -> None:
+    plan = plan_of(f"root: {{machine: {{initial: tries, states: {{tries: {TRIES[name]}}}}}}}")
+    whole = run_virtual(_run(plan, None))
+    for count in range(1, len(whole.events)):
+        known = _plain(list(whole.events[:count]))
+        rest = run_virtual(_run(plan, known))
+        told = (*known, *rest.events)
+        ended = [e for e in told if isinstance(e, Exited) and e.path == "root/tries"]
+        assert len(ended) == 3, whole.events[count - 1]
+        assert rest.result.outcome == whole.result.outcome == "good"

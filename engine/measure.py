@@ -1,0 +1,33 @@
+"""What a node does about itself: wait no longer, try again, not be entered at all."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from engine.document.expression import Template
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timeout:
+    """Preempt the node after `after_s` and go to `target`."""
+
+    after_s: float
+    target: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Retry:
+    """Run the node up to `times` more, waiting `backoff_s` doubled each time, on these outcomes or errors."""
+
+    times: int
+    backoff_s: float = 0.0
+    outcomes: tuple[str, ...] = ()
+    errors: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guard:
+    """Enter the node only when `when` is true, else leave it for `target`."""
+
+    when: Template
+    target: str
