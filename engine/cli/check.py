@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from engine.check import Finding, check_file, page_text
+from engine.authoring.python_file import is_python_name, load_python_behavior
+from engine.check import Finding, check_behavior, check_file, page_text
 from engine.check.finding import new_finding
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
@@ -24,7 +25,8 @@ _ENTRIES = tuple((key, "entries") for key in ("joints", "poses", "dmps", "record
 
 def check(
     files: Annotated[
-        list[Path] | None, typer.Argument(help="Behavior, cell or entries documents.", show_default=False)
+        list[Path] | None,
+        typer.Argument(help="Behavior, cell or entries documents, or FILE.py:NAME.", show_default=False),
     ] = None,
     format_: Annotated[
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
@@ -59,6 +61,8 @@ def check(
 def findings_of(file: Path, catalogue: Catalogue) -> tuple[Finding, ...]:
     """Return the findings of one document of any kind; one that cannot be read is one finding."""
     try:
+        if is_python_name(str(file)):
+            return check_behavior(load_python_behavior(str(file)), catalogue)
         kind = document_kind(file)
         if kind == "behavior":
             return check_file(file, catalogue)
