@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.check import Finding, check_behavior
+from engine.check import Finding, check_behavior, read_beside
 from engine.document import Behavior, Parameter, load_behavior, load_source
 from engine.errors import DocumentError, Position
 from engine.graph import GraphNode, new_graph
@@ -147,7 +147,8 @@ class Library:
         except DocumentError as error:
             return _Read(stamps=stamps, view=_unreadable(behavior_id, error), behavior=None)
         findings = check_behavior(behavior, self.catalogue)
-        stamps |= {inner.file: _stamp(inner.file) for inner in _all_references(behavior)}
+        others = [inner.file for inner in _all_references(behavior)]
+        stamps |= {other: _stamp(other) for other in (*others, *read_beside(behavior))}
         return _Read(stamps=stamps, view=self._view(behavior_id, behavior, findings), behavior=behavior)
 
     def _view(self, behavior_id: str, behavior: Behavior, findings: tuple[Finding, ...]) -> BehaviorView:

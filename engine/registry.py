@@ -49,6 +49,10 @@ def state_by_path(name: str) -> type[State]:
         found = getattr(importlib.import_module(module_name), class_name)
     except (ImportError, AttributeError) as error:
         raise RegistryError(str(error), where=name, hint="write it as package.module:Class") from error
+    except Exception as error:
+        # Importing runs the module, which may raise anything; nobody but its author can mend that.
+        message = f"importing {module_name!r} raised {type(error).__name__}: {error}"
+        raise RegistryError(message, where=name, hint="write it as package.module:Class") from error
     if not (isinstance(found, type) and issubclass(found, State)):
         raise RegistryError("this is not a subclass of engine.state.State", where=name)
     return found

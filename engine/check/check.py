@@ -103,6 +103,17 @@ def _passed_on(subjects: Sequence[Subject]) -> dict[int, set[str]]:
     return found
 
 
+def read_beside(behavior: Behavior) -> tuple[Path, ...]:
+    """Return the files that a check of a behavior reads beside it: its own cell, and the entries of that."""
+    if behavior.cell_file is None:
+        return ()
+    try:
+        seed = load_cell(behavior.cell_file).seed_file
+    except DocumentError:
+        return (behavior.cell_file,)
+    return (behavior.cell_file, seed) if seed is not None else (behavior.cell_file,)
+
+
 def _own_entries(behavior: Behavior) -> tuple[Entries | None, tuple[Finding, ...]]:
     """Return the entries that the behavior's own cell is seeded with; None where it names no cell, or a broken one."""
     if behavior.cell_file is None:

@@ -47,7 +47,8 @@ def _check_coverage(subject: Subject, placed: Placed) -> Iterator[Finding]:
     container = placed.node.concurrency
     outcomes = {child.name: subject.possible(child) for child in subject.children(placed)}
     known = {name: found for name, found in outcomes.items() if found is not None}
-    if container is None or len(known) < len(outcomes):
+    # With a child that never ends, the moment when all have finished never comes.
+    if container is None or len(known) < len(outcomes) or not all(known.values()):
         return
     search = _Search(container.rules, known)
     uncovered = list(itertools.islice(search.uncovered(), _SHOWN))

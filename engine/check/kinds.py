@@ -69,17 +69,22 @@ class _Kinds:
         if not wrong:
             return
         site, kind = wrong[0]
-        path = use.placed.path
         always = len(wrong) == len(reaching)
         message = f"{use.takes}, and {'gets' if always else 'may get'} {describe(kind)}"
         if site is not None:
-            message += f" from {_origin(self._subject, site)}"
-            self._routes += 1
-            if not always and self._routes <= _MOST_ROUTES:
-                steps = route(self._resolver.flow, path, 1 << site.number)
-                message += f" on the way {shown(steps)}" if len(steps) > 1 else ""
+            message += self._way(use.placed.path, site, always=always)
         code = "type-mismatch" if always else "maybe-type-mismatch"
-        yield self._subject.finding(code, message, path, *use.keys, hint=_complaint(kind, use.due))
+        yield self._subject.finding(code, message, use.placed.path, *use.keys, hint=_complaint(kind, use.due))
+
+    def _way(self, path: str, site: Site, *, always: bool) -> str:
+        """Say where a value comes from and, where others come too, by which way."""
+        self._routes += 1
+        if self._routes > _MOST_ROUTES:
+            return f" from {_origin(self._subject, site, site.path)}"
+        steps = route(self._resolver.flow, path, 1 << site.number)
+        at = steps[0] if self._resolver.flow.sites.shared(site) and len(steps) > 1 else site.path
+        said = f" from {_origin(self._subject, site, at)}"
+        return said if always or len(steps) == 1 else f"{said} on the way {shown(steps)}"
 
     def _inside(self, placed: Placed) -> Iterator[Finding]:
         """Find uses inside a referred behavior that do not take what is passed in here."""
@@ -157,7 +162,7 @@ def _complaint(kind: Kind, due: Any) -> str:
     return complaint(kind.value, due) if isinstance(kind, Constant) else ""
 
 
-def _origin(subject: Subject, site: Site) -> str:
+def _origin(subject: Subject, site: Site, path: str) -> str:
     match site.origin:
         case "parameter":
             return f"the parameter `{site.key}`"
@@ -168,4 +173,4 @@ def _origin(subject: Subject, site: Site) -> str:
         case "collect":
             return f"what `{site.path}` collects"
         case _:
-            return f"`{site.name}` of `{subject.run_path(site.path)}`"
+            return f"`{site.name}` of `{subject.run_path(path)}`"

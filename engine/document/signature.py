@@ -47,6 +47,10 @@ class StateSignature:
     unwritten: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     state: type[State] = field(repr=False)
 
+    def passed_on(self, output: str) -> str | None:
+        """Return the parameter whose value an output repeats, as the class marks it; None where there is none."""
+        return next((key.name for key in self.parameters.values() if key.schema.get("output") == output), None)
+
     @property
     def summary(self) -> str:
         """The first line of its documentation."""

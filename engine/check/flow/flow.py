@@ -167,7 +167,10 @@ class Flow:
         for name in names:
             key = node.outputs.get(name, name)
             if key in self.sites:
-                found[name] = writing(key, self.sites.add(key, origin, placed.path, name), self.sites)
+                # What only repeats a parameter is another value in each state.
+                alike = signature is not None and signature.passed_on(name) is None
+                group = f"{placed.parent} {node.state}" if alike else ""
+                found[name] = writing(key, self.sites.add(key, origin, placed.path, name, group=group), self.sites)
         return found
 
     def _container_ends(self, placed: Placed, children: Sequence[Placed]) -> dict[str, Effect]:

@@ -159,10 +159,13 @@ class Resolver:
             return (INTEGER,)
         if site.origin == "collect":
             return (LIST,)
-        if site.origin == "output" and self._passes(site) is None:
-            signature = self.flow.subject.signature(self.flow.subject.nodes[site.path].node)
-            return (of_annotation(signature.outputs[site.name].type) if signature is not None else ANYTHING,)
-        return None
+        if site.origin != "output":
+            return None
+        signature = self.flow.subject.signature(self.flow.subject.nodes[site.path].node)
+        if signature is None:
+            return (ANYTHING,)
+        passed = signature.passed_on(site.name)
+        return (of_annotation(signature.outputs[site.name].type),) if passed is None else None
 
     def _initial(self, site: Site) -> Kinds:
         if site.path != BEHAVIOR:
@@ -172,12 +175,6 @@ class Resolver:
         value = self.flow.subject.behavior.document.userdata[site.key]
         # Nothing as the initial value of a behavior means that each run, or reference, is to give one.
         return (Constant(value) if value is not None else ANYTHING,)
-
-    def _passes(self, site: Site) -> str | None:
-        """Return the parameter whose value an output repeats, None where there is none."""
-        signature = self.flow.subject.signature(self.flow.subject.nodes[site.path].node)
-        declared = signature.parameters.values() if signature is not None else ()
-        return next((key.name for key in declared if key.schema.get("output") == site.name), None)
 
     def _passed(self, site: Site) -> Kinds:
         placed = self.flow.subject.nodes[site.path]
@@ -189,11 +186,12 @@ class Resolver:
         if site.origin == "reference":
             inner = self.inner(site.path)
             return inner.at_the_end(site.name) if inner is not None else (ANYTHING,)
-        name = self._passes(site) or ""
-        if name in placed.node.parameters:
-            return self._tried(placed.node.parameters[name], site.path)
         signature = self.flow.subject.signature(placed.node)
-        return (Constant(signature.parameters[name].default) if signature is not None else ANYTHING,)
+        name = signature.passed_on(site.name) if signature is not None else None
+        if signature is None or name is None:
+            return (ANYTHING,)
+        given = placed.node.parameters
+        return self._tried(given[name], site.path) if name in given else (Constant(signature.parameters[name].default),)
 
     def _tried(self, value: object, path: str) -> Kinds:
         try:

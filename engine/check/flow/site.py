@@ -19,6 +19,7 @@ class Site:
     """One place that defines a key: a declaration, or a node that writes it.
 
     `path` is the node or container; `name` is the output key, or the inner key, that is written.
+    States of one container that write the same output of one class are one site, that of the first.
     """
 
     number: int
@@ -35,6 +36,7 @@ class Sites:
         self._numbers = {key: number for number, key in enumerate(keys)}
         self._first = 2 * len(self._numbers)
         self._sites: list[Site] = []
+        self._shared: set[int] = set()
         self._known: dict[tuple[str, Origin, str, str], Site] = {}
         self._defined = [0b10 << 2 * number for number in range(len(self._numbers))]
         every_other = ((1 << self._first) - 1) // 3
@@ -52,18 +54,28 @@ class Sites:
     def __contains__(self, key: str) -> bool:
         return key in self._numbers
 
-    def add(self, key: str, origin: Origin, path: str, name: str) -> int:
-        """Number a place and return its bit; 0 for a key that nobody reads."""
+    def add(self, key: str, origin: Origin, path: str, name: str, *, group: str = "") -> int:
+        """Number a place and return its bit; 0 for a key that nobody reads.
+
+        Places of one `group` share a bit: fewer bits go round in a loop, and settle sooner.
+        """
         number = self._numbers.get(key)
         if number is None:
             return 0
-        site = self._known.get((key, origin, path, name))
+        identity = (key, origin, group or path, name)
+        site = self._known.get(identity)
         if site is None:
             site = Site(number=self._first + len(self._sites), key=key, origin=origin, path=path, name=name)
             self._sites.append(site)
-            self._known[key, origin, path, name] = site
+            self._known[identity] = site
             self._defined[number] |= 1 << site.number
+        elif site.path != path:
+            self._shared.add(site.number)
         return 1 << site.number
+
+    def shared(self, site: Site) -> bool:
+        """Tell whether a site stands for several places."""
+        return site.number in self._shared
 
     def defined_bits(self, key: str) -> int:
         """Return the bits of a key that mean that it is defined."""

@@ -592,6 +592,16 @@ def test_otherwise_covers_every_combination() -> None:
     assert check_behavior(parse_behavior(text, file="x.yaml"), CATALOGUE) == ()
 
 
+def test_a_child_that_never_ends_leaves_nothing_uncovered() -> None:
+    """All children are never finished together; that the child goes round for ever is told instead."""
+    go = "{state: arm.Move, with: {robot: x}, transitions: {reached: go, failed: go}}"
+    endless = f"machine: {{initial: go, states: {{go: {go}}}}}"
+    text = PARALLEL.replace("{state: arm.Move, with: {robot: left}}", f"{{{endless}}}")
+    text = text.replace("left: reached, ", "").replace("      - {failed: {left: failed}}\n", "")
+    found = check_behavior(parse_behavior(text, file="x.yaml"), CATALOGUE)
+    assert [finding.code for finding in found] == ["no-path-to-outcome"]
+
+
 def test_many_children_are_covered_without_counting_all_combinations() -> None:
     """Forty children with two outcomes each have 10^12 combinations; the conditions decide them quickly."""
     names = [f"c{i}" for i in range(40)]

@@ -97,6 +97,14 @@ def test_what_a_state_writes_is_followed_to_its_reader() -> None:
     assert message_of(text).endswith("takes a number, and gets true or false from `held` of `root/grasp`")
 
 
+def test_of_two_states_alike_the_one_is_named_that_the_value_comes_from() -> None:
+    """The first one is behind the reader."""
+    first = (GRASP % ("bad", "bad")).replace("held: wait", "held: good")
+    wait = (WAIT % '"${held}"').replace("good", "first")
+    text = machine("second", first=first, second=GRASP % ("bad", "bad"), wait=wait)
+    assert message_of(text).endswith("gets true or false from `held` of `root/second`")
+
+
 def test_a_value_that_comes_on_one_way_only_is_a_warning_with_that_way() -> None:
     """The other way brings a number."""
     grasp = GRASP % ("wait", "look")
