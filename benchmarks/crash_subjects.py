@@ -1,4 +1,4 @@
-"""What is killed and resumed: two behaviors with devices that write every effect down, and the two-arm transfer."""
+"""What is killed and resumed: two behaviors with devices that write every effect down, and two in physics."""
 
 from __future__ import annotations
 
@@ -248,6 +248,12 @@ SUBJECTS = {
             behavior=lambda: load_behavior(BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml"),
             catalogue=load_states,
             cell=lambda: load_cell(BEHAVIORS / "cells" / "dual_panda.yaml"),
+        ),
+        Subject(
+            name="cylinder",
+            behavior=lambda: load_behavior(BEHAVIORS / "test_cylinder" / "test_cylinder.yaml"),
+            catalogue=load_states,
+            cell=lambda: load_cell(BEHAVIORS / "cells" / "servo_arm.yaml"),
         ),
     )
 }

@@ -1,7 +1,7 @@
 """Kills a run at its events and around its commits, resumes it, and compares: prints a table.
 
-`python -P benchmarks/crashes.py` kills at every point of three behaviors, the two-arm transfer in
-physics among them (about a quarter of an hour); `--subject press --every 5` at every fifth of one.
+`python -P benchmarks/crashes.py` kills at every point of four behaviors, the two-arm transfer and the
+test cylinder in physics among them (about half an hour); `--subject press --every 5` at every fifth of one.
 """
 
 from __future__ import annotations

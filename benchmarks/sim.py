@@ -1,6 +1,8 @@
 """How fast the dual-arm cell is simulated, where the time goes, and how punctual real time is.
 
 `python -P benchmarks/sim.py --seconds 10` prints a table; both arms swing to and fro all the time.
+`--controller cartesian_impedance` measures the other control law, `--parts 20 --step-ms 2` a full table.
+`--virtual` prints how fast virtual time passes with either law, with and without 20 more parts.
 Without -P the neighbour `benchmarks/engine.py` would shadow the package `engine`.
 """
 
@@ -9,68 +11,43 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import os
 import platform
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import get_args
 
-import numpy as np
+from msgspec.structs import replace
 
+from benchmarks.step_cost import step_cost
+from benchmarks.swinging import CELL, Swinging, swing_for_ever
 from engine.document.cell import load_cell
-from engine.messages import FramePoses, PartPoses
-from robots.control.motion_event import MotionFinished
-from robots.model.registry import model_by_name
-from robots.port import Array, JointTrajectory, Tolerance
+from engine.messages import FramePoses, PartPoses, Pose
+from robots.port import ArmSettings, ControllerName
+from robots.sim.arm_commands import Configure
 from robots.sim.cell_model import build_cell
 from robots.sim.cell_scene import scene_of
-from robots.sim.commands import Follow
 from robots.sim.physics import Physics
 from robots.sim.process_host import ProcessHost
-from robots.sim.scene import Scene
+from robots.sim.scene import PartBody, Scene
 from robots.sim.scene_description import describe_scene
 from robots.sim.simulation import Simulation
 from robots.sim.snapshot import Snapshot
 from robots.sim.timing import Timing
 from robots.sim.world import SimWorld
 
-CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "dual_panda.yaml"
-SWING_S = 1.5
+_SHAPES = (("box", (0.05, 0.03, 0.04), 0.1), ("cylinder", (0.03, 0.04), 0.05))
 
 
-def swing(start: Array, goal: Array) -> JointTrajectory:
-    """Return a minimum-jerk motion between two configurations."""
-    u = np.linspace(0.0, 1.0, round(SWING_S / 0.001) + 1)[:, None]
-    return JointTrajectory(
-        dt_s=0.001,
-        position_rad=start + (goal - start) * (10 * u**3 - 15 * u**4 + 6 * u**5),
-        velocity_rad_s=(goal - start) * (30 * u**2 - 60 * u**3 + 30 * u**4) / SWING_S,
-    )
-
-
-class Swinging:
-    """Keeps every arm of a simulation moving."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        home = np.array(model_by_name("panda").home_rad)
-        there = home + np.array([0.4, 0.2, -0.3, 0.3, 0.3, -0.3, 0.5])
-        self._ways = (swing(home, there), swing(there, home))
-        self._arms: dict[int, tuple[str, int]] = {}
-        self._number = 0
-        for arm in simulation.summary.arms:
-            self._start(arm.name, 0)
-
-    def _start(self, arm: str, way: int) -> None:
-        self._number += 1
-        self._arms[self._number] = (arm, way)
-        self._simulation.apply(Follow.of(arm, self._number, self._ways[way], Tolerance()))
-
-    def step(self) -> None:
-        """Let one step pass and start the next swing where one has ended."""
-        for event in self._simulation.step():
-            if isinstance(event, MotionFinished):
-                arm, way = self._arms.pop(event.motion)
-                self._start(arm, 1 - way)
+def filled(scene: Scene, parts: int, step_s: float) -> Scene:
+    """Return the scene with another step and so many more parts on the table, boxes and cylinders in rows."""
+    more: list[PartBody] = []
+    for number in range(parts):
+        shape, size_m, mass_kg = _SHAPES[number % len(_SHAPES)]
+        xyz = (0.07 * (number % 5) - 0.14, 0.42 + 0.04 * (number // 5 % 4), 0.021 + 0.045 * (number // 20))
+        more.append(PartBody(name=f"more_{number}", shape=shape, size_m=size_m, mass_kg=mass_kg, pose=Pose(xyz=xyz)))
+    return replace(scene, step_s=step_s, parts=(*scene.parts, *more))
 
 
 def timed(work: Callable[[], object], count: int) -> tuple[float, float]:
@@ -81,7 +58,7 @@ def timed(work: Callable[[], object], count: int) -> tuple[float, float]:
     return (time.perf_counter() - wall) / count, (time.process_time() - cpu) / count
 
 
-def lockstep(scene: Scene, seconds: float) -> None:
+def lockstep(scene: Scene, seconds: float, settings: ArmSettings) -> None:
     """Measure stepping in this process."""
     start = time.perf_counter()
     cell = build_cell(scene)
@@ -91,6 +68,8 @@ def lockstep(scene: Scene, seconds: float) -> None:
     describe_scene(scene)
     row("scene description", f"{time.perf_counter() - start:.3f} s")
 
+    for arm in simulation.summary.arms:
+        simulation.apply(Configure(arm=arm.name, settings=settings))
     moving = Swinging(simulation)
     count = round(seconds / simulation.step_s)
     wall, cpu = timed(moving.step, count)
@@ -123,39 +102,47 @@ def lockstep(scene: Scene, seconds: float) -> None:
     row("one frame message (30 Hz)", f"{messages_cpu * 1e6:.1f} us")
 
 
-async def real_time(scene: Scene, seconds: float) -> None:
+async def real_time(scene: Scene, seconds: float, settings: ArmSettings) -> None:
     """Measure the world's own process beside a parent that is busy with JSON all the time."""
     start = time.perf_counter()
     host = ProcessHost(scene)
     async with SimWorld(scene, host=host) as world:
         row("world process ready after", f"{time.perf_counter() - start:.3f} s")
-        home = np.array(model_by_name("panda").home_rad)
-        swingers = [asyncio.create_task(_swing_for_ever(world, name, home)) for name in world.arm_names()]
+        for name in world.arm_names():
+            world.arm(name).configure(settings)
+        swingers = [asyncio.create_task(swing_for_ever(world, name)) for name in world.arm_names()]
         text = json.dumps({str(n): list(range(20)) for n in range(400)})
         before, end = host.timing(), time.perf_counter() + seconds
         while time.perf_counter() < end:
             json.loads(text)
             await asyncio.sleep(0)
-        _print_timing(before, host.timing(), fifo=host.fifo)
+        _print_timing(host.timing().since(before), fifo=host.fifo)
         for task in swingers:
             task.cancel()
         await asyncio.wait(swingers)
 
 
-async def _swing_for_ever(world: SimWorld, name: str, home: Array) -> None:
-    there = home + np.array([0.4, 0.2, -0.3, 0.3, 0.3, -0.3, 0.5])
-    while True:
-        for way in (swing(home, there), swing(there, home)):
-            await world.arm(name).follow(way, tolerance=Tolerance()).report()
-
-
-def _print_timing(before: Timing, after: Timing, *, fifo: bool) -> None:
-    steps, overruns = after.steps - before.steps, after.overruns - before.overruns
+def _print_timing(timing: Timing, *, fifo: bool) -> None:
+    steps, overruns = timing.steps, timing.overruns
     row("real-time schedule (SCHED_FIFO)", "yes" if fifo else "not permitted")
-    late = (after.late_p50_s, after.late_p99_s, after.late_max_s)
+    late = (timing.late_p50_s, timing.late_p99_s, timing.late_max_s)
     row("late p50 / p99 / max", " / ".join(f"{value * 1e3:.3f}" for value in late) + " ms")
     row("overruns", f"{overruns} of {steps} steps ({100 * overruns / max(steps, 1):.2f} %)")
-    row("world time given up", f"{after.slipped_s - before.slipped_s:.3f} s")
+    row("world time given up", f"{timing.slipped_s:.3f} s")
+
+
+def virtual_time(scene: Scene, seconds: float) -> None:
+    """Print a Markdown table of how fast virtual time passes."""
+    print("| | CPU × | wall × | µs CPU a step | physics | set points | law | rest | contacts |")
+    print("|---|" + "---:|" * 8)
+    for parts, step_s in ((0, 0.001), (20, 0.001), (20, 0.002)):
+        for controller in get_args(ControllerName):
+            cost = step_cost(filled(scene, parts, step_s), controller, seconds)
+            what = f"{controller.replace('_', ' ')}, {parts or 'no'} more parts, {step_s * 1e3:g} ms"
+            costs = (cost.cpu_s, cost.physics_s, cost.set_points_s, cost.laws_s, cost.rest_s)
+            microseconds = " | ".join(f"{part_s * 1e6:.0f}" for part_s in costs)
+            factors = f"{cost.cpu_factor:.1f} | {cost.wall_factor:.1f}"
+            print(f"| {what} | {factors} | {microseconds} | {cost.contacts} |", flush=True)
 
 
 def row(what: str, value: str) -> None:
@@ -168,11 +155,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=10.0, help="simulated, then real, seconds (default 10)")
     parser.add_argument("--cell", type=Path, default=CELL, help="cell document")
+    parser.add_argument("--controller", choices=get_args(ControllerName), default="joint_impedance")
+    parser.add_argument("--parts", type=int, default=0, help="free parts beside those of the cell (default 0)")
+    parser.add_argument("--step-ms", type=float, default=1.0, help="step of the physics (default 1)")
+    parser.add_argument("--virtual", action="store_true", help="print how fast virtual time passes, nothing else")
     options = parser.parse_args()
-    scene = scene_of(load_cell(options.cell).document, seed=0)
+    drawn = scene_of(load_cell(options.cell).document, seed=0)
+    if options.virtual:
+        print(f"{platform.machine()}, load {os.getloadavg()[0]:.1f} before, Python {platform.python_version()}\n")
+        virtual_time(drawn, options.seconds)
+        return
+    scene = filled(drawn, options.parts, options.step_ms / 1000.0)
+    settings = ArmSettings(controller=options.controller)
     row("machine", f"{platform.machine()}, Python {platform.python_version()}")
-    lockstep(scene, options.seconds)
-    asyncio.run(real_time(scene, options.seconds))
+    lockstep(scene, options.seconds, settings)
+    asyncio.run(real_time(scene, options.seconds, settings))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""How often the two-arm transfer succeeds with jittered parts, and whether a seed repeats byte for byte.
+"""How often an application succeeds with jittered parts, and whether a seed repeats byte for byte.
 
 `python -P benchmarks/transfer.py --seeds 20` runs the command a user runs, once a seed, then the
-first seed again, and prints a table.
+first seed again, and prints a table: for the two-arm transfer, or for `--behavior FILE`.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ BEHAVIOR = Path(__file__).resolve().parents[1] / "behaviors" / "reconcycle" / "t
 FLEXCELL = Path(sys.executable).with_name("flexcell")
 
 
-def run(seed: int, folder: Path) -> tuple[dict[str, Any], float]:
+def run(behavior: Path, seed: int, folder: Path) -> tuple[dict[str, Any], float]:
     """Run one seed in virtual time; returns the result and the wall time in seconds."""
     started = time.perf_counter()
-    command = [FLEXCELL, "run", BEHAVIOR, "--clock", "virtual", "--seed", str(seed), "--json"]
+    command = [FLEXCELL, "run", behavior, "--clock", "virtual", "--seed", str(seed), "--json"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     return json.loads(done.stdout), time.perf_counter() - started
 
@@ -31,16 +31,18 @@ def main() -> int:
     """Print the table; exit code 1 when fewer than 19 in 20 succeed or a repetition differs."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
-    seeds = parser.parse_args().seeds
+    parser.add_argument("--behavior", type=Path, default=BEHAVIOR)
+    options = parser.parse_args()
+    seeds, behavior = options.seeds, options.behavior.resolve()
     print("| seed | outcome | simulated s | wall s | cause |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
         results: list[dict[str, Any]] = []
         for seed in range(seeds):
-            result, wall_s = run(seed, Path(name))
+            result, wall_s = run(behavior, seed, Path(name))
             results.append(result)
             cause = " because ".join(link["message"] for link in result["cause"])
             print(f"| {seed} | {result['outcome']} | {result['duration_s']:.2f} | {wall_s:.1f} | {cause} |", flush=True)
-        again, _ = run(0, Path(name))
+        again, _ = run(behavior, 0, Path(name))
     good = sum(result["success"] for result in results)
     same = again["events_sha256"] == results[0]["events_sha256"]
     print(f"\n{good} of {seeds} succeeded; seed 0 again: {'the same bytes' if same else 'DIFFERENT'}")

@@ -19,11 +19,12 @@ from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
-from editor_web.routes import behaviors, bus, cell, control, live, page, runs, session
+from editor_web.routes import behaviors, breakpoints, bus, cell, control, halt, live, page, runs, session
 from editor_web.routes.services import Services
 from editor_web.security import Gate
-from editor_web.wire import ErrorBody
+from editor_web.wire import AskBody, ErrorBody, QuestionBody
 from engine.errors import ControlError, FlexcellError
+from engine.resume import NeedsAnswers
 
 STATIC = Path(__file__).parent / "static"
 
@@ -72,7 +73,7 @@ def api() -> FastAPI:
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
     )
-    for module in (session, behaviors, runs, control, bus, live, cell, page):
+    for module in (session, breakpoints, behaviors, runs, control, halt, bus, live, cell, page):
         app.include_router(module.router)
     app.include_router(control.interrupted_router)
     app.add_exception_handler(FlexcellError, _refused)
@@ -92,6 +93,7 @@ def _version() -> str:
 async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     services: Services = app.state.services
     services.hub.open()
+    await services.hub.robots.open()
     view = services.cell_view
     if view is not None:
         await asyncio.to_thread(view.open)
@@ -99,6 +101,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     try:
         yield
     finally:
+        services.hub.robots.close()
         services.hub.close()
         if view is not None:
             view.unsubscribe()
@@ -116,7 +119,12 @@ async def _refused(request: Request, error: Exception) -> JSONResponse:
     where = "" if error.where is None else str(error.where)
     # A command that the run does not allow now is no mistake in the request.
     status = 409 if isinstance(error, ControlError) else 422
-    return _answer(status, error.message, where=where, hint=error.hint or "")
+    hint = error.hint or ""
+    if isinstance(error, NeedsAnswers):
+        questions = tuple(QuestionBody(path=each.path, outcomes=each.outcomes) for each in error.questions)
+        body = AskBody(message=error.message, where=where, hint=hint, questions=questions)
+        return JSONResponse(body.model_dump(), status_code=status)
+    return _answer(status, error.message, where=where, hint=hint)
 
 
 async def _malformed(request: Request, error: Exception) -> JSONResponse:

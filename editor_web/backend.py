@@ -11,6 +11,7 @@ from typing import Protocol
 
 from editor_web.operation import Operation
 from engine.bus.access import BusAccess
+from engine.control import ControlView
 from engine.event import Event
 from engine.launch import Moment
 from engine.supervision import Supervision
@@ -243,6 +244,11 @@ class RunSummary(Protocol):
     @property
     def duration_s(self) -> float:
         """On the run's own clock; so far while it is under way."""
+        ...
+
+    @property
+    def control(self) -> ControlView | None:
+        """What an operator sees of it while it is under way."""
         ...
 
 

@@ -19,6 +19,7 @@ class WaitingBody(Wire):
     visit: int
     point: Place
     outcome: str
+    required: str
     reasons: tuple[str, ...]
 
 
@@ -45,6 +46,10 @@ class ControlBody(Wire):
     autonomy: Level
     operator: str
     active: tuple[str, ...]
+    stepping: bool
+    demanded: bool
+    loss_policy: Literal["hold", "continue", "stop"]
+    loss_timeout_s: float
 
 
 class StepBody(Wire):
@@ -58,6 +63,12 @@ class NodeBody(Wire):
     """The node that a command is about."""
 
     path: str
+
+
+class LockBody(NodeBody):
+    """Hold the outcome of a node; `reason` goes into the event log."""
+
+    reason: str = Field(default="", max_length=200)
 
 
 class ForceBody(Wire):
@@ -74,7 +85,7 @@ class AutonomyBody(Wire):
 
 
 class BreakpointsBody(Wire):
-    """All breakpoints of the run; they replace those before."""
+    """All breakpoints of a run, or of a behavior; they replace those before."""
 
     breakpoints: tuple[BreakpointBody, ...]
 

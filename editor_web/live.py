@@ -13,93 +13,16 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-import msgspec
-
 from editor_web.backend import Backend, RunSummary, Unsubscribe
 from editor_web.event_words import LogLine
+from editor_web.live_control import ControlLive, control_live, waits_for
+from editor_web.live_frames import Delta, RunLine, Snapshot
+from editor_web.live_robots import RobotBoard
 from editor_web.live_run import LOG_LINES, Change, LiveRun, NodeLive
 from engine.errors import FlexcellError
 from engine.event import Event
 
-PROTOCOL_VERSION = 1
 KEPT_RUNS = 50
-
-
-class RunLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One run in the list of runs; the same fields as the HTTP interface has."""
-
-    id: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-
-
-class Hello(msgspec.Struct, frozen=True, kw_only=True, tag="hello", tag_field="k"):
-    """First frame; another `epoch` than before means that the server was restarted."""
-
-    version: int
-    epoch: str
-    role: str
-    server_time_s: float
-
-
-class Snapshot(msgspec.Struct, frozen=True, kw_only=True, tag="snapshot", tag_field="k"):
-    """Everything of the watched run (empty when none is) and all runs, newest first.
-
-    `now_s` is the run's clock at sending; it goes on with wall time while `ticking`.
-    """
-
-    run: str
-    seq: int
-    now_s: float
-    ticking: bool
-    runs: tuple[RunLine, ...]
-    nodes: dict[str, NodeLive]
-    log: tuple[LogLine, ...]
-
-
-class Delta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_field="k"):
-    """What changed in the watched run since `after`, and the runs that changed; `dropped` log lines are missing."""
-
-    run: str
-    after: int
-    seq: int
-    now_s: float
-    ticking: bool
-    runs: tuple[RunLine, ...]
-    nodes: dict[str, NodeLive]
-    log: tuple[LogLine, ...]
-    dropped: int
-
-
-class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
-    """Nothing happened; the connection lives."""
-
-    server_time_s: float
-
-
-class Watch(msgspec.Struct, frozen=True, kw_only=True, tag="watch", tag_field="k"):
-    """From the client: show this run from now on (empty: the list of runs only); answered by a snapshot."""
-
-    run: str = ""
-
-
-class Operate(msgspec.Struct, frozen=True, kw_only=True, tag="operate", tag_field="k"):
-    """From the client: I operate this run from now on (empty: none); losing the connection is losing the operator."""
-
-    run: str = ""
-
-
-class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k"):
-    """From the client: answer to a ping."""
-
-
-Frame = Hello | Snapshot | Delta | Ping
-Request = Watch | Operate | Pong
 
 
 class LiveClient:
@@ -114,6 +37,7 @@ class LiveClient:
         self._log: deque[LogLine] = deque()
         self._dropped = 0
         self._runs: dict[str, None] = {}
+        self._robots: dict[str, None] = {}
         self.dirty = asyncio.Event()
         self.dirty.set()
 
@@ -141,6 +65,11 @@ class LiveClient:
             self._dropped += 1
         self.dirty.set()
 
+    def note_robot(self, name: str) -> None:
+        """Mark an arm whose line is another now."""
+        self._robots[name] = None
+        self.dirty.set()
+
     def refresh(self, live: LiveRun) -> None:
         """Mark a run that was rebuilt as a whole."""
         self._runs[live.run_id] = None
@@ -153,12 +82,12 @@ class LiveClient:
         self.dirty.clear()
         if self._snapshot_due:
             made: Snapshot | Delta | None = self._snapshot()
-        elif self._nodes or self._log or self._runs:
+        elif self._nodes or self._log or self._runs or self._robots:
             made = self._delta()
         else:
             made = None
         self._snapshot_due = False
-        self._nodes, self._log, self._dropped = {}, deque(), 0
+        self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
         # The engine tells the end of a run before it has filed it; such a run is looked at again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
         if self._runs:
@@ -176,6 +105,8 @@ class LiveClient:
             runs=tuple(map(_run_line, self._hub.backend.runs())),
             nodes=dict(live.nodes) if live else {},
             log=tuple(live.log) if live else (),
+            control=self._hub.control_of(live),
+            robots=dict(self._hub.robots.lines),
         )
 
     def _delta(self) -> Delta:
@@ -190,6 +121,8 @@ class LiveClient:
             nodes=self._nodes,
             log=tuple(self._log),
             dropped=self._dropped,
+            control=self._hub.control_of(live),
+            robots={name: self._hub.robots.lines[name] for name in self._robots},
         )
 
 
@@ -209,6 +142,7 @@ class LiveHub:
         self._seen_at_s: dict[str, float] = {}
         self._clients: set[LiveClient] = set()
         self._unsubscribe: Unsubscribe | None = None
+        self.robots = RobotBoard(backend, changed=self._on_robot)
 
     @property
     def clients(self) -> tuple[LiveClient, ...]:
@@ -254,6 +188,13 @@ class LiveHub:
             return live.time_s
         return live.time_s + self._wall_s() - self._seen_at_s.get(live.run_id, self._wall_s())
 
+    def control_of(self, live: LiveRun | None) -> ControlLive | None:
+        """Return the control of a run as it is now; None when it is over or unknown."""
+        if live is None or live.ended or live.seq == 0:
+            return None
+        view = self.backend.run(live.run_id).control
+        return None if view is None else control_live(view, lock_reasons=live.lock_reasons)
+
     def is_settled(self, run_id: str) -> bool:
         """Say whether the backend's word on a run agrees with the run's events."""
         live = self._runs.get(run_id)
@@ -272,6 +213,10 @@ class LiveHub:
             return
         for client in self._clients:
             client.note(live, change)
+
+    def _on_robot(self, name: str) -> None:
+        for client in self._clients:
+            client.note_robot(name)
 
     def _recorded(self, run_id: str) -> list[Event]:
         try:
@@ -303,4 +248,5 @@ def _run_line(run: RunSummary) -> RunLine:
         cause=run.cause,
         started_at_s=run.started_at_s,
         duration_s=run.duration_s,
+        waits=waits_for(run.control),
     )

@@ -8,10 +8,14 @@ import msgspec
 
 from editor_web.event_words import LogLine, log_line, status_of
 from engine.event import (
+    Commanded,
     Diverted,
     Entered,
     Event,
     Exited,
+    GatePassed,
+    GateReached,
+    OperatorChanged,
     RunEnded,
     RunStarted,
     StatusChanged,
@@ -20,6 +24,8 @@ from engine.event import (
 )
 
 LOG_LINES = 1000
+# After these the list of runs may have another word on what the run waits for.
+_TURNS = (RunStarted, StopRequested, RunEnded, Commanded, GateReached, GatePassed, OperatorChanged)
 
 
 class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -56,6 +62,7 @@ class LiveRun:
         self.time_s = 0.0
         self.real_time = False
         self.ended = False
+        self.lock_reasons: dict[str, str] = {}
         self.nodes: dict[str, NodeLive] = {}
         self.log: deque[LogLine] = deque(maxlen=LOG_LINES)
 
@@ -65,11 +72,19 @@ class LiveRun:
             return None
         self.seq = event.seq
         self.time_s = event.time_s
+        if isinstance(event, Commanded):
+            self._commanded(event)
         changed = self._nodes_changed(event)
         self.nodes.update(changed)
         line = log_line(event, duration_s=_duration(event, changed))
         self.log.append(line)
-        return Change(nodes=changed, line=line, run_changed=isinstance(event, RunStarted | StopRequested | RunEnded))
+        return Change(nodes=changed, line=line, run_changed=isinstance(event, _TURNS))
+
+    def _commanded(self, event: Commanded) -> None:
+        if event.command == "lock":
+            self.lock_reasons[event.path] = str(event.arguments.get("reason", ""))
+        elif event.command == "unlock":
+            self.lock_reasons.pop(event.path, None)
 
     def _nodes_changed(self, event: Event) -> dict[str, NodeLive]:
         if isinstance(event, RunStarted):

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Protocol
 
-from engine.control import Control
+from engine.control import Breakpoint, Control
 from engine.hot_change import ChangeReport
 
 
@@ -72,6 +72,22 @@ class Operation(Protocol):
         Raises:
             ControlError: the run cannot go on in the new version; it goes on as it is.
             FlexcellError: the file has errors.
+        """
+        ...
+
+    def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
+        """Return the breakpoints beside a behavior's file; raises FlexcellError when the id names none."""
+        ...
+
+    def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
+        """Write the breakpoints beside a behavior's file; raises FlexcellError when the id names none."""
+        ...
+
+    async def stop_all(self, *, reason: str) -> None:
+        """Ask every run to stop, cancel every goal, and return when every robot is at rest.
+
+        Raises:
+            FlexcellError: a robot could not confirm it; the others were stopped all the same.
         """
         ...
 

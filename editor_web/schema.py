@@ -14,7 +14,7 @@ from typing import Any, cast
 import msgspec
 
 from editor_web.app import api
-from editor_web.live import Delta, Hello, Operate, Ping, Pong, Snapshot, Watch
+from editor_web.live_frames import Delta, Hello, Operate, Ping, Pong, Snapshot, Watch
 
 HERE = Path(__file__).parent
 OPENAPI = HERE / "openapi.json"
@@ -22,7 +22,7 @@ TYPES = HERE / "frontend" / "src" / "api" / "types.ts"
 Schema = dict[str, Any]
 _SIMPLE = {"string": "string", "integer": "number", "number": "number", "boolean": "boolean", "null": "null"}
 # Of the framework, or for the command line only.
-_SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody"}
+_SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody", "BusMessageBody"}
 
 
 def openapi() -> str:

@@ -115,6 +115,13 @@ class BusRequestBody(Wire):
     request: dict[str, object] = {}
 
 
+class BusMessageBody(Wire):
+    """A message to publish on a topic that takes commands."""
+
+    topic: str = Field(max_length=200)
+    message: dict[str, object]
+
+
 class SessionBody(Wire):
     """Who is logged in, and what this server has."""
 
@@ -124,9 +131,22 @@ class SessionBody(Wire):
     epoch: str
 
 
+class QuestionBody(Wire):
+    """A state that a crash found in mid-work: what became of it is for a person to say."""
+
+    path: str
+    outcomes: tuple[str, ...]
+
+
 class ErrorBody(Wire):
     """Why a request failed: what, where (a parameter's name, a file, a node path), what to do."""
 
     message: str
     where: str
     hint: str
+
+
+class AskBody(ErrorBody):
+    """An interrupted run cannot go on before these questions are answered."""
+
+    questions: tuple[QuestionBody, ...]

@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from engine.bus import SkillBus
+from engine.cell_store import open_cell_store, store_address
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries import load_entries
@@ -21,7 +22,7 @@ from engine.errors import CellError, FlexcellError, NotStopped, RobotError
 from engine.preemption import Overdue, preempt
 from engine.registry import DRIVERS, WORLDS, load_maker
 from engine.robot import Robot, World
-from engine.store import SqliteStore, Store, register_store
+from engine.store import Store, publish_changes, register_store
 
 _PATIENCE_S = 10.0
 """How long a robot may take to come to rest, and the goals' handlers to end."""
@@ -38,7 +39,7 @@ class OpenCell:
     Args:
         cell: The document, or None for behaviors that need no robot.
         seed: Places the parts of a simulated world within their jitter; None exactly where they are drawn.
-        store_path: Replaces the path of the store in the document.
+        store_path: Replaces the store of the document: a file, or the address of a MongoDB server.
     """
 
     def __init__(self, cell: Cell | None, *, seed: int | None = None, store_path: str | None = None) -> None:
@@ -57,15 +58,19 @@ class OpenCell:
         return self.document.name if self.document is not None else ""
 
     @property
+    def world(self) -> World | None:
+        """The simulated world, once the cell is open; None without one."""
+        return self._world
+
+    @property
     def has_world(self) -> bool:
         """Whether there is a simulated world, which can be brought back to where it was."""
         return self.document is not None and self.document.document.world is not None
 
     @property
     def store_path(self) -> str | None:
-        """The file of its store, None without one."""
-        store = self.document.document.store if self.document is not None else None
-        return (self._store_path or store.path) if store is not None else None
+        """The file or address of its store, without secrets; None without one."""
+        return store_address(self.document, self._store_path) if self.document is not None else None
 
     async def __aenter__(self) -> Self:
         try:
@@ -135,12 +140,13 @@ class OpenCell:
     async def _open_store(self, cell: Cell) -> None:
         if cell.document.store is None:
             return
-        path = self._store_path or cell.document.store.path
-        store = SqliteStore.open(path, inline=self.bus.clock.virtual)
+        store = await open_cell_store(cell, self._store_path, inline=self.bus.clock.virtual)
         self.store = await self._stack.enter_async_context(store)
         if cell.seed_file is not None:
-            await store.seed(load_entries(cell.seed_file).records())
+            seed = load_entries(cell.seed_file).records()
+            await store.seed(seed, by=f"cell {cell.name}", reason=f"seed {cell.seed_file.name}")
         register_store(self.bus, store)
+        await publish_changes(self.bus, store)
 
     async def _open_world(self, cell: Cell) -> World | None:
         if cell.document.world is None:

@@ -89,7 +89,9 @@ class GoalRejected(BusError):
 
 
 class SkillFailed(BusError):
-    """A skill was accepted and could not be carried out."""
+    """A skill was accepted and could not be carried out; `result` is what it says all the same, as in `GoalEnd`."""
+
+    result: object | None = None
 
 
 class StoreError(FlexcellError):

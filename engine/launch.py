@@ -8,11 +8,11 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import msgspec
 
 from engine.cell import OpenCell
+from engine.cell_store import absolute_address
 from engine.checkpoint import Checkpoint
 from engine.control import LEVELS, AutonomyLevel
 from engine.document import Behavior
@@ -47,7 +47,7 @@ def new_origin(
         document=document,
         documents=documents,
         cell=str(cell.document.file.resolve()) if cell.document is not None else None,
-        store=str(Path(cell.store_path).resolve()) if cell.store_path is not None else None,
+        store=absolute_address(cell.store_path) if cell.store_path is not None else None,
         seed=cell.seed,
         clock="virtual" if cell.bus.clock.virtual else "real",
         autonomy=watched.autonomy,

@@ -103,6 +103,10 @@ class Library:
             raise DocumentError("this behavior cannot be read", where=behavior_id)
         return read.behavior
 
+    def file_of(self, behavior_id: str) -> Path:
+        """Return the file of a behavior; raises DocumentError when the id names none."""
+        return self._project / self._known(behavior_id)
+
     def id_of(self, file: Path) -> str:
         """Return the id of a behavior by its file.
 

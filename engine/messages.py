@@ -43,12 +43,42 @@ class GripperState(Message, frozen=True, kw_only=True):
     held: bool
 
 
+class HandState(Message, frozen=True, kw_only=True):
+    """Measured state of a hand with one motor: how far it is closed (0 open, 100 closed), how hard it presses."""
+
+    time_s: float
+    closed_percent: float
+    force_n: float
+    held: bool
+    part: str = ""
+    """What is held, `?` where the hand cannot tell, empty for nothing."""
+
+
+class MagnetState(Message, frozen=True, kw_only=True):
+    """Measured state of a switchable magnet: how hard it pulls at what touches its face."""
+
+    time_s: float
+    on: bool
+    pull_n: float
+    held: bool
+    part: str = ""
+    """What is held, `?` where the magnet cannot tell, empty for nothing."""
+
+
 class Wrench(Message, frozen=True, kw_only=True):
     """Force in newton and torque in newton metre, in `frame`."""
 
     force_n: Vector3
     torque_nm: Vector3
     frame: str
+
+
+class ExternalTorque(Message, frozen=True, kw_only=True):
+    """The joint torque that the environment exerts on a robot, estimated, without the load that it knows of."""
+
+    time_s: float
+    names: tuple[str, ...]
+    torque_nm: tuple[float, ...]
 
 
 class FrameTransform(Message, frozen=True, kw_only=True):
@@ -101,7 +131,11 @@ class PartPoses(Message, frozen=True, kw_only=True):
 
 
 class RobotDescription(Message, frozen=True, kw_only=True):
-    """What a robot says of itself once connected, published as the latest value of `<robot>/description`."""
+    """What a robot says of itself once connected, published as the latest value of `<robot>/description`.
+
+    `urdf` is of arm and tool together. `tool` is the name of the tool's model, empty for a bare flange;
+    `calibration` the hash of the factory calibration that is applied, empty for the nominal arm.
+    """
 
     name: str
     model: str
@@ -114,3 +148,9 @@ class RobotDescription(Message, frozen=True, kw_only=True):
     base: Pose
     tool_frame: str
     licence: str = ""
+    effort_nm: tuple[float, ...] = ()
+    jerk_rad_s3: tuple[float, ...] = ()
+    tool: str = ""
+    tool_kind: str = ""
+    tool_licence: str = ""
+    calibration: str = ""

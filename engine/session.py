@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
@@ -14,7 +14,7 @@ import msgspec
 from engine.bus.access import BusAccess, LocalBus
 from engine.cause import describe
 from engine.cell import OpenCell
-from engine.control import Control, ControlView, load_breakpoints
+from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
 from engine.document.faults import Faults
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
@@ -233,6 +233,28 @@ class Session:
         if started.result is None:
             started.stopping = True
             started.run.stop(reason)
+
+    async def stop_all(self, *, reason: str) -> None:
+        """Ask every run to stop, cancel every goal of whomever, and return when every robot is at rest.
+
+        Raises:
+            RobotError: one could not confirm it; the others were stopped all the same.
+        """
+        for run_id in tuple(self._runs):
+            await self.stop(run_id, reason=reason)
+        await self.cell.stop()
+
+    def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
+        """Return the breakpoints that are kept beside a behavior's file.
+
+        Raises:
+            DocumentError: there is no such behavior, or the file beside it is not valid.
+        """
+        return load_breakpoints(self._library.file_of(behavior_id))
+
+    def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
+        """Write the breakpoints beside a behavior's file; raises DocumentError when the id names none."""
+        save_breakpoints(self._library.file_of(behavior_id), breakpoints)
 
     async def wait(self, run_id: str) -> RunView:
         """Wait until a run is over and return it."""

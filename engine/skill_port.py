@@ -85,7 +85,7 @@ class BusPort:
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
         """Ask a service; raises what the bus raises."""
-        return await self._bus.call(request, to=to)
+        return await self._bus.call(request, to=to, holder=holder)
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
         """Send a goal; raises what the bus raises."""

@@ -15,9 +15,29 @@ from states.gripper.check_held import CheckHeld
 from states.gripper.grasp import Grasp
 from states.gripper.move import Move
 from states.gripper.open import Open
+from states.hand.check_held import CheckHeld as HandCheckHeld
+from states.hand.close import Close as HandClose
+from states.hand.open import Open as HandOpen
+from states.io.set_output import SetOutput
+from states.magnet.check_held import CheckHeld as MagnetCheckHeld
+from states.magnet.off import Off as MagnetOff
+from states.magnet.on import On as MagnetOn
+from states.motion.cart_dmp import FollowCartDmp
+from states.motion.guide import Guide
+from states.motion.joint_dmp import FollowJointDmp
+from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
 from states.motion.move_pose import MovePose
+from states.motion.move_until_contact import MoveUntilContact
+from states.motion.press_along_dmp import PressAlongDmp
+from states.motion.recover import Recover
+from states.motion.set_collision import SetCollision
+from states.motion.set_controller import SetController
+from states.motion.set_impedance import SetImpedance
+from states.motion.set_load import SetLoad
+from states.motion.set_speed import SetSpeed
+from states.motion.set_tool_frame import SetToolFrame
 from states.store.read_entry import ReadEntry
 from states.store.write_entry import WriteEntry
 
@@ -25,14 +45,35 @@ _STATES: tuple[type[State], ...] = (
     CheckHeld,
     Decide,
     ExpectPart,
+    FollowCartDmp,
+    FollowJointDmp,
     Grasp,
+    Guide,
+    HandCheckHeld,
+    HandClose,
+    HandOpen,
+    LearnCartDmp,
+    LearnJointDmp,
     Log,
+    MagnetCheckHeld,
+    MagnetOff,
+    MagnetOn,
     Move,
     MoveJoints,
     MoveLinear,
     MovePose,
+    MoveUntilContact,
     Open,
+    PressAlongDmp,
     ReadEntry,
+    Recover,
+    SetCollision,
+    SetController,
+    SetImpedance,
+    SetLoad,
+    SetOutput,
+    SetSpeed,
+    SetToolFrame,
     SetValue,
     Wait,
     WriteEntry,

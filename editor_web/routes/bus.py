@@ -1,4 +1,4 @@
-"""The skill bus for the command line: list, echo, call, goal. Requests and answers are the skills' own JSON."""
+"""The skill bus for the command line: list, echo, publish, call, goal; everything in the skills' own JSON."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import BusRequestBody, ErrorBody
+from editor_web.wire import BusMessageBody, BusRequestBody, ErrorBody
 from engine.bus.access import BusAccess
 from engine.bus.action import GoalEnd
 
@@ -45,6 +45,12 @@ async def _lines(messages: AsyncGenerator[str, None]) -> AsyncGenerator[str, Non
     async with aclosing(messages) as open_messages:
         async for message in open_messages:
             yield f"{message}\n"
+
+
+@router.post("/publish", status_code=204)
+async def publish_message(body: BusMessageBody, services: ServicesOf) -> None:
+    """Publish a message on a topic that takes commands. This may move the robot."""
+    await services.backend.bus.publish(body.topic, body.message)
 
 
 @router.post("/call")

@@ -13,13 +13,15 @@ from editor_web.control_wire import (
     ControlBody,
     ForceBody,
     InterruptedBody,
+    LockBody,
     NodeBody,
     ResumeBody,
     StepBody,
 )
+from editor_web.routes.breakpoints import made_breakpoints
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import ErrorBody, StartedBody
-from engine.control import Breakpoint, Control
+from editor_web.wire import AskBody, ErrorBody, StartedBody
+from engine.control import Control
 from engine.errors import ControlError, FlexcellError
 
 router = APIRouter(
@@ -75,9 +77,9 @@ async def step(control: ControlOf, body: StepBody) -> ControlBody:
 
 
 @router.post("/{run_id}/control/lock")
-async def lock(control: ControlOf, body: NodeBody) -> ControlBody:
+async def lock(control: ControlOf, body: LockBody) -> ControlBody:
     """Hold the outcome of a node."""
-    control.lock(body.path)
+    control.lock(body.path, body.reason)
     return _seen(control)
 
 
@@ -119,10 +121,7 @@ async def set_autonomy(control: ControlOf, body: AutonomyBody) -> ControlBody:
 @router.post("/{run_id}/control/breakpoints")
 async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlBody:
     """Replace all breakpoints of a run."""
-    made = [Breakpoint(**each.model_dump()) for each in body.breakpoints]
-    for each in made:
-        _ = each.template  # an expression that does not compile is refused before anything changes
-    control.set_breakpoints(made)
+    control.set_breakpoints(made_breakpoints(body))
     return _seen(control)
 
 
@@ -139,7 +138,7 @@ async def list_interrupted(services: ServicesOf) -> list[InterruptedBody]:
     return [InterruptedBody.model_validate(run) for run in services.backend.interrupted()]
 
 
-@interrupted_router.post("/{run_id}/resume", status_code=201, responses={409: {"model": ErrorBody}})
+@interrupted_router.post("/{run_id}/resume", status_code=201, responses={409: {"model": AskBody | ErrorBody}})
 async def resume_interrupted(run_id: str, body: ResumeBody, services: ServicesOf) -> StartedBody:
     """Go on with an interrupted run; 409 says which states that were in mid-work need an answer."""
     return StartedBody(run=await services.backend.resume(run_id, answers=body.answers, changed=body.changed))

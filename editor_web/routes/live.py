@@ -11,7 +11,8 @@ from fastapi import APIRouter, WebSocket
 from starlette.websockets import WebSocketDisconnect
 
 from editor_web.access import OPERATOR
-from editor_web.live import PROTOCOL_VERSION, Frame, Hello, LiveClient, Operate, Ping, Request, Watch
+from editor_web.live import LiveClient
+from editor_web.live_frames import PROTOCOL_VERSION, Frame, Hello, Operate, Ping, Request, Watch
 from editor_web.operation import Attached, Operation
 from editor_web.routes.services import role_of, services_of
 from engine.errors import FlexcellError

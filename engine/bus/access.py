@@ -28,6 +28,10 @@ class BusAccess(Protocol):
         """Go through the messages of a topic as JSON, the latest one first; raises BusError when there is none."""
         ...
 
+    async def publish(self, topic: str, message: object) -> None:
+        """Publish a message on a topic that takes commands; raises BusError when it takes none, or not this one."""
+        ...
+
     async def call(self, address: str, request: object) -> str:
         """Ask a service; returns its answer as JSON."""
         ...
@@ -56,6 +60,28 @@ class LocalBus:
             while True:
                 yield _text(await stream.next())
 
+    async def publish(self, topic: str, message: object) -> None:
+        """Publish a message on a topic that takes commands.
+
+        Raises:
+            BusError: there is no such topic, it takes no commands, or the message does not fit.
+        """
+        found = self._bus.find_topic(topic)
+        if not found.takes_commands:
+            open_to_all = self._bus.command_topics()
+            raise BusError(
+                "nobody does what is published on this topic, it only tells",
+                where=topic,
+                hint=f"commands are taken on {', '.join(open_to_all)}"
+                if open_to_all
+                else "nothing here takes commands",
+            )
+        try:
+            typed = msgspec.convert(message, found.kind)
+        except msgspec.ValidationError as error:
+            raise BusError(f"this is not a {found.kind.__name__}: {error}", where=topic) from error
+        found.publish(typed)
+
     async def call(self, address: str, request: object) -> str:
         """Ask a service; returns its answer as JSON.
 
@@ -66,7 +92,7 @@ class LocalBus:
         typed = self._typed(address, request)
         if not issubclass(self._bus.request_type(address), Service):
             raise BusError("this is an action, not a service", where=address, hint="use `flexcell bus goal`")
-        return _text(await self._bus.call(typed, to=namespace))
+        return _text(await self._bus.call(typed, to=namespace, holder=VISITOR))
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
         """Send a goal and wait for its end.

@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 
 from engine.bus.lease import Holder
 from engine.cause import cause_of
-from engine.errors import BusError, FlexcellError, GoalRejected
+from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
 from engine.event import Cause
 
 R = TypeVar("R")
@@ -227,6 +227,8 @@ async def _ended(
     except GoalRejected as error:
         status = GoalStatus.ABORTED if goal.accepted.is_set() else GoalStatus.REJECTED
         return GoalEnd(status, None, cause_of(error))
+    except SkillFailed as error:
+        return GoalEnd(GoalStatus.ABORTED, error.result, cause_of(error))
     except FlexcellError as error:
         return GoalEnd(GoalStatus.ABORTED, None, cause_of(error))
     except asyncio.CancelledError as error:

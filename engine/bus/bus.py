@@ -42,6 +42,7 @@ class _ActionServer:
 class _ServiceServer:
     skill: type[Service[Any]]
     handler: Callable[[Any], Any]
+    commands: str
 
 
 @dataclass(frozen=True)
@@ -123,8 +124,16 @@ class SkillBus:
             raise BusError("no such topic", where=name, hint=near_names(name, self._topics))
         return self._topics[name]
 
-    def advertise_service(self, skill: type[Q], handler: Callable[[Q], Any], *, namespace: str) -> None:
+    def command_topics(self) -> tuple[str, ...]:
+        """Return the topics on which a server does what is published, sorted."""
+        return tuple(sorted(topic.name for topic in self._topics.values() if topic.takes_commands))
+
+    def advertise_service(
+        self, skill: type[Q], handler: Callable[[Q], Any], *, namespace: str, commands: str = ""
+    ) -> None:
         """Answer `skill` at `<namespace>/<skill_name>`; the handler may be plain or async.
+
+        A service that `commands` a resource is refused to everybody else while a run holds that resource.
 
         Raises:
             HandlerNotTyped: the handler lacks the skill's annotations.
@@ -132,7 +141,7 @@ class SkillBus:
         """
         address = self._free_address(skill, namespace)
         verify_handler(skill, handler, address)
-        self._services[address] = _ServiceServer(skill, handler)
+        self._services[address] = _ServiceServer(skill, handler, commands)
 
     def advertise_action(
         self,
@@ -157,17 +166,20 @@ class SkillBus:
             for address in [a for a in table if a == namespace or a.startswith(namespace + "/")]:
                 del table[address]
 
-    async def call(self, request: Service[R], *, to: str) -> R:
+    async def call(self, request: Service[R], *, to: str, holder: Holder = NOBODY) -> R:
         """Ask a service and return its answer.
 
         Raises:
             NoSuchSkill: nobody answers at this address.
+            LeaseRefused: it commands a resource that somebody else than `holder` holds.
             SkillFailed: the handler failed; its error is the cause.
         """
         address = f"{to}/{request.skill_name()}"
         server = self._services.get(address)
         if server is None:
             raise self._nobody(address)
+        if server.commands:
+            self.leases.refuse_foreign(server.commands, holder)
         try:
             answer = server.handler(request)
             return cast(R, await answer if inspect.isawaitable(answer) else answer)
@@ -224,10 +236,7 @@ class SkillBus:
 
     def listing(self) -> tuple[BusEntry, ...]:
         """Return everything on the bus: topics, services, actions, parameters, leases."""
-        rows = [
-            BusEntry("topic", t.name, t.kind.__name__, f"{t.rate_hz:.1f} Hz, {t.subscriber_count} subscribers")
-            for t in self._topics.values()
-        ]
+        rows = [BusEntry("topic", t.name, t.kind.__name__, _traffic(t)) for t in self._topics.values()]
         rows += [BusEntry("service", a, s.skill.__name__, "") for a, s in self._services.items()]
         rows += [BusEntry("action", a, s.skill.__name__, self._busy(s.exclusive)) for a, s in self._actions.items()]
         rows += [
@@ -263,3 +272,8 @@ def _refuser(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]], Awaitab
         )
 
     return refuse
+
+
+def _traffic(topic: Topic[Any]) -> str:
+    takes = ", takes commands" if topic.takes_commands else ""
+    return f"{topic.rate_hz:.1f} Hz, {topic.subscriber_count} subscribers{takes}"

@@ -7,7 +7,7 @@ for as long as its state is active.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import msgspec
 
@@ -30,6 +30,7 @@ class LeaseTable:
     def __init__(self) -> None:
         self._owners: dict[str, str] = {}
         self._branches: dict[str, list[Holder]] = {}
+        self._waiting: list[tuple[str, Callable[[], None]]] = []
 
     def acquire(self, resources: Iterable[str], holder: Holder) -> None:
         """Lease all of `resources` or none of them; nested leases of the same branch are counted.
@@ -39,7 +40,7 @@ class LeaseTable:
         """
         wanted = tuple(resources)
         for resource in wanted:
-            self._refuse_foreign(resource, holder)
+            self.refuse_foreign(resource, holder)
         for resource in wanted:
             self._owners[_root(resource)] = holder.run
             self._branches.setdefault(resource, []).append(holder)
@@ -58,6 +59,15 @@ class LeaseTable:
         self._owners = {name: owner for name, owner in self._owners.items() if owner != run}
         kept = {name: [h for h in held if h.run != run] for name, held in self._branches.items()}
         self._branches = {name: held for name, held in kept.items() if held}
+        freed = [(name, callback) for name, callback in self._waiting if name not in self._owners]
+        self._waiting = [entry for entry in self._waiting if entry not in freed]
+        for _, callback in freed:
+            callback()
+
+    def when_freed(self, resource: str, callback: Callable[[], None]) -> None:
+        """Call back once, as soon as the run that owns the resource gives it back; never where none owns it."""
+        if _root(resource) in self._owners:
+            self._waiting.append((_root(resource), callback))
 
     def owner(self, resource: str) -> str | None:
         """Return the run that owns a resource, if any."""
@@ -69,7 +79,8 @@ class LeaseTable:
         rows.update({name: str(held[-1]) for name, held in self._branches.items()})
         return tuple(sorted(rows.items()))
 
-    def _refuse_foreign(self, resource: str, holder: Holder) -> None:
+    def refuse_foreign(self, resource: str, holder: Holder) -> None:
+        """Raise LeaseRefused where somebody else than `holder` commands the resource; leases nothing."""
         owner = self._owners.get(_root(resource))
         if owner is not None and owner != holder.run:
             raise LeaseRefused(

@@ -77,6 +77,11 @@ class RemoteBus:
                 if line:
                     yield line
 
+    async def publish(self, topic: str, message: object) -> None:
+        """Publish a message on a topic that takes commands."""
+        body = {"topic": topic, "message": message}
+        _verified(await self._client.post("/api/v1/bus/publish", json=body))
+
     async def call(self, address: str, request: object) -> str:
         """Ask a service; returns its answer as JSON."""
         body = {"address": address, "request": request}

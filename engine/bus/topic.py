@@ -75,6 +75,8 @@ class Topic(Generic[M]):
         self.name = name
         self.kind = kind
         self.count = 0
+        self.takes_commands = False
+        """Whether a server does what is published here; other topics only tell what its own publisher knows."""
         self._clock = clock
         self._latest: M | None = None
         self._provider: Callable[[], M] | None = None
@@ -128,6 +130,11 @@ class Topic(Generic[M]):
         subscription = Subscription(self, callback)
         self._subscriptions = (*self._subscriptions, subscription)
         return subscription
+
+    def obey(self, callback: Callable[[M], None]) -> Subscription[M]:
+        """Subscribe as the server that does what is published here; people may publish on such a topic."""
+        self.takes_commands = True
+        return self.subscribe(callback)
 
     def remove(self, subscription: Subscription[M]) -> None:
         """Forget a subscriber; unknown ones are ignored."""

@@ -3,5 +3,17 @@
 from engine.check.check import check_behavior, check_file, read_beside
 from engine.check.finding import CODES, Finding, Severity
 from engine.check.page import page_name, page_text
+from engine.check.stored import check_stored, names_by_kind
 
-__all__ = ["CODES", "Finding", "Severity", "check_behavior", "check_file", "page_name", "page_text", "read_beside"]
+__all__ = [
+    "CODES",
+    "Finding",
+    "Severity",
+    "check_behavior",
+    "check_file",
+    "check_stored",
+    "names_by_kind",
+    "page_name",
+    "page_text",
+    "read_beside",
+]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import sys
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Annotated
@@ -22,6 +23,7 @@ from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_json
 from engine.document.cell import load_cell
+from engine.errors import FlexcellError
 
 app = typer.Typer(
     help="Look at the skill bus of a running server, or of a cell file with --cell.", no_args_is_help=True
@@ -100,6 +102,45 @@ def hz(
         sys.stdout.write(f"{rate:.1f} Hz, {len(fresh)} messages in {seconds:g} s\n")
 
     _until_interrupted(main())
+
+
+@app.command("publish")
+def publish(
+    topic: Annotated[str, typer.Argument(help="Such as left/jog; `flexcell bus list` tells which take commands.")],
+    message: Annotated[str, typer.Argument(help="The message as a JSON object.")],
+    rate: Annotated[
+        float | None, typer.Option(help="Repeat it so often a second, as a held key does.", min=0.1)
+    ] = None,
+    seconds: Annotated[float | None, typer.Option("--for", help="End after so many seconds, with --rate.")] = None,
+    cell: Cell = None,
+    server: Folder = _STATE,
+) -> None:
+    """Publish a message on a topic that takes commands, once or at a rate until Ctrl-C. This may move the robot.
+
+    `flexcell bus publish left/jog '{"velocity": [0, 0, -0.02, 0, 0, 0]}' --rate 20 --for 2`
+    """
+    typed = read_json(message, "the message")
+    if seconds is not None and rate is None:
+        raise FlexcellError("--for says how long a message is repeated", hint="say how often, with --rate")
+
+    async def main() -> None:
+        async with _bus(cell, server) as bus:
+            if rate is None:
+                await bus.publish(topic, typed)
+            else:
+                await repeat(lambda: bus.publish(topic, typed), rate_hz=rate, duration_s=seconds)
+
+    _until_interrupted(main())
+
+
+async def repeat(act: Callable[[], Awaitable[None]], *, rate_hz: float, duration_s: float | None) -> None:
+    """Act at a rate; where that takes too long, beats are left out and not made up for."""
+    loop = asyncio.get_running_loop()
+    start_s, beat = loop.time(), 0
+    while duration_s is None or beat / rate_hz < duration_s:
+        await act()
+        beat = max(beat + 1, math.ceil((loop.time() - start_s) * rate_hz))
+        await asyncio.sleep(start_s + beat / rate_hz - loop.time())
 
 
 @app.command("call")

@@ -11,16 +11,19 @@ import typer
 from engine.authoring.python_file import is_python_name, load_python_behavior
 from engine.check import Finding, check_behavior, check_file, page_text
 from engine.check.finding import new_finding
+from engine.cli.check_store import stored_names
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
-from engine.document import load_source
+from engine.document import load_behavior, load_source
 from engine.document.cell import load_cell
 from engine.document.entries import load_entries
 from engine.errors import DocumentError, Position
 from engine.plan import Catalogue
 from engine.registry import load_states
 
-_ENTRIES = tuple((key, "entries") for key in ("joints", "poses", "dmps", "records"))
+_ENTRIES = tuple(
+    (key, "entries") for key in ("joints", "poses", "dmps", "cart_dmps", "cart_offsets", "trajectories", "records")
+)
 
 
 def check(
@@ -32,6 +35,12 @@ def check(
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
     ] = "text",
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    store: Annotated[
+        str,
+        typer.Option(
+            help="Look for named entries in this store: a file, mongodb://…, or `cell` for that of the behavior's cell."
+        ),
+    ] = "",
     explain: Annotated[
         str, typer.Option(help="Print what a kind of finding means and what to do about it.", metavar="CODE")
     ] = "",
@@ -43,7 +52,7 @@ def check(
     if not files:
         raise typer.BadParameter("give the documents to check", param_hint="FILES")
     catalogue = load_states()
-    findings = [finding for file in files for finding in findings_of(file, catalogue)]
+    findings = [finding for file in files for finding in findings_of(file, catalogue, store)]
     chosen = "json" if json else format_
     if chosen == "json":
         sys.stdout.write(as_json(findings) + "\n")
@@ -58,14 +67,18 @@ def check(
         raise typer.Exit(ExitCode.BAD_INPUT)
 
 
-def findings_of(file: Path, catalogue: Catalogue) -> tuple[Finding, ...]:
-    """Return the findings of one document of any kind; one that cannot be read is one finding."""
+def findings_of(file: Path, catalogue: Catalogue, store: str = "") -> tuple[Finding, ...]:
+    """Return the findings of one document of any kind; one that cannot be read is one finding.
+
+    Named entries are looked for in `store`, by default among those that the cell is seeded with.
+    """
     try:
         if is_python_name(str(file)):
-            return check_behavior(load_python_behavior(str(file)), catalogue)
+            behavior = load_python_behavior(str(file))
+            return check_behavior(behavior, catalogue, stored_names(behavior, store) if store else None)
         kind = document_kind(file)
         if kind == "behavior":
-            return check_file(file, catalogue)
+            return check_file(file, catalogue, stored_names(load_behavior(file), store) if store else None)
         if kind == "cell":
             seed = load_cell(file).seed_file
             if seed is not None:

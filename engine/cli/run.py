@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 import typer
 
 from engine.cell import OpenCell
-from engine.check import Finding
+from engine.check import Finding, check_stored
 from engine.checkpoint import Checkpoint
 from engine.cli.execution import Ended, MakeRun, Order, carry_out
 from engine.cli.exit_code import ExitCode
@@ -68,7 +68,9 @@ def run(
         typer.Option(help="Seed of random choices and of the jitter of parts; parts lie exactly without one.", min=0),
     ] = None,
     journal: Annotated[str, typer.Option(help="Directory of the journal of runs, or `none`.")] = ".flexcell",
-    store: Annotated[str | None, typer.Option(help="Use this store file instead of the cell's.")] = None,
+    store: Annotated[
+        str | None, typer.Option(help="Use this store instead of the cell's: a file, or mongodb://HOST:PORT/DATABASE.")
+    ] = None,
     events: Annotated[Path | None, typer.Option(help="Write the event log here, one JSON object a line.")] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
     from_: Annotated[
@@ -139,6 +141,7 @@ def run(
             seed=seed,
             supervision=supervision,
             start=start,
+            catalogue=catalogue,
         ),
         cell=opened,
         seed=seed,
@@ -188,8 +191,10 @@ def _maker(
     seed: int | None,
     supervision: Supervision,
     start: _Start | None,
+    catalogue: Catalogue,
 ) -> MakeRun:
     async def make(cell: OpenCell, journal: Journal | NullJournal, skills: SkillPort | None) -> Run:
+        await _say_what_is_missing(behavior, catalogue, cell)
         if start is not None and start.restores and start.found.world is not None:
             await cell.restore(start.found.world.data)
         return new_run(
@@ -206,6 +211,13 @@ def _maker(
         )
 
     return make
+
+
+async def _say_what_is_missing(behavior: Behavior, catalogue: Catalogue, cell: OpenCell) -> None:
+    """Warn of named entries that the store does not hold; the behavior may still write them before it needs them."""
+    if cell.store is not None:
+        for finding in check_stored(behavior, catalogue, [(key.kind, key.name) for key in await cell.store.list()]):
+            sys.stderr.write(f"{finding}\n")
 
 
 def _read_start(text: str | None, at: str | None, plan: Plan, journal: str) -> _Start | None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Awaitable, Callable
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import Annotated, Literal
 
 import msgspec
 import typer
@@ -14,47 +14,70 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.cli.inputs import read_json
-from engine.document.cell import load_cell
-from engine.document.entries import load_entries, write_entries
+from engine.cli.store_access import Cell, Place, Who, Why, at_store, chosen_store, named, opened_store
+from engine.cli.store_exchange import exported, imported
+from engine.document.yaml_writer import write_yaml
 from engine.errors import StoreError
-from engine.skills.entries import EntryRecord
-from engine.store import SqliteStore, Store
+from engine.store import EntryChange, Store, migrate
 
-T = TypeVar("T")
+app = typer.Typer(help="Read and write named entries of a cell: joint configurations, poses, primitives, records.")
 
-app = typer.Typer(help="Read and write the named entries of a cell: joint configurations, poses, records.")
-
-Cell = Annotated[Path | None, typer.Option("--cell", help="The cell whose store it is.")]
-File = Annotated[Path | None, typer.Option("--store", help="A store file, instead of a cell.")]
-Kind = Annotated[str, typer.Argument(help="joints, pose, dmp or record.")]
+Kind = Annotated[str, typer.Argument(help="joints, pose, dmp, cart_dmp, cart_offsets, trajectory or record.")]
 Name = Annotated[str, typer.Argument(help="Name of the entry.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
+Expected = Annotated[
+    int | None, typer.Option(help="Only when the stored entry has this revision; 0: only when there is none.")
+]
+Format = Annotated[
+    Literal["entries", "mongodb_store"],
+    typer.Option("--format", help="entries: a document of flexcell. mongodb_store: documents of that ROS package."),
+]
 
 
 @app.command("list")
 def list_entries(
     kind: Annotated[str, typer.Argument(help="Only this kind.")] = "",
     prefix: Annotated[str, typer.Option(help="Only names that begin so.")] = "",
+    search: Annotated[str, typer.Option(help="Only where each word begins a word of the name or of a tag.")] = "",
+    tag: Annotated[list[str] | None, typer.Option(help="Only with this tag; may be repeated.")] = None,
+    limit: Annotated[int | None, typer.Option(help="At most so many.", min=1)] = None,
     cell: Cell = None,
-    store: File = None,
+    store: Place = None,
     json: AsJson = False,
 ) -> None:
-    """List the entries with their revisions."""
-    keys = _with_store(cell, store, lambda opened: opened.list(kind=kind, prefix=prefix))
+    """List the entries with their revisions, tags, and who changed them last."""
+    keys = at_store(
+        cell,
+        store,
+        lambda opened: opened.list(kind=kind, prefix=prefix, text=search, tags=tag or (), limit=limit),
+    )
     if json:
         sys.stdout.write(msgspec.json.encode(keys).decode() + "\n")
         return
-    table = Table("kind", "name", "revision", box=None)
+    table = Table("kind", "name", "revision", "tags", "changed", "by", box=None)
     for key in keys:
-        table.add_row(key.kind, key.name, str(key.revision))
+        table.add_row(key.kind, key.name, str(key.revision), " ".join(key.tags), _when(key.changed_unix_ms), key.by)
     Console().print(table)
 
 
 @app.command("get")
-def get(kind: Kind, name: Name, cell: Cell = None, store: File = None) -> None:
+def get(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
     """Print one entry as JSON."""
-    record = _with_store(cell, store, lambda opened: opened.get(kind, name))
+    record = at_store(cell, store, lambda opened: opened.get(kind, name))
     sys.stdout.write(msgspec.json.encode(record).decode() + "\n")
+
+
+@app.command("show")
+def show(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
+    """Print one entry to be read: its value, tags, and its last change."""
+    changes = at_store(cell, store, lambda opened: opened.history(kind, name))
+    if not changes or changes[-1].value is None:
+        raise StoreError("there is no such entry", where=f"{kind} {name}", hint="flexcell store list")
+    last = changes[-1]
+    sys.stdout.write(f"{last.kind} {last.name}, {_change_text(last)}\n")
+    if last.tags:
+        sys.stdout.write(f"tags: {' '.join(last.tags)}\n")
+    sys.stdout.write(write_yaml(last.value or {}))
 
 
 @app.command("set")
@@ -62,67 +85,171 @@ def set_entry(
     kind: Kind,
     name: Name,
     value: Annotated[str, typer.Argument(help="The fields of its kind as a JSON object.")],
-    expected_revision: Annotated[
-        int | None, typer.Option(help="Write only when the stored entry has this revision; 0: only when there is none.")
-    ] = None,
+    expected_revision: Expected = None,
+    tag: Annotated[list[str] | None, typer.Option(help="A tag, in place of those it has; may be repeated.")] = None,
+    by: Who = None,
+    reason: Why = "",
     cell: Cell = None,
-    store: File = None,
+    store: Place = None,
 ) -> None:
     """Write one entry."""
     fields = read_json(value, "the value")
     if not isinstance(fields, dict):
         raise StoreError("the value is not a JSON object", where=f"{kind} {name}", hint='such as {"joints": [0, 1]}')
     checked = msgspec.convert(fields, dict[str, object])
-    record = _with_store(
-        cell, store, lambda opened: opened.put(kind, name, checked, expected_revision=expected_revision)
+    record = at_store(
+        cell,
+        store,
+        lambda opened: opened.put(
+            kind, name, checked, expected_revision=expected_revision, tags=tag, by=named(by), reason=reason
+        ),
     )
     sys.stdout.write(f"{record.kind} {record.name} revision {record.revision}\n")
 
 
 @app.command("delete")
-def delete(kind: Kind, name: Name, cell: Cell = None, store: File = None) -> None:
-    """Remove one entry; its history stays."""
-    _with_store(cell, store, lambda opened: opened.delete(kind, name))
+def delete(
+    kind: Kind,
+    name: Name,
+    expected_revision: Expected = None,
+    by: Who = None,
+    reason: Why = "",
+    cell: Cell = None,
+    store: Place = None,
+) -> None:
+    """Remove one entry; its history stays, and `undo` brings it back."""
+    at_store(
+        cell,
+        store,
+        lambda opened: opened.delete(kind, name, expected_revision=expected_revision, by=named(by), reason=reason),
+    )
+
+
+@app.command("history")
+def history(kind: Kind, name: Name, cell: Cell = None, store: Place = None, json: AsJson = False) -> None:
+    """Print every change of an entry: who, when and why; with --json the values too."""
+    changes = at_store(cell, store, lambda opened: opened.history(kind, name))
+    if json:
+        sys.stdout.write(msgspec.json.encode(changes).decode() + "\n")
+        return
+    for change in changes:
+        sys.stdout.write(f"{_change_text(change)}\n")
+
+
+@app.command("undo")
+def undo(
+    kind: Kind,
+    name: Name,
+    expected_revision: Expected = None,
+    by: Who = None,
+    reason: Why = "",
+    cell: Cell = None,
+    store: Place = None,
+) -> None:
+    """Bring back what an entry was before its last change; again, one step further into the past."""
+    change = at_store(
+        cell,
+        store,
+        lambda opened: opened.undo(kind, name, expected_revision=expected_revision, by=named(by), reason=reason),
+    )
+    sys.stdout.write(f"{change.kind} {change.name} {_change_text(change)}\n")
 
 
 @app.command("export")
-def export(cell: Cell = None, store: File = None) -> None:
-    """Print all entries as an entries document."""
-    records = _with_store(cell, store, lambda opened: opened.export())
-    sys.stdout.write(write_entries(records))
+def export(format_: Format = "entries", cell: Cell = None, store: Place = None) -> None:
+    """Print all entries: as an entries document, or one JSON document a line for `mongoimport`."""
+    records = at_store(cell, store, lambda opened: opened.export())
+    sys.stdout.write(exported(records, format_))
 
 
 @app.command("import")
 def import_entries(
-    file: Annotated[Path, typer.Argument(help="An entries document.")],
+    source: Annotated[
+        str, typer.Argument(help="An entries document; with --format mongodb_store a .json, .bson or mongodb://….")
+    ],
     overwrite: Annotated[bool, typer.Option(help="Write also entries that are there with another value.")] = False,
+    format_: Format = "entries",
+    collection: Annotated[str, typer.Option(help="Of a mongodb:// source.")] = "message_store",
+    by: Who = None,
     cell: Cell = None,
-    store: File = None,
+    store: Place = None,
 ) -> None:
     """Write the entries of a document that are missing in the store."""
-    entries = load_entries(file).records()
-    written = _with_store(cell, store, lambda opened: opened.seed(entries, overwrite=overwrite))
+    entries = imported(source, format_, collection=collection, say=_say)
+    written = at_store(
+        cell,
+        store,
+        lambda opened: opened.seed(entries, overwrite=overwrite, by=named(by), reason=f"import of {Path(source).name}"),
+    )
     sys.stdout.write(f"{len(written)} of {len(entries)} entries written\n")
 
 
-def _with_store(cell: Path | None, file: Path | None, work: Callable[[Store], Awaitable[T]]) -> T:
-    path, seeds = _store_of(cell, file)
+@app.command("migrate")
+def migrate_store(
+    source: Annotated[str, typer.Argument(help="A store file, mongodb://HOST:PORT/DATABASE, or a cell document.")],
+    target: Annotated[str, typer.Argument(help="The same; made where it is missing.")],
+) -> None:
+    """Copy all entries with their histories to another store, and verify that they arrived; may be repeated."""
 
-    async def main() -> T:
-        async with SqliteStore.open(path, inline=True) as opened:
-            await opened.seed(seeds)
-            return await work(opened)
+    async def main() -> None:
+        async with await opened_store(source, made=False) as here, await opened_store(target, made=True) as there:
+            done = await migrate(here, there, progress=lambda n, of: _say(f"{n} of {of} entries"))
+            sys.stdout.write(
+                f"{done.entries} entries with {done.changes} changes are in {there.address}, {done.new_changes} new;"
+                f" verified, digest {done.digest[:16]}\n"
+            )
 
-    return asyncio.run(main())
+    asyncio.run(main())
 
 
-def _store_of(cell: Path | None, file: Path | None) -> tuple[Path, tuple[EntryRecord, ...]]:
-    if file is not None:
-        return file, ()
-    if cell is None:
-        raise StoreError("which store?", hint="give --cell FILE or --store FILE")
-    loaded = load_cell(cell)
-    if loaded.document.store is None:
-        raise StoreError("this cell has no store", where=cell, hint="add `store: {kind: sqlite, path: …}`")
-    seeds = load_entries(loaded.seed_file).records() if loaded.seed_file is not None else ()
-    return Path(loaded.document.store.path), seeds
+@app.command("watch")
+def watch(
+    count: Annotated[int | None, typer.Option(help="End after so many changes.", min=1)] = None,
+    cell: Cell = None,
+    store: Place = None,
+    json: AsJson = False,
+) -> None:
+    """Print each change that any program makes, until it is interrupted."""
+
+    async def follow(opened: Store) -> None:
+        heard: asyncio.Queue[EntryChange] = asyncio.Queue()
+        await opened.follow(heard.put_nowait)
+        _say(f"watching {opened.address}")
+        told = 0
+        while count is None or told < count:
+            change = await heard.get()
+            told += 1
+            text = msgspec.json.encode(change).decode() if json else _told(change)
+            sys.stdout.write(f"{text}\n")
+            sys.stdout.flush()
+
+    async def main() -> None:
+        async with await chosen_store(cell, store, inline=False) as opened:
+            await follow(opened)
+
+    try:
+        asyncio.run(main())
+    except KeyboardInterrupt:
+        return
+
+
+def _told(change: EntryChange) -> str:
+    return f"{change.kind} {change.name} {_change_text(change)}"
+
+
+def _change_text(change: EntryChange) -> str:
+    what = "deleted" if change.value is None else "written"
+    if change.restores is not None:
+        what = f"undone to revision {change.restores}" if change.restores else "undone: deleted"
+    who = f" by {change.by}" if change.by else ""
+    why = f": {change.reason}" if change.reason else ""
+    return f"revision {change.revision} {what} {_when(change.changed_unix_ms)}{who}{why}"
+
+
+def _when(unix_ms: int) -> str:
+    return datetime.fromtimestamp(unix_ms / 1000, UTC).strftime("%Y-%m-%d %H:%M:%SZ") if unix_ms else "long ago"
+
+
+def _say(line: str) -> None:
+    sys.stderr.write(f"flexcell: {line}\n")
+    sys.stderr.flush()

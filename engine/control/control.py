@@ -37,6 +37,13 @@ class ControlView(msgspec.Struct, frozen=True, kw_only=True):
     operator: str
     """none, attached, detached or lost."""
     active: tuple[str, ...]
+    stepping: bool = False
+    """Whether a step of the paused run is under way."""
+    demanded: bool = False
+    """Whether outcomes are asked for although nobody is there."""
+    loss_policy: LossPolicy = "hold"
+    """What is done `loss_timeout_s` after the operator is lost."""
+    loss_timeout_s: float = 0.0
 
 
 class Structure(Protocol):
@@ -132,10 +139,10 @@ class Control:
         origin = waiting.path if waiting is not None else ""
         self._gate.step(Step(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
 
-    def lock(self, path: str) -> None:
-        """Hold the outcome of a node until `unlock`; transitions inside it still pass."""
+    def lock(self, path: str, reason: str = "") -> None:
+        """Hold the outcome of a node until `unlock`; transitions inside it still pass, `reason` goes into the log."""
         self._require_node(path)
-        self._record("lock", path)
+        self._record("lock", path, **({"reason": reason} if reason else {}))
         self._gate.locks.add(path)
         self._gate.arm()
 
@@ -231,6 +238,10 @@ class Control:
             autonomy=gate.autonomy,
             operator=self._operator,
             active=tuple(self._activity.nodes),
+            stepping=gate.stepping,
+            demanded=self._demanded,
+            loss_policy=self._loss_policy,
+            loss_timeout_s=self._loss_timeout_s,
         )
 
     def close(self) -> None:

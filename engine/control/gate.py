@@ -30,13 +30,17 @@ class Order:
 
 @dataclass(frozen=True, kw_only=True)
 class Waiting:
-    """A node that waits at the gate: where, since which visit, and for what."""
+    """A node that waits at the gate: where, since which visit, and for what.
+
+    `required` is the level that the outcome requires, empty before an entry.
+    """
 
     path: str
     visit: int
     point: GatePoint
     outcome: str = ""
     reasons: tuple[str, ...] = ()
+    required: str = ""
 
 
 class Gate:
@@ -159,7 +163,7 @@ class Gate:
                 reasons = self._reasons(waiting, asked=unanswered)
                 if not reasons:
                     break
-                self._show(replace(waiting, reasons=reasons))
+                self._show(replace(waiting, reasons=reasons, required=required or ""))
                 await self._suspensions.changed()
             return order
         finally:

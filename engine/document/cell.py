@@ -7,6 +7,7 @@ Lengths are metres, angles radians, masses kilograms. Paths are relative to the 
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
@@ -43,6 +44,17 @@ class SqliteStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="sqli
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
+class MongoStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
+    """Named entries on a MongoDB server; `seed` is an entries document that fills what is missing.
+
+    `${NAME}` in `uri` stands for an environment variable, such as that with the password.
+    """
+
+    uri: Annotated[str, Meta(pattern=r"^(mongodb(\+srv)?://|\$\{)", description="Such as `mongodb://127.0.0.1:27017`")]
+    database: Annotated[str, Meta(pattern="^[A-Za-z0-9_-]{1,63}$", description="Its name on the server")] = "flexcell"
+    seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
+
+
 class MujocoWorld(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
     """The simulated surroundings."""
 
@@ -50,22 +62,33 @@ class MujocoWorld(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mujo
     gravity: bool = True
 
 
+OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
+OutputNumber = Annotated[int, Meta(ge=0, description="Number of a digital output of the robot's controller, from 0")]
+
+
 class GripperEntry(Strict, frozen=True, kw_only=True):
     """The gripper at the flange of a robot."""
 
-    model: Annotated[str, Meta(min_length=1, description="Name of the gripper model")]
+    model: Annotated[str, Meta(min_length=1, description="Name or folder of the gripper model")]
 
 
 class RobotEntry(Strict, frozen=True, kw_only=True):
     """One robot: its model, who drives it, where its base stands and what it holds.
 
-    `driver` is `sim`, or a mapping with the driver's name as `kind` and its own options beside it.
+    `model` (also that of the gripper) is the name of a built-in model, or the path of a model folder
+    with a `/` in it, relative to this document. `calibration` is the arm's factory calibration file.
+    `coupled_joints` says that its controller counts coupled axes as one with the other. `outputs` says
+    on which digital outputs of its controller things hang. `driver` is `sim`, or a mapping with the
+    driver's name as `kind` and its own options beside it.
     """
 
-    model: Annotated[str, Meta(min_length=1, description="Name of the robot model")]
+    model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
     driver: Literal["sim"] | dict[str, object] = "sim"
     base: Placement = Placement()
     gripper: GripperEntry | None = None
+    calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
+    coupled_joints: bool = False
+    outputs: dict[OutputUse, OutputNumber] = {}
 
     @property
     def simulated(self) -> bool:
@@ -85,8 +108,21 @@ class Jitter(Strict, frozen=True, kw_only=True):
     yaw_rad: Angle = 0.0
 
 
+class Spring(Strict, frozen=True, kw_only=True):
+    """How a fixture gives way along its z axis: foam, a part on a compliant table, a sprung pad.
+
+    Its skin is soft at first touch, which makes forces on it believable while a tool slides over it;
+    on a rigid fixture they are so at rest only.
+    """
+
+    stiffness_n_m: Annotated[float, Meta(gt=0.0, description="Stiffness of the spring in N/m")]
+    damping_ns_m: Annotated[float, Meta(ge=0.0, description="Damping of the spring in N s/m")] = 60.0
+    mass_kg: Annotated[float, Meta(gt=0.0, description="Mass of what gives way in kilograms")] = 0.1
+    friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of its skin")] = 0.3
+
+
 class Fixture(Strict, frozen=True, kw_only=True):
-    """A fixed body.
+    """A fixed body, or one that gives way by its `spring`.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
     edge lengths, with `wall_m` for the thickness of walls and floor. `at` is the centre of a box
@@ -98,17 +134,20 @@ class Fixture(Strict, frozen=True, kw_only=True):
     wall_m: Length = 0.005
     at: Placement = Placement()
     color: Color = "#b0b0b0"
+    spring: Spring | None = None
 
 
 class Part(Strict, frozen=True, kw_only=True):
-    """A free body with real contact.
+    """A free body with real contact; a magnet pulls at it when it is `magnetic`.
 
-    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length. `at` is its centre.
+    `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
+    `at` is its centre.
     """
 
-    shape: Literal["box", "cylinder"]
+    shape: Literal["box", "cylinder", "sphere"]
     size_m: tuple[Length, ...]
     mass_kg: Annotated[float, Meta(gt=0.0, description="Mass in kilograms, above 0")]
+    magnetic: bool = False
     at: Placement = Placement()
     jitter: Jitter = Jitter()
     color: Color = "#d0d0d0"
@@ -120,7 +159,7 @@ class CellDocument(Strict, frozen=True, kw_only=True):
     flexcell: Literal[1]
     cell: Name
     description: str = ""
-    store: SqliteStore | None = None
+    store: SqliteStore | MongoStore | None = None
     world: MujocoWorld | None = None
     robots: dict[Name, RobotEntry] = {}
     fixtures: dict[Name, Fixture] = {}
@@ -160,6 +199,7 @@ def load_cell(path: Path | str) -> Cell:
     file = Path(path)
     source = load_source(file)
     document = convert(source, CellDocument, refused=_REFUSED)
+    _require_no_secret(document, source)
     _require_sizes(document, source)
     _require_drivers(document, source)
     _require_world(document, source)
@@ -170,19 +210,44 @@ _LATER = "it comes with a later version; remove it"
 _REFUSED = {"modules": _LATER, "cameras": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
 
 
+# A password between `:` and `@` that is not the name of an environment variable.
+_SECRET = re.compile(r"://[^@/:]*:(?!\$\{\w+\}@)[^@/]*@")
+_SIZES = {
+    "box": "edge lengths x, y, z",
+    "tray": "edge lengths x, y, z",
+    "cylinder": "diameter, length",
+    "sphere": "diameter",
+}
+
+
+def _require_no_secret(document: CellDocument, source: Source) -> None:
+    store = document.store
+    if isinstance(store, MongoStore) and _SECRET.search(store.uri):
+        raise DocumentError(
+            "the address of the store has a password in it",
+            where=source.position(("store", "uri")),
+            hint="write ${NAME} instead and set that environment variable: mongodb://user:${NAME}@host",
+        )
+
+
 def _require_sizes(document: CellDocument, source: Source) -> None:
     bodies: list[tuple[DataPath, Fixture | Part]] = [
         *((("fixtures", name), fixture) for name, fixture in document.fixtures.items()),
         *((("parts", name), part) for name, part in document.parts.items()),
     ]
     for path, body in bodies:
-        due = 2 if body.shape == "cylinder" else 3
+        meaning = _SIZES[body.shape]
+        due = len(meaning.split(","))
         if len(body.size_m) != due:
-            meaning = "diameter, length" if due == 2 else "edge lengths x, y, z"
+            lengths = "one length" if due == 1 else f"{due} lengths"
             raise DocumentError(
-                f"the size of a {body.shape} has {due} lengths, not {len(body.size_m)}",
+                f"the size of a {body.shape} has {lengths}, not {len(body.size_m)}",
                 where=source.position((*path, "size_m")),
                 hint=meaning,
+            )
+        if isinstance(body, Fixture) and body.shape == "tray" and body.spring is not None:
+            raise DocumentError(
+                "a tray cannot have a spring", where=source.position((*path, "spring")), hint="put a sprung box into it"
             )
         if path[0] == "parts" and path[1] in document.fixtures:
             raise DocumentError(

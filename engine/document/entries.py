@@ -6,11 +6,15 @@
     poses:
       left_above_pick: {xyz: [0.4, 0.1, 0.3], xyzw: [1, 0, 0, 0], frame: world}
     dmps: {}
+    cart_dmps: {}
+    cart_offsets: {}
+    trajectories: {}
     records:
       tray: {rows: 4, columns: 6}
 
 Joints are radians, positions metres, quaternions x y z w. In a store these are the kinds
-`joints` (`{joints: […]}`), `pose`, `dmp` and `record`.
+`joints` (`{joints: […]}`), `pose`, `dmp`, `cart_dmp`, `cart_offsets`,
+`trajectory` and `record`.
 """
 
 from __future__ import annotations
@@ -35,6 +39,15 @@ EntryName = Annotated[
     Meta(pattern="^[a-z][a-z0-9_/.-]{0,127}$", description="Lower-case letters, digits, `_`, `/`, `.` and `-`"),
 ]
 _QUATERNION_TOLERANCE = 1e-3
+_SECTIONS = {
+    "joints": "joints",
+    "pose": "poses",
+    "dmp": "dmps",
+    "cart_dmp": "cart_dmps",
+    "cart_offsets": "cart_offsets",
+    "trajectory": "trajectories",
+    "record": "records",
+}
 
 
 class EntriesDocument(Strict, frozen=True, kw_only=True):
@@ -45,6 +58,9 @@ class EntriesDocument(Strict, frozen=True, kw_only=True):
     joints: dict[EntryName, Annotated[tuple[float, ...], Meta(min_length=1, description="Angles in radians")]] = {}
     poses: dict[EntryName, Pose] = {}
     dmps: dict[EntryName, dict[str, object]] = {}
+    cart_dmps: dict[EntryName, dict[str, object]] = {}
+    cart_offsets: dict[EntryName, dict[str, object]] = {}
+    trajectories: dict[EntryName, dict[str, object]] = {}
     records: dict[EntryName, dict[str, object]] = {}
 
 
@@ -63,6 +79,9 @@ class Entries:
             *(_record("joints", name, {"joints": list(angles)}) for name, angles in document.joints.items()),
             *(_record("pose", name, _plain_pose(pose)) for name, pose in document.poses.items()),
             *(_record("dmp", name, value) for name, value in document.dmps.items()),
+            *(_record("cart_dmp", name, value) for name, value in document.cart_dmps.items()),
+            *(_record("cart_offsets", name, value) for name, value in document.cart_offsets.items()),
+            *(_record("trajectory", name, value) for name, value in document.trajectories.items()),
             *(_record("record", name, value) for name, value in document.records.items()),
         )
 
@@ -72,9 +91,7 @@ class Entries:
 
     def names_by_kind(self) -> dict[str, frozenset[str]]:
         """Return the names of the entries of each kind."""
-        document = self.document
-        sections = {"joints": document.joints, "pose": document.poses, "dmp": document.dmps, "record": document.records}
-        return {kind: frozenset(section) for kind, section in sections.items()}
+        return {kind: frozenset(getattr(self.document, section)) for kind, section in _SECTIONS.items()}
 
 
 def load_entries(path: Path | str) -> Entries:
@@ -102,13 +119,12 @@ def write_entries(records: Iterable[EntryRecord]) -> str:
     Raises:
         DocumentError: a record is of a kind that entries documents do not have.
     """
-    sections: dict[str, dict[str, object]] = {"joints": {}, "poses": {}, "dmps": {}, "records": {}}
-    of_kind = {"joints": "joints", "pose": "poses", "dmp": "dmps", "record": "records"}
+    sections: dict[str, dict[str, object]] = {section: {} for section in _SECTIONS.values()}
     for record in sorted(records, key=lambda record: (record.kind, record.name)):
-        if record.kind not in of_kind:
+        if record.kind not in _SECTIONS:
             raise DocumentError(f"entries of kind `{record.kind}` cannot be written", where=record.name)
         value: object = record.value["joints"] if record.kind == "joints" else record.value
-        sections[of_kind[record.kind]][record.name] = value
+        sections[_SECTIONS[record.kind]][record.name] = value
     return write_yaml({"flexcell": 1, **{key: section for key, section in sections.items() if section}})
 
 

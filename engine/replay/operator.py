@@ -18,7 +18,7 @@ _COMMANDS: Mapping[str, Callable[[Control, Commanded], None]] = {
     "pause": lambda control, _: control.pause(),
     "resume": lambda control, _: control.resume(),
     "step": lambda control, event: control.step(_text(event, "mode"), event.path),
-    "lock": lambda control, event: control.lock(event.path),
+    "lock": lambda control, event: control.lock(event.path, _text(event, "reason")),
     "unlock": lambda control, event: control.unlock(event.path),
     "force": lambda control, event: control.force(event.path, _text(event, "outcome")),
     "repeat": lambda control, event: control.repeat(event.path),

@@ -1,4 +1,4 @@
-"""Skills of a parallel gripper, answered under `<arm>/gripper` (RCY 4.1)."""
+"""Skills of a gripper with two fingers, answered under `<arm>/gripper` (RCY 4.1, LUT 4.4, WLK)."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class GripperGrasp(Action[GraspResult, GripperFeedback], frozen=True, kw_only=Tr
     """
 
     width_m: Width
-    force_n: Annotated[float, msgspec.Meta(gt=0.0, le=140.0, description="Grasp force in newton")] = 20.0
+    force_n: Annotated[float, msgspec.Meta(gt=0.0, le=1000.0, description="Grasp force in newton")] = 20.0
     speed_m_s: FingerSpeed = 0.05
     tolerance_inner_m: float = 0.01
     tolerance_outer_m: float = 0.01

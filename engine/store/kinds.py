@@ -9,9 +9,11 @@ from typing import Annotated, TypeVar
 
 import msgspec
 
+from engine.demonstration import Trajectory
 from engine.errors import StoreError
 from engine.messages import Message, Pose
 from engine.nearness import near_names
+from engine.primitive import CartDmp, CartOffsets, JointDmp
 from engine.skills.entries import EntryRecord
 
 T = TypeVar("T")
@@ -31,39 +33,6 @@ class Joints(Message, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.names and len(self.names) != len(self.joints):
             raise ValueError(f"{len(self.joints)} joints but {len(self.names)} names")
-
-
-class JointDmp(Message, frozen=True, kw_only=True):
-    """A dynamic movement primitive in joint space (RCL table 6) for n joints and `N` kernels.
-
-    `goal`, `y0` (rad) and `dy0` (rad/s) have n values; `c` and `sigma`, the centres and widths of
-    the kernels over the phase, have `N`; `w` has one row of `N` weights for each joint. `tau` is
-    the duration in seconds, `a_z` and `a_x` the dimensionless gains of transformation and phase.
-    """
-
-    N: Annotated[int, msgspec.Meta(ge=1)]
-    a_z: Annotated[float, msgspec.Meta(gt=0)]
-    a_x: Annotated[float, msgspec.Meta(gt=0)]
-    tau: Annotated[float, msgspec.Meta(gt=0)]
-    goal: Annotated[tuple[float, ...], msgspec.Meta(min_length=1)]
-    y0: tuple[float, ...]
-    dy0: tuple[float, ...]
-    c: tuple[float, ...]
-    sigma: tuple[Annotated[float, msgspec.Meta(gt=0)], ...]
-    w: tuple[tuple[float, ...], ...]
-
-    def __post_init__(self) -> None:
-        joints = len(self.goal)
-        for name, row, due in (
-            ("y0", self.y0, joints),
-            ("dy0", self.dy0, joints),
-            ("w", self.w, joints),
-            ("c", self.c, self.N),
-            ("sigma", self.sigma, self.N),
-            *((f"w[{joint}]", weights, self.N) for joint, weights in enumerate(self.w)),
-        ):
-            if len(row) != due:
-                raise ValueError(f"{name} has {len(row)} values where {due} are due ({joints} joints, N = {self.N})")
 
 
 @dataclass(frozen=True)
@@ -86,6 +55,9 @@ STANDARD_KINDS: Mapping[str, EntryKind] = {
     "joints": EntryKind(Joints),
     "pose": EntryKind(Pose, _check_pose),
     "dmp": EntryKind(JointDmp),
+    "cart_dmp": EntryKind(CartDmp),
+    "cart_offsets": EntryKind(CartOffsets),
+    "trajectory": EntryKind(Trajectory),
     RECORD: EntryKind(None),
 }
 """The kinds every store knows; give a store a larger mapping to register more."""

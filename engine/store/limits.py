@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any, cast
 
 import msgspec
@@ -14,7 +15,13 @@ MAX_BYTES = 8 * 1024 * 1024
 """Size limit of one value as JSON, half of what the strictest database takes."""
 MAX_DEPTH = 64
 """Lists and objects inside one another."""
+MAX_TAGS = 32
+"""Tags of one entry."""
+MAX_NOTE = 1000
+"""Characters of `by` and of `reason`."""
 _NAME = re.compile(r"[a-z][a-z0-9_/.-]{0,127}")
+_NAME_START = re.compile(r"[a-z0-9_/.-]{0,128}")
+_TAG = re.compile(r"[a-z0-9][a-z0-9_/.-]{0,63}")
 _ENCODER = msgspec.json.Encoder(order="deterministic")
 
 
@@ -26,6 +33,39 @@ def verify_name(kind: str, name: str) -> None:
             where=kind,
             hint="use a-z 0-9 _ / . - beginning with a letter, 128 characters at most",
         )
+
+
+def is_name_start(prefix: str) -> bool:
+    """Tell whether a name can begin so."""
+    return _NAME_START.fullmatch(prefix) is not None
+
+
+def verify_tags(tags: Iterable[str], *, where: str) -> tuple[str, ...]:
+    """Return tags sorted and each once; refuse too many, and one that is not lower case letters, digits and `_ / . -`.
+
+    Raises:
+        StoreError: with the tag.
+    """
+    found = tuple(sorted(set(tags)))
+    if len(found) > MAX_TAGS:
+        raise StoreError(f"{len(found)} tags are more than {MAX_TAGS}", where=where, hint="use fewer")
+    for tag in found:
+        if _TAG.fullmatch(tag) is None:
+            raise StoreError(
+                f"{tag!r:.100} cannot be a tag", where=where, hint="use a-z 0-9 _ / . -, 64 characters at most"
+            )
+    return found
+
+
+def verify_note(by: str, reason: str, *, where: str) -> None:
+    """Refuse a note that is too long or no text that can be stored."""
+    for name, text in (("by", by), ("reason", reason)):
+        if len(text) > MAX_NOTE:
+            raise StoreError(f"`{name}` has {len(text)} characters, more than {MAX_NOTE}", where=where)
+        try:
+            text.encode()
+        except UnicodeEncodeError as error:
+            raise StoreError(f"`{name}` is no valid text: {error}", where=where) from error
 
 
 def encode_value(value: object, *, where: str) -> str:

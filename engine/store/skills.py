@@ -1,27 +1,97 @@
-"""Answers the entry services on the bus from a store."""
+"""Answers the entry services on the bus from a store, and publishes its changes."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from engine.bus import SkillBus
-from engine.skills.entries import EntryList, EntryRecord, ListEntries, ReadEntry, WriteEntry
-from engine.store.contract import Store
+from engine.skills.entries import (
+    DeleteEntry,
+    EntryChanged,
+    EntryHistory,
+    EntryList,
+    EntryRecord,
+    ListEntries,
+    ReadEntry,
+    ReadHistory,
+    UndoEntry,
+    WriteEntry,
+)
+from engine.store.contract import EntryChange, Store
 
 NAMESPACE = "store"
+CHANGES = f"{NAMESPACE}/changes"
+"""The topic with each change, as `EntryChanged`."""
 
 
 def register_store(bus: SkillBus, store: Store) -> None:
-    """Advertise reading, writing and listing of entries under `store`."""
+    """Advertise reading, writing, deleting, undoing and listing of entries under `store`."""
 
     async def read(request: ReadEntry) -> EntryRecord:
         return await store.get(request.kind, request.name)
 
     async def write(request: WriteEntry) -> EntryRecord:
-        return await store.put(request.kind, request.name, request.value, expected_revision=request.expected_revision)
+        return await store.put(
+            request.kind,
+            request.name,
+            request.value,
+            expected_revision=request.expected_revision,
+            tags=request.tags,
+            by=request.by,
+            reason=request.reason,
+        )
+
+    async def delete(request: DeleteEntry) -> EntryChanged:
+        await store.delete(
+            request.kind,
+            request.name,
+            expected_revision=request.expected_revision,
+            by=request.by,
+            reason=request.reason,
+        )
+        return _changed((await store.history(request.kind, request.name))[-1])
+
+    async def undo(request: UndoEntry) -> EntryChanged:
+        return _changed(
+            await store.undo(
+                request.kind,
+                request.name,
+                expected_revision=request.expected_revision,
+                by=request.by,
+                reason=request.reason,
+            )
+        )
 
     async def list_entries(request: ListEntries) -> EntryList:
-        found = await store.list(kind=request.kind, prefix=request.prefix)
+        found = await store.list(kind=request.kind, prefix=request.prefix, tags=request.tags, text=request.text)
         return EntryList(entries=tuple((key.kind, key.name, key.revision) for key in found))
+
+    async def history(request: ReadHistory) -> EntryHistory:
+        changes = await store.history(request.kind, request.name)
+        return EntryHistory(changes=tuple(_changed(change) for change in changes))
 
     bus.advertise_service(ReadEntry, read, namespace=NAMESPACE)
     bus.advertise_service(WriteEntry, write, namespace=NAMESPACE)
+    bus.advertise_service(DeleteEntry, delete, namespace=NAMESPACE)
+    bus.advertise_service(UndoEntry, undo, namespace=NAMESPACE)
     bus.advertise_service(ListEntries, list_entries, namespace=NAMESPACE)
+    bus.advertise_service(ReadHistory, history, namespace=NAMESPACE)
+
+
+async def publish_changes(bus: SkillBus, store: Store) -> Callable[[], None]:
+    """Publish each change of the store, also those by other programs, on `store/changes`; returns what ends it."""
+    topic = bus.topic(CHANGES, EntryChanged)
+    return await store.follow(lambda change: topic.publish(_changed(change)))
+
+
+def _changed(change: EntryChange) -> EntryChanged:
+    return EntryChanged(
+        kind=change.kind,
+        name=change.name,
+        revision=change.revision,
+        deleted=change.value is None,
+        tags=change.tags,
+        by=change.by,
+        reason=change.reason,
+        changed_unix_ms=change.changed_unix_ms,
+    )

@@ -1,183 +1,128 @@
-"""The SQLite tables of the store and the plain, blocking operations on them."""
+"""What a database offers to a store: plain, blocking operations on rows, used by one thread at a time."""
 
 from __future__ import annotations
 
-import sqlite3
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from collections.abc import Sequence
+from threading import Event
+from typing import Protocol
 
-import msgspec
-
-from engine.errors import EntryConflict, EntryNotFound, StoreError
+from engine.errors import EntryConflict, EntryNotFound
 from engine.nearness import near_names
-from engine.sqlite_file import advice, open_sqlite
-
-_VERSION = 1
-_SCHEMA = """
-CREATE TABLE IF NOT EXISTS entry(
-    kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, value TEXT NOT NULL,
-    PRIMARY KEY (kind, name)) STRICT;
-CREATE TABLE IF NOT EXISTS change(
-    seq INTEGER PRIMARY KEY AUTOINCREMENT, kind TEXT NOT NULL, name TEXT NOT NULL,
-    revision INTEGER NOT NULL, value TEXT, UNIQUE (kind, name, revision)) STRICT;
-"""
-_UPSERT = """
-INSERT INTO entry(kind, name, revision, value) VALUES (?, ?, ?, ?)
-ON CONFLICT(kind, name) DO UPDATE SET revision = excluded.revision, value = excluded.value
-"""
+from engine.store.row import Draft, Row, Selection, Stamp
 
 
-class Row(msgspec.Struct, frozen=True):
-    """An entry or a change of it as stored: `value` is JSON, None for a deletion."""
+class Feed(Protocol):
+    """The changes that anybody commits, from the moment it was opened; used by one thread of its own."""
 
-    kind: str
-    name: str
-    revision: int
-    value: str | None
-
-
-class EntryTable:
-    """One open store file; used by one thread at a time."""
-
-    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
-        self.path = path
-        self._connection = connection
-
-    @classmethod
-    def open(cls, path: Path, *, busy_timeout_s: float) -> EntryTable:
-        """Open or create the file; raises StoreError with the path and what to do."""
-        try:
-            connection = open_sqlite(path, schema=_SCHEMA, version=_VERSION, busy_timeout_s=busy_timeout_s)
-        except (sqlite3.Error, OSError) as error:
-            raise StoreError(f"the store cannot be opened: {error}", where=path, hint=advice(error)) from error
-        return cls(path, connection)
-
-    def get(self, kind: str, name: str) -> Row:
-        """Return an entry or raise EntryNotFound with the near names."""
-        with self._explained("cannot be read"):
-            found = self._find(kind, name)
-        if found is None:
-            raise self._not_found(kind, name)
-        return found
-
-    def select(self, kind: str, prefix: str, *, values: bool) -> tuple[Row, ...]:
-        """Return the entries of a kind (all when empty) under a prefix, sorted; without values on request."""
-        column = "value" if values else "NULL"
-        query = f"SELECT kind, name, revision, {column} FROM entry WHERE (? = '' OR kind = ?)"
-        with self._explained("cannot be read"):
-            # A range keeps the index and takes `_` and `%` in names as they are.
-            rows = self._connection.execute(
-                f"{query} AND name >= ? AND substr(name, 1, length(?)) = ? ORDER BY kind, name",
-                (kind, kind, prefix, prefix, prefix),
-            )
-            return tuple(_row(row) for row in rows)
-
-    def changes(self, kind: str, name: str) -> tuple[Row, ...]:
-        """Return every change of an entry, oldest first."""
-        with self._explained("cannot be read"):
-            rows = self._connection.execute(
-                "SELECT kind, name, revision, value FROM change WHERE kind = ? AND name = ? ORDER BY seq", (kind, name)
-            )
-            return tuple(_row(row) for row in rows)
-
-    def put(self, kind: str, name: str, value: str, *, expected_revision: int | None) -> Row:
-        """Write an entry in a transaction of its own."""
-        with self._transaction():
-            self._verify_revision(kind, name, expected_revision)
-            return self._write(kind, name, value)
-
-    def delete(self, kind: str, name: str, *, expected_revision: int | None) -> Row:
-        """Remove an entry and return its last change."""
-        with self._transaction():
-            if self._find(kind, name) is None:
-                raise self._not_found(kind, name)
-            self._verify_revision(kind, name, expected_revision)
-            gone = Row(kind, name, self._last_revision(kind, name) + 1, None)
-            self._connection.execute("DELETE FROM entry WHERE kind = ? AND name = ?", (kind, name))
-            self._record(gone)
-            return gone
-
-    def seed(self, entries: Sequence[tuple[str, str, str]], *, overwrite: bool) -> tuple[Row, ...]:
-        """Write those (kind, name, value) that are missing or, with `overwrite`, differ; all in one transaction."""
-        written: list[Row] = []
-        with self._transaction():
-            for kind, name, value in entries:
-                found = self._find(kind, name)
-                if found is None or (overwrite and found.value != value):
-                    written.append(self._write(kind, name, value))
-        return tuple(written)
+    def wait(self, stop: Event) -> tuple[Row, ...]:
+        """Return the next changes; none after a while without any, or soon after `stop` is set."""
+        ...
 
     def close(self) -> None:
-        """Release the file."""
-        self._connection.close()
+        """End it."""
+        ...
 
-    def _find(self, kind: str, name: str) -> Row | None:
-        row = self._connection.execute(
-            "SELECT kind, name, revision, value FROM entry WHERE kind = ? AND name = ?", (kind, name)
-        ).fetchone()
-        return None if row is None else _row(row)
 
-    def _write(self, kind: str, name: str, value: str) -> Row:
-        row = Row(kind, name, self._last_revision(kind, name) + 1, value)
-        self._connection.execute(_UPSERT, (row.kind, row.name, row.revision, row.value))
-        self._record(row)
-        return row
+class Table(Protocol):
+    """Entries and all their revisions in a database; every method raises StoreError where it fails."""
 
-    def _record(self, row: Row) -> None:
-        self._connection.execute(
-            "INSERT INTO change(kind, name, revision, value) VALUES (?, ?, ?, ?)",
-            (row.kind, row.name, row.revision, row.value),
-        )
+    @property
+    def address(self) -> str:
+        """Where the database is, without secrets."""
+        ...
 
-    def _last_revision(self, kind: str, name: str) -> int:
-        row = self._connection.execute(
-            "SELECT coalesce(max(revision), 0) FROM change WHERE kind = ? AND name = ?", (kind, name)
-        ).fetchone()
-        return int(row[0])
+    def get(self, kind: str, name: str) -> Row:
+        """Return an entry; raises EntryNotFound."""
+        ...
 
-    def _verify_revision(self, kind: str, name: str, expected: int | None) -> None:
-        if expected is None:
-            return
-        found = self._find(kind, name)
-        there = 0 if found is None else found.revision
-        if there != expected:
-            state = f"revision {there} is there" if there else "there is no such entry"
+    def select(self, selection: Selection, *, values: bool) -> tuple[Row, ...]:
+        """Return entries sorted by kind and name; their values on request."""
+        ...
+
+    def ever(self) -> tuple[tuple[str, str], ...]:
+        """Return kind and name of every entry that ever was, sorted."""
+        ...
+
+    def changes(self, kind: str, name: str) -> tuple[Row, ...]:
+        """Return every revision of an entry, oldest first."""
+        ...
+
+    def put(self, draft: Draft, stamp: Stamp, *, expected_revision: int | None) -> Row:
+        """Write an entry; raises EntryConflict."""
+        ...
+
+    def delete(self, kind: str, name: str, stamp: Stamp, *, expected_revision: int | None) -> Row:
+        """Remove an entry and return its last revision; raises EntryNotFound, EntryConflict."""
+        ...
+
+    def undo(self, kind: str, name: str, stamp: Stamp, *, expected_revision: int | None) -> Row:
+        """Bring back what was before the last change; raises EntryNotFound, EntryConflict."""
+        ...
+
+    def seed(self, drafts: Sequence[Draft], stamp: Stamp, *, overwrite: bool) -> tuple[Row, ...]:
+        """Write those that are missing or, with `overwrite`, differ; return what was written."""
+        ...
+
+    def adopt(self, histories: Sequence[Sequence[Row]]) -> tuple[Row, ...]:
+        """Take over entries with their revisions; return those that were new. Raises EntryConflict."""
+        ...
+
+    def feed(self) -> Feed | None:
+        """Open a feed of changes; None where nobody else can reach the database."""
+        ...
+
+    def close(self) -> None:
+        """Release the database."""
+        ...
+
+
+def verify_revision(kind: str, name: str, there: Row | None, expected: int | None) -> None:
+    """Refuse a change where the entry has another revision than expected; `there` may be a deletion."""
+    revision = 0 if there is None or there.value is None else there.revision
+    if expected is None or revision == expected:
+        return
+    state = f"revision {revision} is there" if revision else "there is no such entry"
+    raise EntryConflict(
+        f"{state}, revision {expected} was expected" if expected else f"{state}, none was expected",
+        where=f"{kind} {name}",
+        hint="read it again and decide anew",
+    )
+
+
+def entry_not_found(kind: str, name: str, *, elsewhere: Sequence[str], names: Sequence[str]) -> EntryNotFound:
+    """Return the error for a missing entry.
+
+    Args:
+        kind: Of the missing one.
+        name: Of the missing one.
+        elsewhere: The kinds that have an entry of this name.
+        names: Of the entries of its kind.
+    """
+    hint = f"there is a {elsewhere[0]} of this name" if elsewhere else near_names(name, names)
+    return EntryNotFound(f"there is no {kind} entry called {name}", where="store", hint=hint)
+
+
+def missing_revisions(have: Sequence[Row], given: Sequence[Row]) -> Sequence[Row]:
+    """Return what `given`, a whole history, has beyond `have`.
+
+    Raises:
+        EntryConflict: `have` is not the beginning of `given`.
+    """
+    for mine, theirs in zip(have, given, strict=False):
+        if _content(mine) != _content(theirs):
             raise EntryConflict(
-                f"{state}, revision {expected} was expected" if expected else f"{state}, none was expected",
-                where=f"{kind} {name}",
-                hint="read it again and decide anew",
+                f"another history is there: revision {mine.revision} differs",
+                where=f"{mine.kind} {mine.name}",
+                hint="migrate into an empty store, or export and import the entries you want",
             )
-
-    def _not_found(self, kind: str, name: str) -> EntryNotFound:
-        with self._explained("cannot be read"):
-            rows = self._connection.execute("SELECT kind, name FROM entry WHERE kind = ? OR name = ?", (kind, name))
-            known = [(str(row[0]), str(row[1])) for row in rows]
-        elsewhere = [other for other, same in known if same == name]
-        hint = f"there is a {elsewhere[0]} of this name" if elsewhere else near_names(name, (n for _, n in known))
-        return EntryNotFound(f"there is no {kind} entry called {name}", where="store", hint=hint)
-
-    @contextmanager
-    def _transaction(self) -> Generator[None]:
-        with self._explained("cannot be written"):
-            self._connection.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-                self._connection.execute("COMMIT")
-            finally:
-                # Whatever went wrong, the next transaction must find none open.
-                if self._connection.in_transaction:
-                    self._connection.rollback()
-
-    @contextmanager
-    def _explained(self, what: str) -> Generator[None]:
-        try:
-            yield
-        except sqlite3.Error as error:
-            raise StoreError(f"the store {what}: {error}", where=self.path, hint=advice(error)) from error
+    if len(have) > len(given):
+        raise EntryConflict(
+            f"it has {len(have)} revisions here and {len(given)} there",
+            where=f"{have[0].kind} {have[0].name}",
+            hint="it was changed here; migrate the other way, or into an empty store",
+        )
+    return given[len(have) :]
 
 
-def _row(columns: Sequence[Any]) -> Row:
-    kind, name, revision, value = columns
-    return Row(kind, name, revision, value)
+def _content(row: Row) -> tuple[object, ...]:
+    return (row.revision, row.value, row.tags, row.changed_unix_ms, row.by, row.reason, row.restores)

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from engine.errors import RobotError
 from engine.messages import Pose
 from robots.model.rigid import Rigid
+from robots.port import Array
 
 WORLD = "world"
+# Beyond all cells; what is farther may overflow in the midst of a calculation.
+_FARTHEST_M = 1e6
 
 
 class ToolFrames:
@@ -23,6 +28,12 @@ class ToolFrames:
         self.base_frame = f"{arm}/{base_link}"
         self.base = base
 
+    def axes(self, frame: str, *, tool: Rigid) -> Array:
+        """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is where the tool is."""
+        if frame == "tool":
+            return tool.rotation
+        return self.base.rotation if frame == "base" else np.eye(3)
+
     def to_world(self, pose: Pose) -> Rigid:
         """Return the pose in the world.
 
@@ -33,6 +44,9 @@ class ToolFrames:
             given = Rigid.from_pose(pose)
         except ValueError as error:
             raise RobotError(str(error), where=self._arm, hint="xyzw is a unit quaternion") from error
+        farthest = max(map(abs, pose.xyz))
+        if farthest > _FARTHEST_M:
+            raise RobotError(f"no arm reaches {farthest:.3g} m", where=self._arm, hint="xyz is in metres")
         if pose.frame == WORLD:
             return given
         if pose.frame == self.base_frame:

@@ -1,4 +1,4 @@
-"""One arm's motions over time: follow a trajectory, hold, resume, cancel, and judge how it ended."""
+"""One arm's motions over time: let a generator lead, hold, resume, cancel, finish, and judge how it ended."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from robots.control.arm_state import ArmState
+from robots.control.generator import Generator, StreamGenerator
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
-from robots.control.playback import Playback
-from robots.port import Array, JointTrajectory, MotionEnd, Tolerance
+from robots.port import Array, MotionEnd, Tolerance
 
 _REST_RAD_S = 0.01
 _REST_S = 0.02
@@ -19,15 +20,16 @@ _STILL_MOVING_AFTER_S = 3.0
 
 
 @dataclass(kw_only=True)
-class _Following:
+class _UnderWay:
     """The motion under way."""
 
     number: int
-    playback: Playback
+    generator: Generator
     tolerance: Tolerance
     ending: MotionEnd | None = None
     reason: str = ""
     hold: bool = False
+    finishing: bool = False
     request: int = 0
     told_held: bool = False
     tell_resumed: bool = False
@@ -38,15 +40,15 @@ class ArmMotion:
     """The set point of one arm; without a motion it stays where it is.
 
     `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
-    control period with the measured joints.
+    control period with the measured arm. `pace` is the share of its own speed that every motion runs at.
     """
 
-    def __init__(self, *, joints: tuple[str, ...], acceleration_rad_s2: Array, touching: Callable[[], str]) -> None:
+    def __init__(self, *, joints: tuple[str, ...], touching: Callable[[], str]) -> None:
         self._joints = joints
-        self._acceleration_limit = acceleration_rad_s2
         self._touching = touching
-        self._following: _Following | None = None
+        self._following: _UnderWay | None = None
         self._rest_s = 0.0
+        self.pace = 1.0
         self._give_way: tuple[Array, Array, float] | None = None
         self.position = np.zeros(len(joints))
         self.velocity = np.zeros(len(joints))
@@ -66,17 +68,41 @@ class ArmMotion:
     @property
     def progress(self) -> float:
         """Share of the present trajectory's time passed; 1 when there is none."""
-        return self._following.playback.progress if self._following else 1.0
+        return self._following.generator.progress if self._following else 1.0
 
-    def follow(self, number: int, trajectory: JointTrajectory, tolerance: Tolerance) -> None:
-        """Start a motion; the trajectory starts at the set point and no other motion is under way."""
-        playback = Playback(trajectory, acceleration_rad_s2=self._acceleration_limit)
-        self._following = _Following(number=number, playback=playback, tolerance=tolerance)
+    @property
+    def leads(self) -> bool:
+        """False while the set point follows the arm and not the arm the set point."""
+        following = self._following
+        return following is None or self._give_way is not None or following.generator.leads
+
+    def start(self, number: int, generator: Generator, tolerance: Tolerance) -> None:
+        """Start a motion; the generator starts at the set point and no other motion is under way."""
+        self._following = _UnderWay(number=number, generator=generator, tolerance=tolerance)
+
+    def fail(self, reason: str) -> None:
+        """End whatever runs as failed: it brakes on its path and gives way."""
+        following = self._following
+        if following and following.ending is not MotionEnd.FAILED:
+            following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
+
+    def tell(self, number: int, values: Array) -> None:
+        """Pass on what a stream is told; ignored where there is no such stream."""
+        following = self._following
+        if following and following.number == number and isinstance(following.generator, StreamGenerator):
+            following.generator.receive(values)
+
+    def finish(self, number: int) -> None:
+        """Bring a stream to rest and end it as reached, also one that is held: it need not be resumed for that."""
+        following = self._following
+        if following and following.number == number and isinstance(following.generator, StreamGenerator):
+            following.generator.finish()
+            following.finishing, following.hold = True, False
 
     def hold(self, number: int, *, request: int = 0) -> None:
-        """Decelerate on the path."""
+        """Decelerate on the path; what is finishing comes to rest anyway, and ends."""
         following = self._following
-        if following and following.number == number:
+        if following and following.number == number and not following.finishing:
             following.hold, following.told_held, following.tell_resumed = True, False, False
             following.request = request
 
@@ -95,18 +121,21 @@ class ArmMotion:
         """Cancel whatever runs."""
         self.cancel(self.number)
 
-    def step(self, step_s: float, *, position: Array, velocity: Array) -> tuple[AnyMotionEvent, ...]:
+    def step(self, step_s: float, state: ArmState) -> tuple[AnyMotionEvent, ...]:
         """Move the set point on by one period and return what happened."""
-        at_rest = self._measure_rest(step_s, velocity)
+        position = state.position
+        at_rest = self._measure_rest(step_s, state.velocity)
         following = self._following
         if following is None:
             return ()
         if self._give_way is not None:
             self._yield(step_s)
         else:
-            target = 0.0 if following.hold or following.ending is not None else 1.0
-            following.playback.step(step_s, target_pace=target)
-            self._take(following.playback)
+            target = 0.0 if following.hold or following.ending is not None else self.pace
+            following.generator.step(step_s, target_pace=target, state=state)
+            self._take(following.generator)
+            if following.generator.failure:
+                self.fail(following.generator.failure)
             self._check_path(following, position)
         return self._judge(following, step_s, position, at_rest)
 
@@ -114,17 +143,17 @@ class ArmMotion:
         self._rest_s = self._rest_s + step_s if np.abs(velocity).max() < _REST_RAD_S else 0.0
         return self._rest_s >= _REST_S
 
-    def _take(self, playback: Playback) -> None:
-        self.position[:] = playback.position
-        self.velocity[:] = playback.velocity
-        self.acceleration[:] = playback.acceleration
+    def _take(self, generator: Generator) -> None:
+        self.position[:] = generator.position
+        self.velocity[:] = generator.velocity
+        self.acceleration[:] = generator.acceleration
 
     def _stand_still(self) -> None:
         self.velocity[:] = 0.0
         self.acceleration[:] = 0.0
 
-    def _check_path(self, following: _Following, position: Array) -> None:
-        if following.ending is MotionEnd.FAILED:
+    def _check_path(self, following: _UnderWay, position: Array) -> None:
+        if following.ending is MotionEnd.FAILED or not following.generator.leads:
             return
         error = np.abs(self.position - position)
         worst = int(np.argmax(error))
@@ -136,14 +165,12 @@ class ArmMotion:
         contact = self._touching()
         return f"{self._joints[joint]} is {error_rad:.3f} rad {what}" + (f"; {contact}" if contact else "")
 
-    def _judge(
-        self, following: _Following, step_s: float, position: Array, at_rest: bool
-    ) -> tuple[AnyMotionEvent, ...]:
-        playback = following.playback
-        if following.tell_resumed and (playback.pace > 0.0 or playback.at_end):
+    def _judge(self, following: _UnderWay, step_s: float, position: Array, at_rest: bool) -> tuple[AnyMotionEvent, ...]:
+        generator = following.generator
+        if following.tell_resumed and generator.moving:
             following.tell_resumed = False
             return (MotionResumed(motion=following.number, request=following.request),)
-        if not playback.stopped:
+        if not generator.stopped:
             return ()
         if following.ending is not None:
             return self._end_when_at_rest(following, step_s, position, at_rest)
@@ -152,12 +179,13 @@ class ArmMotion:
                 return ()
             following.told_held = True
             return (MotionHeld(motion=following.number, request=following.request),)
-        return self._settle(following, step_s, position, at_rest)
+        return self._settle(following, step_s, position, at_rest) if generator.complete else ()
 
     def _settle(
-        self, following: _Following, step_s: float, position: Array, at_rest: bool
+        self, following: _UnderWay, step_s: float, position: Array, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
-        error = np.abs(following.playback.goal - position)
+        goal = following.generator.goal
+        error = np.abs((position if goal is None else goal) - position)
         worst = int(np.argmax(error))
         if at_rest and error[worst] <= following.tolerance.goal_rad:
             return self._finish(following, MotionEnd.REACHED, "")
@@ -170,7 +198,7 @@ class ArmMotion:
         return ()
 
     def _end_when_at_rest(
-        self, following: _Following, step_s: float, position: Array, at_rest: bool
+        self, following: _UnderWay, step_s: float, position: Array, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         ending = following.ending or MotionEnd.CANCELED
         if ending is MotionEnd.FAILED and self._give_way is None:
@@ -194,8 +222,17 @@ class ArmMotion:
         self.position[:] = start + share * (target - start)
         self._stand_still()
 
-    def _finish(self, following: _Following, end: MotionEnd, reason: str) -> tuple[AnyMotionEvent, ...]:
+    def _finish(self, following: _UnderWay, end: MotionEnd, reason: str) -> tuple[AnyMotionEvent, ...]:
         self._following, self._give_way = None, None
         self._stand_still()
-        progress = following.playback.progress
-        return (MotionFinished(motion=following.number, end=end.value, progress=progress, reason=reason),)
+        generator = following.generator
+        return (
+            MotionFinished(
+                motion=following.number,
+                end=end.value,
+                progress=generator.progress,
+                reason=reason,
+                contact=generator.contact,
+                data=generator.data(),
+            ),
+        )

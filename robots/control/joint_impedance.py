@@ -1,61 +1,52 @@
-"""Joint impedance: springs and dampers towards a set point, on top of the arm's own dynamics."""
+"""Joint impedance: springs and dampers towards a set point, on top of the arm's own dynamics (RCY 4.4, eq. 1)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from robots.control.arm_state import ArmState
+from robots.control.controller import SetPoint
 from robots.model.robot_model import JointLimits
-from robots.port import Array
+from robots.port import ArmSettings, Array
 
 # A joint answers this much error with its whole torque; 87 N m make 1450 N m/rad.
 _FULL_TORQUE_ERROR_RAD = 0.06
 
 
-@dataclass(frozen=True, kw_only=True)
-class ImpedanceGains:
-    """Stiffness in N m/rad and damping ratio (1 is critical) per joint, shapes (n,)."""
-
-    stiffness_nm_rad: Array
-    damping_ratio: Array
-
-    @classmethod
-    def for_limits(cls, limits: JointLimits) -> ImpedanceGains:
-        """Return gains in proportion to each joint's torque limit, critically damped."""
-        effort = np.array(limits.effort_nm)
-        return cls(stiffness_nm_rad=effort / _FULL_TORQUE_ERROR_RAD, damping_ratio=np.ones_like(effort))
+def nominal_stiffness_nm_rad(limits: JointLimits) -> Array:
+    """Return the stiffness of joints for which none is set, in proportion to each one's torque limit, (n,)."""
+    return np.array(limits.effort_nm) / _FULL_TORQUE_ERROR_RAD
 
 
 class JointImpedance:
-    """τ = clip(K (q_d − q) + D (q̇_d − q̇) + feedforward), D critical for the inertia given at the start.
+    """Implements `Controller`: τ = clip(K (q_d − q) + D (q̇_d − q̇) + feedforward).
 
-    Call `initialize` once, `step` at every control period, `terminate` at the end. The feedforward
-    (gravity, Coriolis, and inertia along the set point) comes from the arm's own model, never from
-    what it carries: a payload shows as an error of load / stiffness.
+    D is `joint_damping_ratio` times critical for the inertia given at the start. What the arm
+    carries beyond its `load_kg` is in no feedforward: it shows as an error of load / stiffness.
     """
 
-    def __init__(self, *, gains: ImpedanceGains, effort_nm: Array) -> None:
-        self._gains = gains
-        self._upper_nm = effort_nm.copy()
-        self._lower_nm = -effort_nm
-        self._damping = np.zeros_like(effort_nm)
-        self._torque = np.zeros_like(effort_nm)
-        self._work = np.zeros_like(effort_nm)
+    def __init__(self, limits: JointLimits) -> None:
+        self._nominal = nominal_stiffness_nm_rad(limits)
+        self._upper_nm = np.array(limits.effort_nm)
+        self._lower_nm = -self._upper_nm
+        self._stiffness = self._nominal
+        self._damping = np.zeros_like(self._nominal)
+        self._torque = np.zeros_like(self._nominal)
+        self._work = np.zeros_like(self._nominal)
 
-    def initialize(self, *, inertia_kg_m2: Array) -> None:
-        """Set the damping for the joints' own inertia (diagonal of the mass matrix), shape (n,)."""
-        self._damping = 2.0 * self._gains.damping_ratio * np.sqrt(self._gains.stiffness_nm_rad * inertia_kg_m2)
+    def initialize(self, *, settings: ArmSettings, inertia_kg_m2: Array) -> None:
+        """Take stiffness and damping ratio; the damping is for the joints' own inertia, (n,)."""
+        given = settings.joint_stiffness_nm_rad
+        self._stiffness = np.array(given) if given else self._nominal
+        self._damping = 2.0 * settings.joint_damping_ratio * np.sqrt(self._stiffness * inertia_kg_m2)
         self._torque[:] = 0.0
 
-    def step(
-        self, *, position: Array, velocity: Array, desired: Array, desired_velocity: Array, feedforward_nm: Array
-    ) -> Array:
+    def step(self, state: ArmState, set_point: SetPoint, *, feedforward_nm: Array) -> Array:
         """Return the joint torques, within the limits; the array is reused by the next call."""
         torque, work = self._torque, self._work
-        np.subtract(desired, position, out=torque)
-        torque *= self._gains.stiffness_nm_rad
-        np.subtract(desired_velocity, velocity, out=work)
+        np.subtract(set_point.position, state.position, out=torque)
+        torque *= self._stiffness
+        np.subtract(set_point.velocity, state.velocity, out=work)
         work *= self._damping
         torque += work
         torque += feedforward_nm

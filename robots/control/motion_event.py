@@ -14,12 +14,14 @@ class MotionEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
 class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
     """It ended (`end` is the value of a `MotionEnd`) and the device is at rest; `reason` if it failed.
 
-    `progress` is the share of its way that it made.
+    `progress` is the share of its way that it made; `contact` and `data` are as in `MotionReport`.
     """
 
     end: str
     progress: float
     reason: str = ""
+    contact: bool = False
+    data: bytes = b""
 
 
 class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):
@@ -34,4 +36,11 @@ class MotionResumed(MotionEvent, frozen=True, kw_only=True, tag="resumed"):
     request: int = 0
 
 
-AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed
+class ReflexTripped(MotionEvent, frozen=True, kw_only=True, tag="reflex"):
+    """The arm has stopped by itself, and why; the motion, if one was under way, is going to fail. 0 for none."""
+
+    arm: str
+    reason: str
+
+
+AnyMotionEvent = MotionFinished | MotionHeld | MotionResumed | ReflexTripped

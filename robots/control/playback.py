@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from engine.errors import RobotError
+from robots.control.arm_state import ArmState
 from robots.port import Array, JointTrajectory
 
-# The passage starts or stops in at least this time, so that slow motions do not stop with a jerk.
-_SHORTEST_STOP_S = 0.1
+SHORTEST_STOP_S = 0.1
+"""The passage starts or stops in at least this time, so that slow motions do not stop with a jerk."""
+
 # Stopping uses this share of the joints' acceleration; the rest is left to tracking.
 _ACCELERATION_SHARE = 0.9
 _SLOW = 1e-9
@@ -18,14 +20,26 @@ class Playback:
     """Where on a trajectory the set point is; s is the trajectory's own time, ṡ = 1 is its own pace.
 
     `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
+
+    Args:
+        trajectory: The path over time, from rest to rest.
+        acceleration_rad_s2: Limits of the joints, (n,).
+        shortest_stop_s: Least time from the trajectory's own pace to a stop; it makes slow stops gentle.
     """
 
-    def __init__(self, trajectory: JointTrajectory, *, acceleration_rad_s2: Array) -> None:
-        self._points = np.ascontiguousarray(trajectory.position_rad, dtype=np.float64)
-        self._slopes = np.ascontiguousarray(trajectory.velocity_rad_s, dtype=np.float64)
+    def __init__(
+        self, trajectory: JointTrajectory, *, acceleration_rad_s2: Array, shortest_stop_s: float = SHORTEST_STOP_S
+    ) -> None:
+        self._shortest_stop_s = shortest_stop_s
+        from robots.control import kernels
+
+        # Copied: what came over a wire is read-only, which the compiled function does not take.
+        self._points = np.array(trajectory.position_rad, dtype=np.float64, order="C")
+        self._slopes = np.array(trajectory.velocity_rad_s, dtype=np.float64, order="C")
+        self._pass_along = kernels.pass_along
         self._dt_s = trajectory.dt_s
         self._acceleration = acceleration_rad_s2 * _ACCELERATION_SHARE
-        self.duration_s = (len(self._points) - 1) * trajectory.dt_s
+        self.duration_s = trajectory.duration_s
         self.passed_s = 0.0
         self.pace = 1.0
         self.position = self._points[0].copy()
@@ -43,21 +57,52 @@ class Playback:
         return self.pace == 0.0 or self.at_end
 
     @property
+    def moving(self) -> bool:
+        """True when the passage is under way, or over."""
+        return self.pace > 0.0 or self.at_end
+
+    @property
+    def complete(self) -> bool:
+        """True when the whole path is passed."""
+        return self.at_end
+
+    @property
+    def contact(self) -> bool:
+        """False: it ends at its goal only."""
+        return False
+
+    @property
+    def leads(self) -> bool:
+        """True: the arm follows."""
+        return True
+
+    @property
+    def failure(self) -> str:
+        """Empty: a path can always be passed along."""
+        return ""
+
+    @property
     def progress(self) -> float:
         """Share of the trajectory's time passed, 0 to 1."""
         return self.passed_s / self.duration_s if self.duration_s > 0.0 else 1.0
 
     @property
-    def goal(self) -> Array:
+    def goal(self) -> Array | None:
         """The configuration at the end, shape (n,)."""
         return self._points[-1]
 
-    def step(self, step_s: float, *, target_pace: float) -> None:
-        """Pass on by `step_s` of real time, changing the pace towards `target_pace` (0 or 1) as fast as allowed."""
-        slope, curvature = self._derivatives()
+    def data(self) -> bytes:
+        """Nothing is recorded."""
+        return b""
+
+    def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
+        """Pass on by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
+        if self.passed_s == 0.0:
+            # It starts at rest, where the pace may be anything.
+            self.pace = target_pace
         change = 0.0
         if self.pace != target_pace:
-            change = self._pace_change(slope, curvature, target_pace)
+            change = self._pace_change(*self._derivatives(), target_pace)
             reached = self.pace + change * step_s
             if (reached - target_pace) * (self.pace - target_pace) <= 0.0:
                 reached = target_pace
@@ -70,7 +115,7 @@ class Playback:
 
     def _pace_change(self, slope: Array, curvature: Array, target: float) -> float:
         """Return s̈ towards the target so that no joint's p″ṡ² + p′s̈ exceeds its acceleration."""
-        fastest = 1.0 / _SHORTEST_STOP_S
+        fastest = 1.0 / self._shortest_stop_s
         moving = np.abs(slope) > _SLOW
         if not moving.any():
             return fastest if target > self.pace else -fastest
@@ -82,7 +127,8 @@ class Playback:
             return max(0.0, min(fastest, float(np.min((room - along) / speed))))
         return min(0.0, max(-fastest, float(np.max((-room - along) / speed))))
 
-    def _locate(self) -> tuple[int, float]:
+    def located(self) -> tuple[int, float]:
+        """Return the sample before the set point, and the share of the way to the next one, 0 to 1."""
         last = len(self._points) - 2
         index = min(int(self.passed_s / self._dt_s), last)
         return index, self.passed_s / self._dt_s - index
@@ -91,7 +137,7 @@ class Playback:
         """Return p′ and p″ by the trajectory's own time."""
         if self.at_end:
             return np.zeros_like(self.position), np.zeros_like(self.position)
-        index, u = self._locate()
+        index, u = self.located()
         h = self._dt_s
         p0, p1, v0, v1 = self._points[index], self._points[index + 1], self._slopes[index], self._slopes[index + 1]
         rise = (p1 - p0) / h
@@ -105,16 +151,20 @@ class Playback:
             self.velocity[:] = 0.0
             self.acceleration[:] = 0.0
             return
-        index, u = self._locate()
-        h = self._dt_s
-        p0, p1, v0, v1 = self._points[index], self._points[index + 1], self._slopes[index], self._slopes[index + 1]
-        u2, u3 = u * u, u * u * u
-        self.position[:] = (
-            (1 - 3 * u2 + 2 * u3) * p0 + (3 * u2 - 2 * u3) * p1 + h * ((u - 2 * u2 + u3) * v0 + (u3 - u2) * v1)
+        index, u = self.located()
+        self._pass_along(
+            self._points,
+            self._slopes,
+            index,
+            u,
+            self._dt_s,
+            self.pace,
+            self.pace**2,
+            pace_change,
+            self.position,
+            self.velocity,
+            self.acceleration,
         )
-        slope, curvature = self._derivatives()
-        self.velocity[:] = slope * self.pace
-        self.acceleration[:] = curvature * self.pace**2 + slope * pace_change
 
 
 def verified(trajectory: JointTrajectory, *, start_rad: Array, joints: tuple[str, ...]) -> JointTrajectory:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from engine.bus import ActiveGoal, SkillBus
-from engine.errors import GoalRejected, RobotError, SkillFailed
+from engine.errors import GoalRejected, SkillFailed
 from engine.messages import GripperState
 from engine.skills.gripper import (
     GraspResult,
@@ -13,9 +13,9 @@ from engine.skills.gripper import (
     GripperOpen,
     ReadGripper,
 )
-from robots.attend import attend
 from robots.gripper.grip_judgement import Grip, judge
-from robots.port import GripperPort, GripperSample, Motion
+from robots.gripper.tool_motion import ToolMotion
+from robots.port import GripperPort, GripperSample
 
 _MOVE_FORCE_N = 30.0
 _AT_WIDTH_M = 0.002
@@ -27,14 +27,14 @@ class GripperServer:
     def __init__(self, *, name: str, port: GripperPort) -> None:
         self.name = name
         self._port = port
-        self._motion: Motion | None = None
+        self._motion = ToolMotion(device=name, words="the gripper")
         self.grip: Grip | None = None
         """What it was told to grasp and hold; None once it was told otherwise."""
 
     @property
     def moving(self) -> bool:
         """True while a goal is carried out."""
-        return self._motion is not None
+        return self._motion.moving
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the gripper skills."""
@@ -45,9 +45,7 @@ class GripperServer:
 
     async def stop(self) -> None:
         """Stop the fingers where they are; what is held stays held."""
-        if self._motion is not None:
-            self._motion.cancel()
-            await self._motion.report()
+        await self._motion.stop()
 
     async def _open(self, goal: GripperOpen, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
         handle.accept()
@@ -60,6 +58,12 @@ class GripperServer:
 
     async def _grasp(self, goal: GripperGrasp, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
         self._refuse_beyond(goal.width_m, handle)
+        if goal.force_n > self._port.max_force_n:
+            raise GoalRejected(
+                f"a force of {goal.force_n:.0f} N is not possible",
+                where=handle.address,
+                hint=f"this gripper presses with up to {self._port.max_force_n:.0f} N",
+            )
         handle.accept()
         self.grip = Grip(
             least_m=goal.width_m - goal.tolerance_inner_m,
@@ -106,19 +110,13 @@ class GripperServer:
         self, width_m: float, speed_m_s: float, force_n: float, handle: ActiveGoal[GripperFeedback]
     ) -> None:
         """Move the fingers and return when they have come to rest, also when cancelled."""
-        try:
-            motion = self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n)
-        except RobotError as error:
-            raise SkillFailed("the fingers were not started", where=handle.address) from error
 
         def tell() -> None:
             handle.feedback(GripperFeedback(width_m=self._port.sample().width_m))
 
-        self._motion = motion
-        try:
-            await attend(motion, handle, tell=tell, device=self.name, words="the gripper")
-        finally:
-            self._motion = None
+        await self._motion.carry_out(
+            lambda: self._port.close_to(width_m=width_m, speed_m_s=speed_m_s, force_n=force_n), handle, tell
+        )
 
 
 def _touching(sample: GripperSample) -> str:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from engine.errors import CellError
 
-_SCHEME = "package://"
+PACKAGE_SCHEME = "package://"
 
 
 def installed_share_dir(*, package: str, marker: str) -> Path:
@@ -24,31 +25,40 @@ def installed_share_dir(*, package: str, marker: str) -> Path:
         raise CellError(f"the Python package {package} is not installed", where=package, hint=advice) from error
     suffix = "/" + marker
     for file in files:
-        if str(file).endswith(suffix):
+        if f"/{file}".endswith(suffix):
             path = Path(str(file.locate()))
             if path.is_file():
                 return Path(str(path.resolve()).removesuffix(suffix))
     raise CellError(f"the package {package} has no file {marker}", where=package, hint=f"{advice} --force-reinstall")
 
 
-def resolve_uri(uri: str, *, package_dir: Path, relative_to: Path) -> Path:
+def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) -> Path:
     """Return the file that a URDF's mesh `filename` means.
 
-    `package://<path>` lies below `package_dir`; anything else is relative to the folder `relative_to`.
+    `package://<path>` lies below one of `package_dirs`; anything else is relative to the folder `relative_to`.
 
     Raises:
         CellError: there is no such file.
     """
-    if uri.startswith(_SCHEME):
-        path = package_dir / uri.removeprefix(_SCHEME)
+    if uri.startswith(PACKAGE_SCHEME):
+        paths = [folder / uri.removeprefix(PACKAGE_SCHEME) for folder in package_dirs]
     else:
-        path = relative_to / uri.removeprefix("file://")
-    if not path.is_file():
-        raise CellError(f"no mesh file {path}", where=uri, hint="check the package folder of the robot model")
-    return path
+        paths = [relative_to / uri.removeprefix("file://")]
+    for path in paths:
+        if path.is_file():
+            return path
+    missing = " or ".join(str(path) for path in paths)
+    raise CellError(f"no mesh file {missing}", where=uri, hint="check the package folder of the robot model")
 
 
 def disabled_collisions(srdf: Path) -> tuple[tuple[str, str], ...]:
-    """Return the link pairs of an SRDF's `disable_collisions`, in file order."""
-    root = ET.parse(srdf).getroot()
+    """Return the link pairs of an SRDF's `disable_collisions`, in file order.
+
+    Raises:
+        CellError: it cannot be read.
+    """
+    try:
+        root = ET.parse(srdf).getroot()
+    except (OSError, ET.ParseError) as error:
+        raise CellError(f"the SRDF cannot be read: {error}", where=str(srdf)) from None
     return tuple((pair.attrib["link1"], pair.attrib["link2"]) for pair in root.iter("disable_collisions"))

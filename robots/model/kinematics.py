@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from engine.errors import CellError
-from robots.model.rigid import Rigid
+from robots.model.pinocchio_model import arm_model, pin
+from robots.model.rigid import Rigid, product
 from robots.model.robot_model import JointLimits, RobotModel
 from robots.port import Array
 
-# pinocchio has no stubs, and its wheel puts it where type checkers do not look: it stays behind
-# this class, which hands out numpy arrays.
-pin: Any = import_module("pinocchio")
+_AT_THE_LINK = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 class ArmKinematics:
@@ -23,18 +20,22 @@ class ArmKinematics:
     One instance serves one thread at a time; `twin` makes another one for another thread.
 
     Args:
-        model: The arm; every joint of its URDF that is not an arm joint (fingers) is locked at 0.
+        model: The arm; its tool's joints are locked at 0.
         base: Pose of the model's base link in the world.
+        tool: The tool centre point in the frame of the model's tool link; at its origin when not given.
     """
 
-    def __init__(self, model: RobotModel, *, base: Rigid, solver: Any = None) -> None:
+    def __init__(self, model: RobotModel, *, base: Rigid, tool: Rigid | None = None, solver: Any = None) -> None:
         self.model = model
         self.base = base
-        self._solver = _reduced(model) if solver is None else solver
+        self.tool = tool or _AT_THE_LINK
+        self._solver = arm_model(model) if solver is None else solver
         self._data = self._solver.createData()
         self._tool = self._solver.getFrameId(model.tool_link)
-        self._to_base = base.inverse()
-        self._turn = np.kron(np.eye(2), base.rotation)
+        self._offset = _Offset(self._solver.frames[self._tool], self.tool) if tool is not None else None
+        self._rotation = base.rotation
+        self._turn = np.kron(np.eye(2), self._rotation)
+        self._armature = np.diag(model.armature_kg_m2)
 
     @property
     def dof(self) -> int:
@@ -48,20 +49,34 @@ class ArmKinematics:
 
     def twin(self) -> ArmKinematics:
         """Return an instance for use by another thread."""
-        return ArmKinematics(self.model, base=self.base, solver=self._solver)
+        return ArmKinematics(self.model, base=self.base, tool=self._own_tool(), solver=self._solver)
+
+    def with_tool(self, tool: Rigid) -> ArmKinematics:
+        """Return an instance of its own whose tool centre point is at `tool` in the frame of the tool link."""
+        return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
+
+    def mass_matrix(self, joints: Array) -> Array:
+        """Return the arm's mass matrix, (n, n), kg m², the inertia of its motors included."""
+        return pin.crba(self._solver, self._data, joints) + self._armature
 
     def tool_pose(self, joints: Array) -> Rigid:
         """Return the tool centre point in the world for joints of shape (n,)."""
         pin.forwardKinematics(self._solver, self._data, joints)
-        return self.base.then(self._tool_in_base())
+        return self._tool_in_world()
 
     def tool_pose_and_jacobian(self, joints: Array) -> tuple[Rigid, Array]:
         """Return the tool pose and the Jacobian, shape (6, n): tool velocity (m/s, then rad/s, in world axes)."""
         # computeFrameJacobian would leave the frame placements of an earlier configuration.
         pin.computeJointJacobians(self._solver, self._data, joints)
-        pose = self._tool_in_base()
-        jacobian = pin.getFrameJacobian(self._solver, self._data, self._tool, pin.LOCAL_WORLD_ALIGNED)
-        return self.base.then(pose), self._turn @ jacobian
+        pose = self._tool_in_world()
+        offset = self._offset
+        if offset is None:
+            jacobian = pin.getFrameJacobian(self._solver, self._data, self._tool, pin.LOCAL_WORLD_ALIGNED)
+        else:
+            jacobian = pin.getFrameJacobian(
+                self._solver, self._data, offset.joint, offset.placement, pin.LOCAL_WORLD_ALIGNED
+            )
+        return pose, self._turn @ jacobian
 
     def dexterity(self, joints: Array) -> float:
         """Return how far the arm is from a singularity: the smallest singular value of the Jacobian.
@@ -72,20 +87,23 @@ class ArmKinematics:
         _, jacobian = self.tool_pose_and_jacobian(joints)
         return float(np.linalg.svd(jacobian, compute_uv=False)[-1])
 
-    def _tool_in_base(self) -> Rigid:
-        placement = pin.updateFramePlacement(self._solver, self._data, self._tool)
-        return Rigid(xyz=placement.translation.copy(), xyzw=np.array(pin.Quaternion(placement.rotation).coeffs()))
+    def _own_tool(self) -> Rigid | None:
+        return None if self._offset is None else self.tool
+
+    def _tool_in_world(self) -> Rigid:
+        offset = self._offset
+        if offset is None:
+            placement = pin.updateFramePlacement(self._solver, self._data, self._tool)
+        else:
+            placement = self._data.oMi[offset.joint] * offset.placement
+        # As base.then(…), whose rotation need not be worked out anew in every control period.
+        xyzw = np.array(pin.Quaternion(placement.rotation).coeffs())
+        return Rigid(xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw))
 
 
-def _reduced(model: RobotModel) -> Any:
-    full = pin.buildModelFromUrdf(str(model.urdf))
-    for joint in model.arm_joints:
-        if not full.existJointName(joint):
-            raise CellError(f"the URDF has no joint {joint}", where=model.urdf, hint="correct the robot model")
-    if not full.existFrame(model.tool_link):
-        raise CellError(f"the URDF has no link {model.tool_link}", where=model.urdf, hint="correct the robot model")
-    locked = [full.getJointId(name) for name in list(full.names)[1:] if name not in model.arm_joints]
-    reduced = pin.buildReducedModel(full, locked, pin.neutral(full))
-    if tuple(reduced.names)[1:] != model.arm_joints:
-        raise CellError("the joints of the robot model are not in the order of the URDF", where=model.urdf)
-    return reduced
+class _Offset:
+    """A tool centre point that is not at the origin of the tool link: the joint that carries it, and where."""
+
+    def __init__(self, frame: Any, tool: Rigid) -> None:
+        self.joint: int = frame.parentJoint
+        self.placement: Any = frame.placement * pin.SE3(tool.rotation, tool.xyz)

@@ -1,27 +1,95 @@
-"""Which robot models there are: a name in a cell document → the maker of its `RobotModel`."""
+"""Which robot and tool models there are, and the model of an arm with a tool: built-in folders and the user's own."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from difflib import get_close_matches
+from functools import lru_cache
+from pathlib import Path
 
 from engine.errors import CellError
-from robots.model.panda import panda
+from engine.nearness import near_names
+from robots.model.composition import compose
+from robots.model.model_folder import ROBOT_FILE, TOOL_FILE, load_arm, load_tool
 from robots.model.robot_model import RobotModel
 
-MODELS: Mapping[str, Callable[[], RobotModel]] = {"panda": panda}
-"""Adding a robot is one file with a maker, and its line here."""
+ARMS_DIR = Path(__file__).parents[1] / "arms"
+TOOLS_DIR = Path(__file__).parents[1] / "tools"
+
+OWN_TOOL = "own"
+"""Stands for the tool that an arm is delivered with, as its `robot.yaml` says; none if it says nothing."""
+
+
+def robot_names() -> tuple[str, ...]:
+    """Return the names of the built-in arms, sorted."""
+    return _names(ARMS_DIR, ROBOT_FILE)
+
+
+def tool_names() -> tuple[str, ...]:
+    """Return the names of the built-in tools, sorted."""
+    return _names(TOOLS_DIR, TOOL_FILE)
 
 
 def model_by_name(name: str) -> RobotModel:
-    """Return the robot model `name`.
+    """Return the arm `name` with the tool it is delivered with; see `robot_model`."""
+    return robot_model(name)
+
+
+def robot_model(
+    name: str, *, gripper: str | None = OWN_TOOL, calibration: Path | None = None, coupled_joints: bool = False
+) -> RobotModel:
+    """Return the model of an arm with a tool at its flange; made once and kept.
+
+    Args:
+        name: A built-in arm, or the path of a folder with a `robot.yaml`.
+        gripper: A built-in tool, the path of a folder with a `tool.yaml`, None for the bare flange,
+            or `OWN_TOOL`.
+        calibration: Factory calibration file of this very arm.
+        coupled_joints: The controller counts coupled axes, as an ABB controller does (see `JointMap`).
 
     Raises:
-        CellError: no such model (names the near ones), or its description is not installed.
+        CellError: no such model (names the near ones), its description is not installed, or it has no such option.
+        DocumentError: a document of a folder is wrong; `where` is the position.
     """
-    maker = MODELS.get(name)
-    if maker is None:
-        near = get_close_matches(name, MODELS, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"known models: {', '.join(sorted(MODELS))}"
-        raise CellError(f"no robot model is called {name}", where=name, hint=hint)
-    return maker()
+    arm = _folder(name, ARMS_DIR, ROBOT_FILE, "robot model")
+    if gripper == OWN_TOOL:
+        gripper = load_arm(arm).document.tool
+    tool = _folder(gripper, TOOLS_DIR, TOOL_FILE, "gripper model") if gripper is not None else None
+    changed = tuple(_changed_ns(path) for path in (arm, tool, calibration))
+    return _composed(arm, tool, calibration, coupled_joints, changed)
+
+
+# `changed` makes an edited folder another model: who works on one need not start anew.
+@lru_cache(maxsize=64)
+def _composed(
+    arm: Path, tool: Path | None, calibration: Path | None, coupled_joints: bool, changed: tuple[int, ...]
+) -> RobotModel:
+    try:
+        return compose(
+            load_arm(arm),
+            load_tool(tool) if tool is not None else None,
+            calibration=calibration,
+            coupled_joints=coupled_joints,
+        )
+    except CellError as error:
+        raise CellError(
+            error.message, where=error.where if error.where is not None else arm.name, hint=error.hint
+        ) from error
+
+
+def _changed_ns(path: Path | None) -> int:
+    if path is None or not path.exists():
+        return 0
+    files = [file for file in path.rglob("*") if file.is_file()] if path.is_dir() else [path]
+    return max((file.stat().st_mtime_ns for file in files), default=0)
+
+
+def _folder(name: str, directory: Path, file: str, what: str) -> Path:
+    if name.startswith(".") or "/" in name:
+        return Path(name)
+    known = _names(directory, file)
+    if name not in known:
+        raise CellError(f"no {what} is called {name}", where=name, hint=near_names(name, known))
+    return directory / name
+
+
+def _names(directory: Path, file: str) -> tuple[str, ...]:
+    return tuple(sorted(path.parent.name for path in directory.glob(f"*/{file}")))

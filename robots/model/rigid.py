@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,8 +29,8 @@ class Rigid:
             ValueError: a number is not finite or the quaternion has no direction.
         """
         position, quaternion = np.array(xyz, dtype=np.float64), np.array(xyzw, dtype=np.float64)
-        length = float(np.linalg.norm(quaternion))
-        if not (np.isfinite(position).all() and np.isfinite(quaternion).all()) or length < 1e-6:
+        length = math.hypot(*quaternion.tolist())
+        if not (np.isfinite(position).all() and math.isfinite(length)) or length < 1e-6:
             raise ValueError(f"xyz {tuple(xyz)}, xyzw {tuple(xyzw)} is not a pose")
         return cls(xyz=position, xyzw=quaternion / length)
 
@@ -85,6 +86,13 @@ def product(left: Array, right: Array) -> Array:
             lw * rw - lx * rx - ly * ry - lz * rz,
         ]
     )
+
+
+def cross(left: Array, right: Array) -> Array:
+    """Return the cross product of two vectors of shape (3,), which numpy takes long for."""
+    ax, ay, az = left.tolist()
+    bx, by, bz = right.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 def conjugate(xyzw: Array) -> Array:

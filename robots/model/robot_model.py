@@ -1,9 +1,14 @@
-"""What a robot arm is, as data: description files, joints, limits, tool, gripper, licence."""
+"""What a robot arm with its tool is, as data: one URDF text, joints, limits, tool, home, licence."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+
+from robots.model.joint_map import JointMap
+from robots.model.tool_model import GripperModel, PadBox, ToolModel
+
+__all__ = ["GripperModel", "JointLimits", "PadBox", "RobotModel"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,61 +24,50 @@ class JointLimits:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PadBox:
-    """The rubber tip of one finger as a box: centre in the finger link's frame, full edge lengths, metres."""
-
-    link: str
-    xyz: tuple[float, float, float]
-    size_m: tuple[float, float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class GripperModel:
-    """A two-finger parallel gripper that is part of the arm's description.
-
-    Each finger joint moves half of the opening; both pads touch when the opening is 0.
-    `finger_joints[1]` mimics `finger_joints[0]`.
-    """
-
-    name: str
-    hand_link: str
-    finger_joints: tuple[str, str]
-    finger_links: tuple[str, str]
-    pads: tuple[PadBox, PadBox]
-    max_width_m: float
-    max_speed_m_s: float
-    max_force_n: float
-
-
-@dataclass(frozen=True, kw_only=True)
 class RobotModel:
-    """One arm with its tool, as its description files and data sheet give it.
+    """One arm with the tool at its flange, as its folder, its tool's folder and its calibration make it.
 
-    `urdf` has the visual meshes, `collision_urdf` the same kinematics with primitive collision
-    shapes; both may use `package://` URIs below `package_dir`. `tool_link` is a link of the URDF
-    whose origin is the tool centre point. `allowed_collisions` are pairs of links that never
-    collide or may touch (from the SRDF). `home_rad` is the resting configuration.
+    `urdf_text` is the one description that kinematics, dynamics, collision, simulation, view and bus
+    use: visual and collision shapes, the tool joined to `flange_link` by a fixed joint. Its mesh
+    `filename`s are `package://<path>` below one of `package_dirs` (see `description.resolve_uri`).
+    The root of the URDF is `base_link`. `tool_link` is the link whose origin is the tool centre point
+    (the flange without a tool). `allowed_collisions` are pairs of links that never collide or may
+    touch. `home_rad` is the resting configuration. `joint_map` leads to the angles that the robot's
+    own controller speaks of.
     """
 
     name: str
-    urdf: Path
-    collision_urdf: Path
-    package_dir: Path
+    title: str
+    urdf_text: str
+    package_dirs: tuple[Path, ...]
     base_link: str
+    flange_link: str
+    tool_link: str
     arm_joints: tuple[str, ...]
     limits: JointLimits
-    tool_link: str
     home_rad: tuple[float, ...]
-    gripper: GripperModel | None
+    armature_kg_m2: tuple[float, ...]
+    tool: ToolModel | None
     allowed_collisions: tuple[tuple[str, str], ...]
+    joint_map: JointMap
+    calibration: str
+    """Hash of the factory calibration that is applied, empty for the nominal arm."""
     licence: str
     licence_file: Path
+    digital_outputs: int = 0
+    """General purpose outputs of the robot's controller, numbered from 0."""
 
     @property
     def dof(self) -> int:
-        """Number of arm joints n, gripper joints not counted."""
+        """Number of arm joints n, tool joints not counted."""
         return len(self.arm_joints)
 
+    @property
+    def gripper(self) -> GripperModel | None:
+        """The parallel gripper at the flange; None without a tool and for tools of another kind."""
+        mechanism = self.tool.mechanism if self.tool is not None else None
+        return mechanism if isinstance(mechanism, GripperModel) else None
+
     def licence_text(self) -> str:
-        """Return the full text of the licence that the description came with."""
+        """Return the full text of the licence that the arm's description came with."""
         return self.licence_file.read_text(encoding="utf-8")

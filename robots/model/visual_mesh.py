@@ -1,4 +1,4 @@
-"""The visual meshes of a robot's links: read from its URDF's DAE files, split by colour, thinned out."""
+"""The visual meshes of a robot's links: mesh files split by colour and thinned out, primitives made into meshes."""
 
 from __future__ import annotations
 
@@ -23,6 +23,8 @@ Rgba = tuple[float, float, float, float]
 _KEEP = 0.1
 _LEAST_FACES = 150
 _RECIPE = f"visual mesh 1, keep {_KEEP}, least {_LEAST_FACES}"
+_ROUND = 32
+_PLAIN: Rgba = (0.7, 0.7, 0.7, 1.0)
 
 
 class VisualMesh(msgspec.Struct, frozen=True, kw_only=True):
@@ -51,17 +53,60 @@ def link_visuals(model: RobotModel, *, cache: Path | None = None) -> tuple[LinkV
     folder = cache if cache is not None else cache_dir()
     known: dict[Path, tuple[VisualMesh, ...]] = {}
     visuals: list[LinkVisual] = []
-    for link in ET.parse(model.urdf).getroot().iter("link"):
+    for link in ET.fromstring(model.urdf_text).iter("link"):
         for visual in link.findall("visual"):
-            mesh = visual.find("geometry/mesh")
-            if mesh is None:
-                continue
-            path = resolve_uri(mesh.attrib["filename"], package_dir=model.package_dir, relative_to=model.urdf.parent)
-            if path not in known:
-                known[path] = _meshes(path, folder)
             xyz, xyzw = _origin(visual.find("origin"))
-            visuals += [LinkVisual(link=link.attrib["name"], mesh=m, xyz=xyz, xyzw=xyzw) for m in known[path]]
+            meshes = _described(visual, model, known, folder)
+            visuals += [LinkVisual(link=link.attrib["name"], mesh=m, xyz=xyz, xyzw=xyzw) for m in meshes]
     return tuple(visuals)
+
+
+def _described(
+    visual: ET.Element, model: RobotModel, known: dict[Path, tuple[VisualMesh, ...]], folder: Path
+) -> tuple[VisualMesh, ...]:
+    colour, mesh = _described_colour(visual), visual.find("geometry/mesh")
+    if mesh is None:
+        return _primitive(visual, colour or _PLAIN)
+    path = resolve_uri(mesh.attrib["filename"], package_dirs=model.package_dirs, relative_to=Path())
+    if path not in known:
+        known[path] = _meshes(path, folder)
+    scale = tuple(float(v) for v in mesh.attrib.get("scale", "1 1 1").split())
+    # Collada files bring their colours; what the URDF says is for formats that have none.
+    fixed = colour if path.suffix.lower() != ".dae" else None
+    return tuple(_adjusted(each, scale, fixed) for each in known[path])
+
+
+def _adjusted(mesh: VisualMesh, scale: tuple[float, ...], colour: Rgba | None) -> VisualMesh:
+    if scale == (1.0, 1.0, 1.0) and colour is None:
+        return mesh
+    vertices = np.frombuffer(mesh.vertices, np.float32).reshape(-1, 3) * np.array(scale, np.float32)
+    return VisualMesh(vertices=vertices.tobytes(), faces=mesh.faces, rgba=colour or mesh.rgba)
+
+
+def _primitive(visual: ET.Element, colour: Rgba) -> tuple[VisualMesh, ...]:
+    trimesh: Any = import_module("trimesh")
+    for shape in visual.findall("geometry/*"):
+        numbers = {key: [float(v) for v in text.split()] for key, text in shape.attrib.items()}
+        match shape.tag:
+            case "box":
+                made = trimesh.creation.box(extents=numbers["size"])
+            case "cylinder":
+                made = trimesh.creation.cylinder(numbers["radius"][0], numbers["length"][0], sections=_ROUND)
+            case "sphere":
+                made = trimesh.creation.icosphere(subdivisions=2, radius=numbers["radius"][0])
+            case _:
+                continue
+        vertices, faces = np.asarray(made.vertices, np.float32), np.asarray(made.faces, np.uint32)
+        return (VisualMesh(vertices=vertices.tobytes(), faces=faces.tobytes(), rgba=colour),)
+    return ()
+
+
+def _described_colour(visual: ET.Element) -> Rgba | None:
+    colour = visual.find("material/color")
+    if colour is None:
+        return None
+    red, green, blue, alpha = (float(v) for v in colour.attrib["rgba"].split())
+    return (red, green, blue, alpha)
 
 
 def _meshes(path: Path, folder: Path) -> tuple[VisualMesh, ...]:
@@ -92,7 +137,8 @@ def _converted(path: Path) -> tuple[VisualMesh, ...]:
 
 
 def _color(geometry: Any) -> Rgba:
-    channels = [float(c) / 255.0 for c in np.asarray(geometry.visual.material.main_color)]
+    material = getattr(geometry.visual, "material", geometry.visual)
+    channels = [float(c) / 255.0 for c in np.asarray(material.main_color)]
     return (channels[0], channels[1], channels[2], channels[3])
 
 

@@ -19,9 +19,13 @@ ACCELERATION_SHARE = 0.5
 """Share of the joints' acceleration used at speed 1; the rest is left to holding, stopping and tracking."""
 
 _SAMPLE_S = 0.002
+# Slow motions get no more samples than this: the profile keeps its shape, however long it takes.
+_MOST_SAMPLES = 20_000
 # The interpolation between two samples may overshoot the velocity at a corner of the trapezoid.
 _VELOCITY_SHARE = 0.995
 _NO_WAY_RAD = 1e-9
+# Slower than this a motion would take days.
+_SLOWEST_SHARE = 1e-5
 _NO_SHARE = 1e-12
 
 
@@ -40,9 +44,11 @@ def plan_joints(
     `jerk_limited` the acceleration is ramped within the joint jerk limits.
 
     Raises:
-        RobotError: the goal has another number of joints, or one beyond its limit.
+        RobotError: the goal has another number of joints, or one beyond its limit; the speed is no share.
     """
     _check_goal(goal, limits, joint_names)
+    if not _SLOWEST_SHARE <= speed <= 1.0:
+        raise RobotError(f"the speed cannot be {speed:g}", hint=f"give a share from {_SLOWEST_SHARE:g} to 1")
     farthest = float(np.abs(goal - start).max())
     if farthest < _NO_WAY_RAD:
         return _standing(start, goal)
@@ -85,7 +91,7 @@ def _check_goal(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) 
 
 def _sampled(profile: Any, start: Array, goal: Array, farthest: float) -> JointTrajectory:
     duration_s = float(profile.duration)
-    intervals = max(1, math.ceil(duration_s / _SAMPLE_S))
+    intervals = min(_MOST_SAMPLES, max(1, math.ceil(duration_s / _SAMPLE_S)))
     dt_s = duration_s / intervals
     states = [profile.at_time(i * dt_s) for i in range(intervals + 1)]
     share = np.array([state[0] for state in states], dtype=np.float64) / farthest

@@ -8,6 +8,8 @@ from robots.port import Array
 
 PEAK_SPEED = 1.875
 """Greatest speed of the profile, as a multiple of the mean speed."""
+PEAK_ACCELERATION = 10.0 / 3.0**0.5
+"""Greatest acceleration of the profile, as a multiple of way / time²."""
 
 
 def min_jerk(share: Array) -> Array:

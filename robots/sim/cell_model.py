@@ -11,26 +11,21 @@ from numpy.typing import NDArray
 
 from engine.errors import CellError
 from engine.messages import Pose
-from robots.model.registry import model_by_name
-from robots.model.robot_model import GripperModel, RobotModel
-from robots.sim.arm_spec import arm_spec, pad_geom_name
+from robots.model.robot_model import RobotModel
+from robots.sim.arm_spec import arm_spec
+from robots.sim.grip.tool_indices import ToolIndices, tool_indices
 from robots.sim.physics import mujoco
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 
 Indices = NDArray[np.intp]
 
 _BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
-
-
-@dataclass(frozen=True, kw_only=True)
-class GripperIndices:
-    """Addresses of one gripper's two fingers, left then right."""
-
-    model: GripperModel
-    qpos: Indices
-    dof: Indices
-    motor: Indices
-    pad_geoms: tuple[int, int]
+_SPHERE = mujoco.mjtGeom.mjGEOM_SPHERE
+# The skin of what gives way is soft at first touch: where MuJoCo's default of 0.9 spreads a force over the
+# corners of flat pads, what slides on it loses contact again and again (`benchmarks/sliding.py`).
+_SKIN_SOLIMP = (0.5, 0.95, 0.001, 0.5, 2.0)
+# Its contact counts, whatever touches it; pads have 1.
+_SKIN_PRIORITY = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +38,7 @@ class ArmIndices:
     dof: Indices
     motor: Indices
     bodies: frozenset[int]
-    gripper: GripperIndices | None
+    tool: ToolIndices | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,14 +69,15 @@ def build_cell(scene: Scene) -> CellModel:
         _add_fixture(spec, fixture)
     for part in scene.parts:
         _add_part(spec, part)
-    models = {name: model_by_name(name) for name in dict.fromkeys(arm.model for arm in scene.arms)}
+    models = {arm.name: arm.robot() for arm in scene.arms}
     for arm in scene.arms:
-        _add_arm(spec, arm, models[arm.model], scene.fixtures)
+        _add_arm(spec, arm, models[arm.name], scene.fixtures)
     try:
         compiled = spec.compile()
     except ValueError as error:
         raise CellError(f"the cell cannot be simulated: {error}", hint="check names, sizes and masses") from error
-    arms = tuple(_arm_indices(compiled, arm.name, models[arm.model]) for arm in scene.arms)
+    ferrous = tuple(part.name for part in scene.parts if part.magnetic)
+    arms = tuple(_arm_indices(compiled, arm.name, models[arm.name], ferrous=ferrous) for arm in scene.arms)
     frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
@@ -118,10 +114,21 @@ def _wxyz(pose: Pose) -> list[float]:
 def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
     body = spec.worldbody.add_body(name=fixture.name, pos=list(fixture.pose.xyz), quat=_wxyz(fixture.pose))
     if fixture.shape != "tray":
-        _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
+        geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
+        if fixture.spring_n_m > 0.0:
+            _add_spring(body, geom, fixture)
         return
     for centre, size in tray_boxes(fixture):
         body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])
+
+
+def _add_spring(body: Any, geom: Any, fixture: FixtureBody) -> None:
+    joint = body.add_joint(name=fixture.name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0.0, 0.0, 1.0])
+    joint.stiffness[0] = fixture.spring_n_m
+    joint.damping[0] = fixture.spring_ns_m
+    geom.mass = fixture.sprung_kg
+    geom.priority, geom.solimp = _SKIN_PRIORITY, list(_SKIN_SOLIMP)
+    geom.friction[0] = fixture.skin_friction
 
 
 def tray_boxes(
@@ -156,11 +163,13 @@ def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, c
             kind, size = _BOX, half
         case "cylinder", 2:
             kind, size = _CYLINDER, [half[0], half[1], 0.0]
+        case "sphere", 1:
+            kind, size = _SPHERE, [half[0], 0.0, 0.0]
         case _:
             raise CellError(
                 f"a {shape} cannot have the size {list(size_m)}",
                 where=name,
-                hint="box: three edge lengths; cylinder: diameter and length",
+                hint="box: three edge lengths; cylinder: diameter and length; sphere: diameter",
             )
     return body.add_geom(name=name, type=kind, size=size, condim=condim)
 
@@ -180,7 +189,7 @@ def _links(model: Any, arm: str) -> list[str]:
     return [name.removeprefix(prefix) for name in names if name.startswith(prefix)]
 
 
-def _arm_indices(model: Any, name: str, robot: RobotModel) -> ArmIndices:
+def _arm_indices(model: Any, name: str, robot: RobotModel, *, ferrous: tuple[str, ...]) -> ArmIndices:
     joints = [f"{name}/{joint}" for joint in robot.arm_joints]
     prefix = f"{name}/"
     return ArmIndices(
@@ -190,19 +199,7 @@ def _arm_indices(model: Any, name: str, robot: RobotModel) -> ArmIndices:
         dof=_ints(model.joint(j).dofadr[0] for j in joints),
         motor=_ints(model.actuator(j).id for j in joints),
         bodies=frozenset(i for i in range(model.nbody) if str(model.body(i).name).startswith(prefix)),
-        gripper=_gripper_indices(model, name, robot.gripper) if robot.gripper is not None else None,
-    )
-
-
-def _gripper_indices(model: Any, name: str, gripper: GripperModel) -> GripperIndices:
-    joints = [f"{name}/{joint}" for joint in gripper.finger_joints]
-    left, right = (int(model.geom(f"{name}/{pad_geom_name(pad)}").id) for pad in gripper.pads)
-    return GripperIndices(
-        model=gripper,
-        qpos=_ints(model.joint(j).qposadr[0] for j in joints),
-        dof=_ints(model.joint(j).dofadr[0] for j in joints),
-        motor=_ints(model.actuator(j).id for j in joints),
-        pad_geoms=(left, right),
+        tool=tool_indices(model, name, robot.tool, ferrous=ferrous) if robot.tool is not None else None,
     )
 
 

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from engine.document.cell import CellDocument, RobotEntry
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+from engine.document.cell import CellDocument, Fixture, RobotEntry
 from engine.errors import CellError
-from robots.model.registry import model_by_name
 from robots.sim.jitter import jittered
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Rgba, Scene
 
+Resolve = Callable[[str], Path]
 
-def scene_of(document: CellDocument, *, seed: int | None = None) -> Scene:
+
+def scene_of(document: CellDocument, *, seed: int | None = None, resolve: Resolve = Path) -> Scene:
     """Return the scene of a cell; with a `seed`, parts lie off by their jitter.
 
-    Robots with another driver than `sim` are left out.
+    Robots with another driver than `sim` are left out. `resolve` opens the document's paths
+    (`Cell.resolve`).
 
     Raises:
         CellError: a robot or gripper model is unknown, or the cell has no world.
+        DocumentError: a model folder or a calibration file is wrong.
     """
     world = document.world
     if world is None:
@@ -23,32 +31,50 @@ def scene_of(document: CellDocument, *, seed: int | None = None) -> Scene:
     return Scene(
         step_s=world.step_s,
         gravity=world.gravity,
-        arms=tuple(_arm(name, robot) for name, robot in document.robots.items() if robot.simulated),
-        fixtures=tuple(
-            FixtureBody(
-                name=name,
-                shape=fixture.shape,
-                size_m=fixture.size_m,
-                wall_m=fixture.wall_m,
-                pose=fixture.at.pose(),
-                rgba=_rgba(fixture.color),
-            )
-            for name, fixture in document.fixtures.items()
-        ),
+        arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
+        fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
     )
 
 
-def _arm(name: str, robot: RobotEntry) -> ArmPlacement:
-    model = model_by_name(robot.model)
-    wanted = robot.gripper.model if robot.gripper is not None else None
-    own = model.gripper.name if model.gripper is not None else None
-    if wanted != own:
-        hint = f"write `gripper: {{model: {own}}}`" if own else "remove `gripper`"
-        raise CellError(
-            f"the robot model {model.name} comes with the gripper {own}, not {wanted}", where=name, hint=hint
-        )
-    return ArmPlacement(name=name, model=robot.model, base=robot.base.pose())
+def _fixture(name: str, fixture: Fixture) -> FixtureBody:
+    body = FixtureBody(
+        name=name,
+        shape=fixture.shape,
+        size_m=fixture.size_m,
+        wall_m=fixture.wall_m,
+        pose=fixture.at.pose(),
+        rgba=_rgba(fixture.color),
+    )
+    spring = fixture.spring
+    if spring is None:
+        return body
+    return msgspec.structs.replace(
+        body,
+        spring_n_m=spring.stiffness_n_m,
+        spring_ns_m=spring.damping_ns_m,
+        sprung_kg=spring.mass_kg,
+        skin_friction=spring.friction,
+    )
+
+
+def _arm(name: str, robot: RobotEntry, resolve: Resolve) -> ArmPlacement:
+    def where(model: str) -> str:
+        return str(resolve(model)) if model.startswith(".") or "/" in model else model
+
+    placement = ArmPlacement(
+        name=name,
+        model=where(robot.model),
+        base=robot.base.pose(),
+        gripper=where(robot.gripper.model) if robot.gripper is not None else None,
+        calibration=str(resolve(robot.calibration)) if robot.calibration is not None else None,
+        coupled_joints=robot.coupled_joints,
+    )
+    try:
+        placement.robot()
+    except CellError as error:
+        raise CellError(error.message, where=f"robot {name}", hint=error.hint) from error
+    return placement
 
 
 def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
@@ -63,6 +89,7 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
                 shape=part.shape,
                 size_m=part.size_m,
                 mass_kg=part.mass_kg,
+                magnetic=part.magnetic,
                 pose=pose,
                 rgba=_rgba(part.color),
             )

@@ -2,55 +2,11 @@
 
 from __future__ import annotations
 
-import msgspec
 import numpy as np
 
-from robots.port import Array, JointTrajectory, Tolerance
-
-
-class Command(msgspec.Struct, frozen=True, kw_only=True, tag_field="command"):
-    """Root of the commands; motions are numbered by the sender, from 1, never twice."""
-
-
-class Follow(Command, frozen=True, kw_only=True, tag="follow"):
-    """Follow a trajectory; both arrays are float64 row-major bytes of shape (samples, n)."""
-
-    arm: str
-    motion: int
-    dt_s: float
-    samples: int
-    position: bytes
-    velocity: bytes
-    path_rad: float
-    goal_rad: float
-    settle_s: float
-
-    @classmethod
-    def of(cls, arm: str, motion: int, trajectory: JointTrajectory, tolerance: Tolerance) -> Follow:
-        """Return the command to follow `trajectory`."""
-        return cls(
-            arm=arm,
-            motion=motion,
-            dt_s=trajectory.dt_s,
-            samples=len(trajectory.position_rad),
-            position=_to_bytes(trajectory.position_rad),
-            velocity=_to_bytes(trajectory.velocity_rad_s),
-            path_rad=tolerance.path_rad,
-            goal_rad=tolerance.goal_rad,
-            settle_s=tolerance.settle_s,
-        )
-
-    def trajectory(self) -> JointTrajectory:
-        """Return the trajectory it carries."""
-        return JointTrajectory(
-            dt_s=self.dt_s,
-            position_rad=np.frombuffer(self.position).reshape(self.samples, -1),
-            velocity_rad_s=np.frombuffer(self.velocity).reshape(self.samples, -1),
-        )
-
-    def tolerance(self) -> Tolerance:
-        """Return the tolerance it carries."""
-        return Tolerance(path_rad=self.path_rad, goal_rad=self.goal_rad, settle_s=self.settle_s)
+from engine.messages import Vector3
+from robots.port import Array
+from robots.sim.arm_commands import ArmCommand, Command, to_bytes
 
 
 class CloseTo(Command, frozen=True, kw_only=True, tag="close_to"):
@@ -61,6 +17,26 @@ class CloseTo(Command, frozen=True, kw_only=True, tag="close_to"):
     width_m: float
     speed_m_s: float
     force_n: float
+
+
+class CloseHand(Command, frozen=True, kw_only=True, tag="close_hand"):
+    """Close the hand of `arm` to a share, 0 open to 1, in `time_s`."""
+
+    arm: str
+    motion: int
+    share: float
+    time_s: float
+
+
+class SwitchMagnet(Command, frozen=True, kw_only=True, tag="switch_magnet"):
+    """Switch the magnet of `arm`."""
+
+    arm: str
+    motion: int
+    on: bool
+
+
+ToolCommand = CloseTo | CloseHand | SwitchMagnet
 
 
 class Hold(Command, frozen=True, kw_only=True, tag="hold"):
@@ -91,6 +67,15 @@ class ResetParts(Command, frozen=True, kw_only=True, tag="reset_parts"):
     """Put the free parts back where the scene has them, at rest."""
 
 
+class Push(Command, frozen=True, kw_only=True, tag="push"):
+    """Push at a body with a force (world) at a point of its frame for a while, as a hand does."""
+
+    body: str
+    force_n: Vector3
+    duration_s: float
+    at_m: Vector3 = (0.0, 0.0, 0.0)
+
+
 class Restore(Command, frozen=True, kw_only=True, tag="restore"):
     """Go to where an image of this world was made, at rest; `numbers` are float64 as in `ImageLayout`."""
 
@@ -99,7 +84,7 @@ class Restore(Command, frozen=True, kw_only=True, tag="restore"):
     @classmethod
     def of(cls, image: Array) -> Restore:
         """Return the command to go to `image`."""
-        return cls(numbers=_to_bytes(image))
+        return cls(numbers=to_bytes(image))
 
     def image(self) -> Array:
         """Return the image it carries."""
@@ -110,8 +95,4 @@ class Shutdown(Command, frozen=True, kw_only=True, tag="shutdown"):
     """Bring everything to rest, then end the world's process."""
 
 
-AnyCommand = Follow | CloseTo | Hold | Resume | Cancel | StopAll | ResetParts | Restore | Shutdown
-
-
-def _to_bytes(values: Array) -> bytes:
-    return np.ascontiguousarray(values, dtype=np.float64).tobytes()
+AnyCommand = ArmCommand | ToolCommand | Hold | Resume | Cancel | StopAll | ResetParts | Push | Restore | Shutdown

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from robots.port import Array
 from robots.sim.cell_model import ArmIndices, CellModel
 from robots.sim.physics import Physics
 
@@ -26,20 +27,44 @@ class ContactReader:
         self._names = cell.body_names
         self._parts = frozenset(cell.parts)
         self._geom_body = physics.geom_body
+        # What is not part of a robot or a free part stands for ever.
+        self._movable = frozenset(i for i, name in enumerate(cell.body_names) if name in self._parts or "/" in name)
 
-    def pads(self, pad_geoms: tuple[int, int]) -> tuple[PadContact, PadContact]:
-        """Return what the two pads touch; the fingers of the same hand do not count."""
+    def pads(self, pad_geoms: tuple[int, int], *, axis: Array | None = None) -> tuple[PadContact, PadContact]:
+        """Return what the two pads touch; the fingers of the same hand do not count.
+
+        `axis` is the closing direction in the world, the y axis of each pad by default.
+        """
         left, right = pad_geoms
         pairs = self._physics.contact_pairs()
         if not pairs:
             return PadContact(), PadContact()
         own = (self._geom_body[left], self._geom_body[right])
-        return self._pad(left, own, pairs), self._pad(right, own, pairs)
+        return self._pad(left, own, pairs, axis), self._pad(right, own, pairs, axis)
 
-    def _pad(self, pad: int, own: tuple[int, int], pairs: list[tuple[int, int]]) -> PadContact:
+    def touched(
+        self, places: tuple[frozenset[int], ...], *, own: frozenset[int], fixed: bool = False
+    ) -> tuple[int, ...]:
+        """Return for each place, a set of bodies, the body that it presses hardest, -1 for none.
+
+        The bodies in `own` do not count, nor do fixtures unless `fixed`.
+        """
+        forces: list[dict[int, float]] = [{} for _ in places]
+        for index, (a, b) in enumerate(self._physics.contact_pairs()):
+            body_a, body_b = self._geom_body[a], self._geom_body[b]
+            for mine, other in ((body_a, body_b), (body_b, body_a)):
+                if mine not in own or other in own or not (fixed or other in self._movable):
+                    continue
+                force_n = self._physics.normal_force_n(index)
+                for place, found in zip(places, forces, strict=True):
+                    if mine in place:
+                        found[other] = found.get(other, 0.0) + force_n
+        return tuple(max(found, key=lambda body: found[body]) if found else _NOTHING for found in forces)
+
+    def _pad(self, pad: int, own: tuple[int, int], pairs: list[tuple[int, int]], axis: Array | None) -> PadContact:
         forces: dict[int, float] = {}
-        # Pads face along y. A part held askew presses by normal and friction force together.
-        closing = self._physics.geom_y_axis(pad)
+        # A part held askew presses by normal and friction force together.
+        closing = self._physics.geom_axes(pad)[:, 1] if axis is None else axis
         for index, (a, b) in enumerate(pairs):
             if pad not in (a, b):
                 continue

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from robots.sim.snapshot import ArmSummary
 
-_FINGER_FIELDS = 4
+TOOL_FIELDS = 4
+"""How many numbers say what a tool does; a kind that needs fewer leaves the others 0."""
 
 
 class ImageLayout:
     """Where each quantity lies in an image.
 
     First the steps done, then the physics as MuJoCo hands it out, then for each arm its set point
-    and for each gripper what its fingers do: set point, target, speed, force.
+    and whether it has stopped by itself (1 or 0), and for each tool what it does, as
+    `robots.sim.grip.Mechanics` says it.
     """
 
     def __init__(self, arms: tuple[ArmSummary, ...], *, state_size: int) -> None:
@@ -19,11 +21,13 @@ class ImageLayout:
         self.physics = slice(1, 1 + state_size)
         at = self.physics.stop
         self.set_points: dict[str, slice] = {}
-        self.fingers: dict[str, slice] = {}
+        self.reflexes: dict[str, int] = {}
+        self.tools: dict[str, slice] = {}
         for arm in arms:
             self.set_points[arm.name] = slice(at, at + len(arm.joints))
-            at += len(arm.joints)
-            if arm.gripper_width_m:
-                self.fingers[arm.name] = slice(at, at + _FINGER_FIELDS)
-                at += _FINGER_FIELDS
+            self.reflexes[arm.name] = at + len(arm.joints)
+            at += len(arm.joints) + 1
+            if arm.tool is not None:
+                self.tools[arm.name] = slice(at, at + TOOL_FIELDS)
+                at += TOOL_FIELDS
         self.size = at

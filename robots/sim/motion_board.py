@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable
 
 from engine.errors import RobotError
-from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands import AnyCommand, Cancel, Hold, Resume
 
@@ -74,11 +74,15 @@ class SimMotion:
                 # Of a hold and a resume close together only the last is told; it answers both. What was
                 # asked since then is not answered: it is still on its way to the world.
                 self._answer(event.request)
+            case ReflexTripped():
+                # Its end follows, with the reason.
+                pass
             case MotionFinished():
                 self._last_progress = event.progress
-                self.finish(MotionReport(end=MotionEnd(event.end), reason=event.reason))
+                end = MotionEnd(event.end)
+                self.end_with(MotionReport(end=end, reason=event.reason, contact=event.contact, data=event.data))
 
-    def finish(self, report: MotionReport) -> None:
+    def end_with(self, report: MotionReport) -> None:
         """End it; a second end is ignored."""
         if not self._end.done():
             self._end.set_result(report)
@@ -101,6 +105,9 @@ class MotionBoard:
         self.lost_reason = ""
         self.closed_reason = ""
         """Why no motion may start for now, empty when they may."""
+        self.reflexes: dict[str, str] = {}
+        """Why the arms that have stopped by themselves last did."""
+        self._reflex_listeners: dict[str, list[Callable[[str], None]]] = {}
 
     def next_number(self) -> int:
         """Return a number that no motion has had.
@@ -123,8 +130,16 @@ class MotionBoard:
         """The motions that have not ended."""
         return tuple(self._motions.values())
 
+    def when_reflex(self, arm: str, tell: Callable[[str], None]) -> None:
+        """Call `tell` with the reason whenever an arm stops by itself."""
+        self._reflex_listeners.setdefault(arm, []).append(tell)
+
     def happened(self, event: AnyMotionEvent) -> None:
-        """Pass an event on to its motion."""
+        """Pass an event on to its motion; tell of a reflex also where none is under way."""
+        if isinstance(event, ReflexTripped):
+            self.reflexes[event.arm] = event.reason
+            for tell in self._reflex_listeners.get(event.arm, ()):
+                tell(event.reason)
         motion = self._motions.get(event.motion)
         if motion is None:
             return
@@ -137,5 +152,5 @@ class MotionBoard:
         self.lost_reason = reason
         motions, self._motions = self._motions, {}
         for motion in motions.values():
-            motion.finish(MotionReport(end=MotionEnd.FAILED, reason=reason))
+            motion.end_with(MotionReport(end=MotionEnd.FAILED, reason=reason))
         self._on_lost(reason)

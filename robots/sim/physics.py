@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from robots.model.rigid import cross
 from robots.port import Array
 
 mujoco: Any = import_module("mujoco")
@@ -21,8 +22,10 @@ mujoco: Any = import_module("mujoco")
 class Physics:
     """One MuJoCo world. The arrays are views of its state and stay valid.
 
-    Shapes: `positions` (nq,), `velocities`, `bias` (nv,), `motors` (nu,). `bias` is gravity and
-    Coriolis force at the state that `start_step` has read.
+    Shapes: `positions` (nq,), `velocities`, `bias`, `pull` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
+    `bias` is gravity and Coriolis force at the state that `start_step` has read. `pull` is what else
+    than motors, bias and the joints' own dampers has accelerated them in the last step: the torque that
+    the rest of the world exerts, as torque sensors in the joints and a model of the arm would tell it.
     """
 
     def __init__(self, model: Any) -> None:
@@ -31,6 +34,7 @@ class Physics:
         self._state_kind: Any = mujoco.mjtState.mjSTATE_INTEGRATION
         self._step1, self._step2 = mujoco.mj_step1, mujoco.mj_step2
         self._wrench = np.zeros(6)
+        self._attractions: dict[int, Array] = {}
         self.step_s = float(model.opt.timestep)
         self.dof_count = int(model.nv)
         self.state_size = int(mujoco.mj_stateSize(model, self._state_kind))
@@ -39,6 +43,11 @@ class Physics:
         self.velocities: Array = self._data.qvel
         self.motors: Array = self._data.ctrl
         self.bias: Array = self._data.qfrc_bias
+        self.pull: Array = np.zeros(self.dof_count)
+        self.gravity_m_s2: Array = model.opt.gravity.copy()
+        self._motor_torque: Array = self._data.qfrc_actuator
+        self._passive: Array = self._data.qfrc_passive
+        self._change: Array = np.zeros(self.dof_count)
         self._xpos: Array = self._data.xpos
         self._xquat: Array = self._data.xquat
 
@@ -49,10 +58,53 @@ class Physics:
     def start_step(self) -> None:
         """Compute poses, contacts and bias of the present state."""
         self._step1(self._model, self._data)
+        self._attractions.clear()
 
     def finish_step(self) -> None:
-        """Apply the motors and integrate over one step."""
+        """Apply the motors and what pushes, integrate over one step, and work out `pull` and the wrenches."""
+        np.negative(self.velocities, out=self._change)
+        pushes = self._data.xfrc_applied
+        before = {body: pushes[body].copy() for body in self._attractions}
+        for body, attraction in self._attractions.items():
+            pushes[body] += attraction
         self._step2(self._model, self._data)
+        self._change += self.velocities
+        self._change /= self.step_s
+        mujoco.mj_mulM(self._model, self._data, self.pull, self._change)
+        self.pull += self.bias
+        self.pull -= self._passive
+        self.pull -= self._motor_torque
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        for body, push in before.items():
+            pushes[body] = push
+
+    def body_number(self, name: str) -> int:
+        """Return the number of a body."""
+        return int(self._model.body(name).id)
+
+    def members(self, body: int) -> NDArray[np.intp]:
+        """Return the numbers of a body and of all that hang on it."""
+        found = {body}
+        # A body's parent has a lower number.
+        for child, parent in enumerate(self._model.body_parentid.tolist()):
+            if parent in found:
+                found.add(child)
+        return np.array(sorted(found), dtype=np.intp)
+
+    def point_of(self, body: int, offset: Array) -> Array:
+        """Return a point of a body, given in its frame, in the world at the start of the last step, both (3,)."""
+        return self._xpos[body] + self._data.xmat[body].reshape(3, 3) @ offset
+
+    def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
+        """Return force and torque about `point` (6,), world axes, that contacts and pushes exerted on bodies.
+
+        It is of the last step; the bodies belong to one tree. A force sensor before the first of them
+        would tell the same, once their own weight and inertia are taken out.
+        """
+        sums = self._data.cfrc_ext[bodies].sum(axis=0)
+        centre = self._data.subtree_com[self._model.body_rootid[bodies[0]]]
+        force = sums[3:]
+        return np.concatenate((force, sums[:3] + cross(centre - point, force)))
 
     def inertia_times(self, acceleration: Array, *, out: Array) -> None:
         """Write the forces that would accelerate by `acceleration`, both (nv,)."""
@@ -79,9 +131,38 @@ class Physics:
         frame: Array = self._data.contact.frame[contact].reshape(3, 3)
         return abs(float(axis @ (self._wrench[:3] @ frame)))
 
-    def geom_y_axis(self, geom: int) -> Array:
-        """Return the y axis of a geometry in the world, (3,)."""
-        return self._data.geom_xmat[geom].reshape(3, 3)[:, 1]
+    def geom_axes(self, geom: int) -> Array:
+        """Return the axes of a geometry in the world as columns, (3, 3)."""
+        return self._data.geom_xmat[geom].reshape(3, 3)
+
+    def geom_position(self, geom: int) -> Array:
+        """Return the centre of a geometry in the world, (3,)."""
+        return self._data.geom_xpos[geom]
+
+    def geom_distance(self, geom: int, point: Array) -> float:
+        """Return a lower bound of the distance from a point (world) to a geometry: to the sphere about it."""
+        return float(np.linalg.norm(self._data.geom_xpos[geom] - point)) - float(self._model.geom_rbound[geom])
+
+    def ray(self, geom: int, start: Array, direction: Array) -> float:
+        """Return how far from `start` a ray (world, unit direction) meets a primitive geometry, -1 if it does not."""
+        data, model = self._data, self._model
+        matrix, size, kind = data.geom_xmat[geom], model.geom_size[geom], model.geom_type[geom]
+        return float(mujoco.mju_rayGeom(data.geom_xpos[geom], matrix, size, start, direction, int(kind)))
+
+    def tendon(self, tendon: int) -> tuple[float, float]:
+        """Return the length of a tendon and how fast it grows."""
+        return float(self._data.ten_length[tendon]), float(self._data.ten_velocity[tendon])
+
+    def speed(self, body: int) -> float:
+        """Return how fast the origin of a free body moves, m/s."""
+        dof = int(self._model.body_dofadr[body])
+        return float(np.linalg.norm(self.velocities[dof : dof + 3]))
+
+    def attract(self, body: int, *, force: Array, point: Array) -> None:
+        """Add a field's or hand's force (3,) at a point, both in the world, to the step begun by `start_step` alone."""
+        attraction = self._attractions.setdefault(body, np.zeros(6))
+        attraction[:3] += force
+        attraction[3:] += cross(point - self._data.xipos[body], force)
 
     def body_poses(self, bodies: NDArray[np.intp]) -> tuple[Array, Array]:
         """Return positions (m, 3) and quaternions w x y z (m, 4) of bodies at the start of the last step."""
@@ -97,6 +178,8 @@ class Physics:
         mujoco.mj_resetData(self._model, self._data)
         mujoco.mj_setState(self._model, self._data, state, self._state_kind)
         self.velocities[:] = 0.0
+        self._data.xfrc_applied[:] = 0.0
+        self.pull[:] = 0.0
         self.refresh()
 
     def state_hash(self) -> str:

@@ -1,47 +1,82 @@
 """What a simulated cell consists of, as plain data that can cross a process border.
 
 All poses are in the world frame; sizes are metres. `box` has full edge lengths, `cylinder`
-(diameter, length along z); a `tray` has outer edge lengths and
+(diameter, length along z), `sphere` its diameter; a `tray` has outer edge lengths and
 its pose is the centre of its bottom face, every other pose is the centre of the body.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import msgspec
 
 from engine.messages import Pose
+from robots.model.registry import OWN_TOOL, robot_model
+from robots.model.robot_model import RobotModel
 
 Rgba = tuple[float, float, float, float]
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
 
 
 class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
-    """One arm: its name in the cell, its robot model's name, where its base stands."""
+    """One arm: its name in the cell, what it is made of, where its base stands.
+
+    `model` and `gripper` are names or folders of models; `gripper` is None for a bare flange.
+    `calibration` is the path of the arm's factory calibration file.
+    """
 
     name: str
     model: str
     base: Pose
+    gripper: str | None = OWN_TOOL
+    calibration: str | None = None
+    coupled_joints: bool = False
+
+    def robot(self) -> RobotModel:
+        """Return the model of the arm with its tool.
+
+        Raises:
+            CellError: a model is unknown, or the arm has no such option.
+            DocumentError: a document of a model folder is wrong.
+        """
+        return robot_model(
+            self.model,
+            gripper=self.gripper,
+            calibration=Path(self.calibration) if self.calibration is not None else None,
+            coupled_joints=self.coupled_joints,
+        )
 
 
 class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body that never moves; `wall_m` is the thickness of a tray's floor and walls."""
+    """A body that stays where it is; `wall_m` is the thickness of a tray's floor and walls.
+
+    With `spring_n_m` above 0 it rests on a spring and a damper and gives way along its z axis, as foam
+    or a workpiece on a compliant table does; it then weighs `sprung_kg`, and its soft skin has
+    `skin_friction` whatever touches it.
+    """
 
     name: str
     shape: str
     size_m: tuple[float, ...]
     pose: Pose
     wall_m: float = 0.005
+    spring_n_m: float = 0.0
+    spring_ns_m: float = 60.0
+    sprung_kg: float = 0.1
+    skin_friction: float = 0.3
     rgba: Rgba = GREY
 
 
 class PartBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A free body with uniform density."""
+    """A free body with uniform density; a magnet pulls at those that are `magnetic`."""
 
     name: str
     shape: str
     size_m: tuple[float, ...]
     mass_kg: float
     pose: Pose
+    magnetic: bool = False
     rgba: Rgba = GREY
 
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from scipy.spatial.transform import Rotation
 
 from engine.messages import Pose, SceneDescription, Vector3, VisualGeometry
-from robots.model.registry import model_by_name
 from robots.model.visual_mesh import LinkVisual, link_visuals
 from robots.sim.cell_model import tray_boxes
 from robots.sim.scene import FixtureBody, PartBody, Scene
@@ -18,9 +17,10 @@ def describe_scene(scene: Scene, *, cache: Path | None = None) -> SceneDescripti
 
     Frames are those of `FramePoses`: `<arm>/<link>` and part names; fixtures are fixed to `world`.
     """
-    visuals = {name: link_visuals(model_by_name(name), cache=cache) for name in {arm.model for arm in scene.arms}}
     geometries = [
-        _mesh(arm.name, index, visual) for arm in scene.arms for index, visual in enumerate(visuals[arm.model])
+        _mesh(arm.name, index, visual)
+        for arm in scene.arms
+        for index, visual in enumerate(link_visuals(arm.robot(), cache=cache))
     ]
     for fixture in scene.fixtures:
         geometries += _fixture(fixture)
@@ -85,4 +85,6 @@ def _shape(shape: str, size_m: tuple[float, ...]) -> tuple[str, tuple[float, ...
     if shape == "cylinder":
         diameter, length = size_m
         return "cylinder", (diameter / 2, length)
+    if shape == "sphere":
+        return "sphere", (size_m[0] / 2,)
     return shape, size_m

@@ -10,10 +10,10 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.gripper.grip_judgement import Grip
-from robots.port import Array
+from robots.port import ArmSettings, Array
 from robots.sim.physics import mujoco
 
-FORMAT = 1
+FORMAT = 2
 """Raised whenever the meaning of the bytes changes."""
 
 S = TypeVar("S", bound=msgspec.Struct)
@@ -22,15 +22,29 @@ _NUMBER = np.dtype("<f8")
 
 
 class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
-    """A world at one instant: its numbers as an `ImageLayout` has them, and what each gripper was told to grasp."""
+    """A world at one instant: its numbers as an `ImageLayout` has them, what each gripper was told to grasp,
+    the settings of each arm, why those that have stopped by themselves did, and the digital outputs of those
+    that have some.
+    """
 
     numbers: bytes
     grips: dict[str, Grip]
+    settings: dict[str, ArmSettings]
+    reflexes: dict[str, str]
+    outputs: dict[str, tuple[bool, ...]]
 
     @classmethod
-    def of(cls, numbers: Array, grips: dict[str, Grip]) -> WorldImage:
+    def of(
+        cls,
+        numbers: Array,
+        grips: dict[str, Grip],
+        settings: dict[str, ArmSettings],
+        reflexes: dict[str, str],
+        outputs: dict[str, tuple[bool, ...]],
+    ) -> WorldImage:
         """Return the image with these numbers."""
-        return cls(numbers=numbers.astype(_NUMBER, copy=False).tobytes(), grips=grips)
+        data = numbers.astype(_NUMBER, copy=False).tobytes()
+        return cls(numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs)
 
     def array(self) -> Array:
         """Return the numbers."""

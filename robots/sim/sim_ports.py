@@ -1,101 +1,164 @@
-"""The ports of simulated arms and grippers, alike over both hosts."""
+"""The ports of simulated arms, alike over both hosts."""
 
 from __future__ import annotations
+
+import math
+from collections.abc import Callable
 
 import numpy as np
 
 from engine.errors import RobotError
+from robots.control.force_check import verified_task
 from robots.control.playback import verified
-from robots.port import ArmSample, GripperSample, JointTrajectory, Tolerance
-from robots.sim.commands import AnyCommand, CloseTo, Follow
+from robots.control.settings_check import checked_settings
+from robots.model.robot_model import JointLimits
+from robots.port import ArmSample, ArmSettings, Array, Contact, ForceTask, JointTrajectory, StreamKind, Tolerance
+from robots.sim.arm_commands import Configure, Float, Follow, Listen, Recover, TrackForce
 from robots.sim.host import Host
 from robots.sim.motion_board import MotionBoard, SimMotion
+from robots.sim.one_motion import OneMotion
+from robots.sim.sim_stream import SimStream
 from robots.sim.snapshot import ArmSummary
 
-
-class _OneMotion:
-    """At most one motion of one device at a time."""
-
-    def __init__(self, device: str, board: MotionBoard) -> None:
-        self._device = device
-        self._board = board
-        self._motion: SimMotion | None = None
-
-    def number(self) -> int:
-        """Return the number for the next motion; raises RobotError while one is under way."""
-        if self._motion is not None and not self._motion.ended:
-            raise RobotError(
-                "another motion is under way", where=self._device, hint="wait for its report, or cancel it first"
-            )
-        return self._board.next_number()
-
-    def start(self, motion: SimMotion, host: Host, command: AnyCommand) -> SimMotion:
-        """Give the command and keep the motion; what could not be sent is not under way."""
-        host.send(command)
-        self._board.add(motion)
-        self._motion = motion
-        return motion
+_TWIST = 6
 
 
 class SimArmPort:
-    """Implements `robots.port.ArmPort` for one arm of a simulated world."""
+    """Implements `robots.port.ArmPort` for one arm of a simulated world.
 
-    def __init__(self, host: Host, board: MotionBoard, arm: ArmSummary) -> None:
+    What starts a motion raises RobotError while another one is under way, while a reflex is not
+    recovered from, and when the world is gone.
+    """
+
+    def __init__(self, host: Host, board: MotionBoard, arm: ArmSummary, limits: JointLimits) -> None:
         self._host = host
+        self._board = board
         self._arm = arm
-        self._one = _OneMotion(arm.name, board)
+        self._limits = limits
+        self._settings = ArmSettings()
+        self._one = OneMotion(arm.name, board)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
         """Names in order."""
         return self._arm.joints
 
+    @property
+    def settings(self) -> ArmSettings:
+        """What is in force."""
+        return self._settings
+
+    @property
+    def reflex_reason(self) -> str:
+        """Why the arm has stopped by itself; empty where it has not."""
+        return self._board.reflexes.get(self._arm.name, "") if self.sample().reflex else ""
+
+    def when_reflex(self, tell: Callable[[str], None]) -> None:
+        """Call `tell` with the reason whenever the arm stops by itself."""
+        self._board.when_reflex(self._arm.name, tell)
+
     def sample(self) -> ArmSample:
         """The newest measurement."""
         return self._host.snapshot().arm(self._arm.name)
 
-    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance) -> SimMotion:
-        """Start following.
+    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: Contact | None = None) -> SimMotion:
+        """Start following; with `until` a contact on the way ends the motion.
 
         Raises:
-            RobotError: another motion is under way, the trajectory does not start at the set point
-                at rest, or the world is gone.
+            RobotError: as for all motions; the trajectory does not start at the set point at rest, or the
+                contact is none.
         """
-        number = self._one.number()
-        name, host = self._arm.name, self._host
-        checked = verified(trajectory, start_rad=np.asarray(self.sample().desired_rad), joints=self._arm.joints)
-        motion = SimMotion(number, send=host.send, progress=lambda: host.snapshot().arm_progress(name, number))
-        return self._one.start(motion, host, Follow.of(name, number, checked, tolerance))
+        number = self._next_number()
+        if until is not None:
+            self._check_contact(until)
+        checked = verified(trajectory, start_rad=self._set_point(), joints=self._arm.joints)
+        motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
+        return self._one.start(motion, self._host, Follow.of(self._arm.name, number, checked, tolerance, until))
 
-
-class SimGripperPort:
-    """Implements `robots.port.GripperPort` for the hand of one arm of a simulated world."""
-
-    def __init__(self, host: Host, board: MotionBoard, arm: ArmSummary) -> None:
-        self._host = host
-        self._arm = arm
-        self._one = _OneMotion(f"{arm.name}/gripper", board)
-
-    @property
-    def max_width_m(self) -> float:
-        """Opening when fully open."""
-        return self._arm.gripper_width_m
-
-    def sample(self) -> GripperSample:
-        """The newest measurement."""
-        return self._host.snapshot().gripper(self._arm.name)
-
-    def close_to(self, *, width_m: float, speed_m_s: float, force_n: float) -> SimMotion:
-        """Move the fingers towards `width_m`, pressing with at most `force_n`.
+    def track_force(self, task: ForceTask, *, tolerance: Tolerance) -> SimMotion:
+        """Start following a tool path while pressing as wanted; the report carries a `ForceRecord`.
 
         Raises:
-            RobotError: another motion is under way, a number is senseless, or the world is gone.
+            RobotError: as for all motions, or the task cannot be done from the present set point.
         """
+        number = self._next_number()
+        checked = verified_task(task, start_rad=self._set_point(), joints=self._arm.joints)
+        motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
+        return self._one.start(motion, self._host, TrackForce.of(self._arm.name, number, checked, tolerance))
+
+    def stream(self, kind: StreamKind, *, watchdog_s: float) -> SimStream:
+        """Start doing what is sent.
+
+        Raises:
+            RobotError: as for all motions, or the watchdog is no time.
+        """
+        number = self._next_number()
+        if not (math.isfinite(watchdog_s) and watchdog_s > 0.0):
+            raise RobotError(f"watchdog_s cannot be {watchdog_s}", where=self._arm.name, hint="give a time above 0")
+        command = Listen(arm=self._arm.name, motion=number, kind=kind, watchdog_s=watchdog_s)
+        return self._start_stream(command, width=_TWIST if kind == "tool_twist" else len(self._arm.joints))
+
+    def guide(self, *, damping: float = 0.0) -> SimStream:
+        """Float in gravity compensation.
+
+        Raises:
+            RobotError: as for all motions, or the damping is no share.
+        """
+        number = self._next_number()
+        if not 0.0 <= damping <= 1.0:
+            raise RobotError(f"damping cannot be {damping}", where=self._arm.name, hint="give a share from 0 to 1")
+        return self._start_stream(Float(arm=self._arm.name, motion=number, damping=damping), width=0)
+
+    def configure(self, settings: ArmSettings) -> None:
+        """Put settings into force from the next control period on.
+
+        Raises:
+            RobotError: a value is out of its range for this arm, or the world is gone.
+        """
+        checked = checked_settings(settings, arm=self._arm.name, joints=self._arm.joints, limits=self._limits)
+        self._host.send(Configure(arm=self._arm.name, settings=checked))
+        self._settings = checked
+
+    def recover(self) -> None:
+        """End a reflex; the arm holds itself where it stands."""
+        self._host.send(Recover(arm=self._arm.name))
+
+    def begin(self) -> None:
+        """Know that the world is a new one, with settings as they are at first."""
+        self._settings = ArmSettings()
+
+    def _next_number(self) -> int:
         number = self._one.number()
-        for what, value in (("width_m", width_m), ("speed_m_s", speed_m_s), ("force_n", force_n)):
-            if not np.isfinite(value) or value < 0.0 or (value == 0.0 and what != "width_m"):
-                raise RobotError(f"{what} cannot be {value}", where=f"{self._arm.name}/gripper")
-        name, host = self._arm.name, self._host
-        motion = SimMotion(number, send=host.send, progress=lambda: host.snapshot().gripper_progress(name, number))
-        command = CloseTo(arm=name, motion=number, width_m=width_m, speed_m_s=speed_m_s, force_n=force_n)
-        return self._one.start(motion, host, command)
+        if self.sample().reflex:
+            why = self.reflex_reason
+            raise RobotError(
+                "the arm has stopped by itself" + (f": {why}" if why else ""),
+                where=self._arm.name,
+                hint="see that its way is free, then recover it",
+            )
+        return number
+
+    def _set_point(self) -> Array:
+        return np.asarray(self.sample().desired_rad)
+
+    def _progress(self, number: int) -> float | None:
+        return self._host.snapshot().arm_progress(self._arm.name, number)
+
+    def _start_stream(self, command: Listen | Float, *, width: int) -> SimStream:
+        number = command.motion
+        stream = SimStream(
+            number, arm=self._arm.name, width=width, send=self._host.send, progress=lambda: self._progress(number)
+        )
+        self._one.start(stream, self._host, command)
+        return stream
+
+    def _check_contact(self, contact: Contact) -> None:
+        length = math.hypot(*contact.direction)
+        if not (math.isfinite(contact.force_n) and contact.force_n > 0.0):
+            raise RobotError(
+                f"a contact cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
+            )
+        if length != 0.0 and not abs(length - 1.0) < 1e-3:
+            raise RobotError(
+                f"{contact.direction} is no direction", where=self._arm.name, hint="give a unit vector, or zero for any"
+            )

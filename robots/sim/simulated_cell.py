@@ -5,11 +5,13 @@ from __future__ import annotations
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.document.cell import Cell
+from engine.errors import CellError
 from robots.arm.arm_server import ArmServer
-from robots.gripper.gripper_server import GripperServer
-from robots.model.registry import model_by_name
+from robots.arm.outputs import Outputs
+from robots.model.robot_model import RobotModel
 from robots.sim.cell_scene import scene_of
 from robots.sim.scene import ArmPlacement
+from robots.sim.tool_servers import tool_server
 from robots.sim.world import SimRobot, SimWorld
 from robots.sim.world import new_world as new_sim_world
 
@@ -20,24 +22,39 @@ def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> 
     Raises:
         CellError: a model is unknown, or a size or gripper does not fit.
     """
-    scene = scene_of(cell.document, seed=seed)
+    scene = scene_of(cell.document, seed=seed, resolve=cell.resolve)
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
-        return tuple(_arm(world, placement, bus.clock) for placement in scene.arms)
+        return tuple(_arm(cell, world, placement, bus.clock) for placement in scene.arms)
 
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots)
 
 
-def _arm(world: SimWorld, placement: ArmPlacement, clock: Clock) -> ArmServer:
-    model = model_by_name(placement.model)
-    gripper = None
-    if model.gripper is not None:
-        gripper = GripperServer(name=f"{placement.name}/gripper", port=world.gripper(placement.name))
+def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock) -> ArmServer:
+    model = placement.robot()
     return ArmServer(
         name=placement.name,
         model=model,
         base=placement.base,
         port=world.arm(placement.name),
         clock=clock,
-        gripper=gripper,
+        gripper=tool_server(world, placement.name, model.tool),
+        outputs=_outputs(cell, world, placement.name, model),
     )
+
+
+def _outputs(cell: Cell, world: SimWorld, name: str, model: RobotModel) -> Outputs | None:
+    """Return the outputs of an arm that has some; raises CellError where the cell names one that it has not."""
+    uses = cell.document.robots[name].outputs
+    for use, output in uses.items():
+        if output >= model.digital_outputs:
+            has = f"the outputs 0 to {model.digital_outputs - 1}" if model.digital_outputs else "no outputs"
+            raise CellError(
+                f"{name} has no output {output} for {use}",
+                where=cell.source.position(("robots", name, "outputs", use)),
+                hint=f"a {model.name} has {has}",
+            )
+    port = world.outputs(name)
+    if port is None:
+        return None
+    return Outputs(name, port, uses={str(use): output for use, output in uses.items()})

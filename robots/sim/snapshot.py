@@ -8,17 +8,19 @@ import msgspec
 import numpy as np
 
 from engine.messages import Quaternion, Vector3
-from robots.port import ArmSample, Array, GripperSample
+from robots.port import ArmSample, Array, GripperSample, HandSample, MagnetSample
+from robots.sim.tool_summary import ToolSummary
 
-_GRIPPER_FIELDS = 7
+# Motion number, progress, three measures of the device, then the contacts.
+_TOOL_FIELDS = 5
 
 
 class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """What one needs to know of an arm to command it; `gripper_width_m` is 0 without a gripper."""
+    """What one needs to know of an arm to command it; `tool` is None for a bare flange."""
 
     name: str
     joints: tuple[str, ...]
-    gripper_width_m: float = 0.0
+    tool: ToolSummary | None = None
 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
@@ -39,20 +41,24 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, kw_only=True)
 class ArmFields:
-    """Where one arm's numbers lie: `joints` is a block of 4 x n, rows as in `ArmSample`."""
+    """Where one arm's numbers lie: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` are six."""
 
     number: int
     progress: int
+    reflex: int
+    wrench: slice
     joints: slice
     dof: int
-    gripper: slice
+    tool: slice
 
 
 class SnapshotLayout:
     """Where each quantity lies in the array; made alike on both sides from the summary.
 
-    A gripper has motion number, progress, width, velocity, force, and the body numbers that its
-    pads touch (-1 for none). Frames have x y z and quaternion w x y z as MuJoCo keeps them.
+    A tool has motion number, progress, three measures, and the body numbers that it touches (-1 for
+    none) at the places its summary counts. The measures of a gripper are width, velocity, force; of a
+    hand closed share, pull and nothing; of a magnet on (1 or 0), pull and nothing. Frames have
+    x y z and quaternion w x y z as MuJoCo keeps them.
     """
 
     def __init__(self, summary: CellSummary) -> None:
@@ -62,10 +68,13 @@ class SnapshotLayout:
         arms: dict[str, ArmFields] = {}
         for arm in summary.arms:
             n = len(arm.joints)
-            joints = slice(at + 2, at + 2 + 4 * n)
-            gripper = slice(joints.stop, joints.stop + _GRIPPER_FIELDS)
-            arms[arm.name] = ArmFields(number=at, progress=at + 1, joints=joints, dof=n, gripper=gripper)
-            at = gripper.stop
+            wrench = slice(at + 3, at + 9)
+            joints = slice(wrench.stop, wrench.stop + 5 * n)
+            tool = slice(joints.stop, joints.stop + (_TOOL_FIELDS + arm.tool.contacts if arm.tool else 0))
+            arms[arm.name] = ArmFields(
+                number=at, progress=at + 1, reflex=at + 2, wrench=wrench, joints=joints, dof=n, tool=tool
+            )
+            at = tool.stop
         self.arms = arms
         frames = len(summary.frames)
         self.positions = slice(at, at + 3 * frames)
@@ -92,13 +101,16 @@ class Snapshot:
     def arm(self, name: str) -> ArmSample:
         """The measurement of one arm."""
         fields = self._layout.arms[name]
-        block = self._values[fields.joints].reshape(4, fields.dof)
+        block = self._values[fields.joints].reshape(5, fields.dof)
         return ArmSample(
             time_s=self.time_s,
             position_rad=block[0],
             velocity_rad_s=block[1],
             effort_nm=block[2],
             desired_rad=block[3],
+            external_nm=block[4],
+            wrench=self._values[fields.wrench],
+            reflex=bool(self._values[fields.reflex]),
         )
 
     def arm_progress(self, name: str, motion: int) -> float | None:
@@ -107,19 +119,26 @@ class Snapshot:
         return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
 
     def gripper(self, name: str) -> GripperSample:
-        """The measurement of one gripper."""
-        _, _, width, velocity, force, left, right = self._values[self._layout.arms[name].gripper].tolist()
+        """The measurement of the gripper on an arm."""
+        (width, velocity, force), contacts = self._tool(name)
+        left, right = contacts
         return GripperSample(
-            time_s=self.time_s,
-            width_m=width,
-            velocity_m_s=velocity,
-            force_n=force,
-            contacts=(self._body(left), self._body(right)),
+            time_s=self.time_s, width_m=width, velocity_m_s=velocity, force_n=force, contacts=(left, right)
         )
 
-    def gripper_progress(self, name: str, motion: int) -> float | None:
-        """The progress of a gripper's motion, None when the gripper does not carry out this one."""
-        fields = self._values[self._layout.arms[name].gripper]
+    def hand(self, name: str) -> HandSample:
+        """The measurement of the hand on an arm."""
+        (closed, pull, _), contacts = self._tool(name)
+        return HandSample(time_s=self.time_s, closed_share=closed, force_n=pull, contacts=contacts)
+
+    def magnet(self, name: str) -> MagnetSample:
+        """The measurement of the magnet on an arm."""
+        (on, pull, _), (contact,) = self._tool(name)
+        return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
+
+    def tool_progress(self, name: str, motion: int) -> float | None:
+        """The progress of a tool's motion, None when the tool does not carry out this one."""
+        fields = self._values[self._layout.arms[name].tool]
         return float(fields[1]) if fields[0] == motion else None
 
     def frames(self) -> tuple[tuple[Vector3, ...], tuple[Quaternion, ...]]:
@@ -128,6 +147,10 @@ class Snapshot:
         wxyz = self._values[self._layout.quaternions].reshape(-1, 4)
         xyzw = np.roll(wxyz, -1, axis=1).tolist()
         return tuple((x, y, z) for x, y, z in xyz), tuple((x, y, z, w) for x, y, z, w in xyzw)
+
+    def _tool(self, name: str) -> tuple[tuple[float, float, float], tuple[str, ...]]:
+        _, _, a, b, c, *touched = self._values[self._layout.arms[name].tool].tolist()
+        return (a, b, c), tuple(self._body(body) for body in touched)
 
     def _body(self, number: float) -> str:
         return self._layout.summary.bodies[int(number)] if number >= 0 else ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from robots.port import Array
 _BUCKET_S = 5e-6
 _BUCKETS = 4000
 _FIELDS = 4
+_MAX = 3
 SIZE = _FIELDS + _BUCKETS
 
 
@@ -27,6 +28,21 @@ class Timing:
     late_p50_s: float
     late_p99_s: float
     late_max_s: float
+    values: Array = field(repr=False, compare=False)
+    """What all this was worked out from, as a `TimingCounter` has it."""
+
+    def since(self, earlier: Timing) -> Timing:
+        """Return the figures of the time after `earlier`, of the same loop.
+
+        The maximum is known to 5 µs only, unless it is the greatest of all.
+        """
+        values = self.values - earlier.values
+        late_max_s = self.late_max_s
+        if late_max_s <= earlier.late_max_s:
+            counted = np.flatnonzero(values[_FIELDS:])
+            last = int(counted[-1]) + 1 if len(counted) else 0
+            late_max_s = min(last * _BUCKET_S, late_max_s)
+        return timing_of(values, late_max_s=late_max_s)
 
 
 class TimingCounter:
@@ -41,8 +57,8 @@ class TimingCounter:
         late_s = max(late_s, 0.0)
         values[0] += 1.0
         values[1] += overrun
-        if late_s > values[3]:
-            values[3] = late_s
+        if late_s > values[_MAX]:
+            values[_MAX] = late_s
         values[_FIELDS + min(int(late_s / _BUCKET_S), _BUCKETS - 1)] += 1.0
 
     def slip(self, duration_s: float) -> None:
@@ -50,8 +66,8 @@ class TimingCounter:
         self.values[2] += duration_s
 
 
-def timing_of(values: Array) -> Timing:
-    """Return the figures behind a counter's values."""
+def timing_of(values: Array, *, late_max_s: float | None = None) -> Timing:
+    """Return the figures behind a counter's values, or behind a sum of some with another maximum."""
     histogram: Array = np.cumsum(values[_FIELDS:])
     return Timing(
         steps=int(values[0]),
@@ -59,7 +75,8 @@ def timing_of(values: Array) -> Timing:
         slipped_s=float(values[2]),
         late_p50_s=_share(histogram, 0.50),
         late_p99_s=_share(histogram, 0.99),
-        late_max_s=float(values[3]),
+        late_max_s=float(values[_MAX]) if late_max_s is None else late_max_s,
+        values=values.copy(),
     )
 
 

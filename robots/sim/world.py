@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
@@ -11,23 +12,26 @@ from typing import Protocol, Self
 from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
 from engine.errors import RobotError, SkillFailed
+from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
-from engine.skills.world import PartsReset, ResetParts
+from engine.skills.world import BodyPushed, PartsReset, PushBody, ResetParts
 from robots.gripper.grip_judgement import Grip
-from robots.model.registry import model_by_name
-from robots.port import ArmPort, GripperPort, MotionEnd
+from robots.port import ArmPort, GripperPort, HandPort, MagnetPort, MotionEnd
+from robots.sim.commands import Push, StopAll
 from robots.sim.commands import ResetParts as ResetPartsCommand
-from robots.sim.commands import StopAll
 from robots.sim.host import Host
 from robots.sim.lockstep_host import LockstepHost
 from robots.sim.motion_board import MotionBoard
 from robots.sim.process_host import ProcessHost
 from robots.sim.publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
-from robots.sim.scene import Scene
+from robots.sim.scene import ArmPlacement, Scene
 from robots.sim.scene_description import describe_scene
 from robots.sim.seal import WorldImage, sealed, unsealed
-from robots.sim.sim_ports import SimArmPort, SimGripperPort
+from robots.sim.sim_outputs import SimOutputPort
+from robots.sim.sim_ports import SimArmPort
 from robots.sim.snapshot import ArmSummary, Snapshot
+from robots.sim.tool_ports import ToolPorts
+from robots.sim.tool_summary import tool_summary
 
 
 class SimRobot(Robot, Protocol):
@@ -65,10 +69,16 @@ class SimWorld:
         self._host = host
         self._cache = cache
         self._board = MotionBoard(on_lost=self._lost)
-        self._arms = {placement.name: _summary(placement.name, placement.model) for placement in scene.arms}
-        self._arm_ports = {name: SimArmPort(host, self._board, arm) for name, arm in self._arms.items()}
-        self._gripper_ports = {
-            name: SimGripperPort(host, self._board, arm) for name, arm in self._arms.items() if arm.gripper_width_m
+        self._arms = {placement.name: _summary(placement) for placement in scene.arms}
+        self._arm_ports = {
+            placement.name: SimArmPort(host, self._board, self._arms[placement.name], placement.robot().limits)
+            for placement in scene.arms
+        }
+        self._tools = ToolPorts(host, self._board, self._arms)
+        self._outputs = {
+            placement.name: SimOutputPort(placement.name, count=count)
+            for placement in scene.arms
+            if (count := placement.robot().digital_outputs)
         }
         self._status = DeviceStatus.DISCONNECTED
         self._publisher: WorldPublisher | None = None
@@ -110,7 +120,19 @@ class SimWorld:
 
     def gripper(self, name: str) -> GripperPort:
         """The port of the gripper on one arm."""
-        return self._gripper_ports[name]
+        return self._tools.gripper(name)
+
+    def hand(self, name: str) -> HandPort:
+        """The port of the hand on one arm."""
+        return self._tools.hand(name)
+
+    def magnet(self, name: str) -> MagnetPort:
+        """The port of the magnet on one arm."""
+        return self._tools.magnet(name)
+
+    def outputs(self, name: str) -> SimOutputPort | None:
+        """The digital outputs of one arm's controller, None where it has none."""
+        return self._outputs.get(name)
 
     def measured(self) -> Snapshot:
         """The newest measurement of everything."""
@@ -119,10 +141,16 @@ class SimWorld:
     def snapshot(self) -> bytes:
         """Everything needed to go on from here later, in this process or another: see `restore`."""
         grips = {name: grip for robot in self._robots for name, grip in robot.grips().items()}
-        return sealed(WorldImage.of(self._host.image(), grips), model=self._host.summary.model)
+        settings = {name: port.settings for name, port in self._arm_ports.items()}
+        reflexes = {name: reason for name, port in self._arm_ports.items() if (reason := port.reflex_reason)}
+        outputs = {name: port.values for name, port in self._outputs.items()}
+        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs)
+        return sealed(image, model=self._host.summary.model)
 
     async def restore(self, snapshot: bytes) -> None:
         """Bring everything to where a snapshot was made, at rest: set points are held, grippers keep their grip.
+
+        The arms have the settings and digital outputs that they had.
 
         Raises:
             RobotError: something moves, the world is gone, or the snapshot is none of this very world.
@@ -133,19 +161,48 @@ class SimWorld:
         image = unsealed(snapshot, model=summary.model, size=summary.image_size)
         self._board.closed_reason = "the world is being restored"
         try:
+            for name, settings in image.settings.items():
+                self._arm_ports[name].configure(settings)
             await self._host.restore(image.array())
+            self._board.reflexes = dict(image.reflexes)
         finally:
             self._board.closed_reason = ""
+        for name, values in image.outputs.items():
+            self._outputs[name].recall(values)
         for robot in self._robots:
             robot.recall(image.grips)
 
+    def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
+        """Let a hand push at a body from now on, in world axes, at a point of its frame; replaces its last push.
+
+        `body` is one of `host.summary.bodies`: `left/panda_hand`, the name of a part.
+
+        Raises:
+            RobotError: there is no such body, a number is not finite, or the world is gone.
+        """
+        if body not in self._host.summary.bodies:
+            raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
+        if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
+            raise RobotError("a push has numbers that are not finite", where=self.name)
+        self._host.send(Push(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+
     def register(self, bus: SkillBus) -> None:
         """Publish scene, frames, parts, joints and grippers; the world is open."""
-        self._publisher = WorldPublisher(bus, self._host, lambda: describe_scene(self._scene, cache=self._cache))
+        self._publisher = WorldPublisher(
+            bus,
+            self._host,
+            lambda: describe_scene(self._scene, cache=self._cache),
+            joint_maps={placement.name: placement.robot().joint_map for placement in self._scene.arms},
+        )
         self._bus = bus
         bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
+        bus.advertise_service(PushBody, self._push_body, namespace=self.name)
         if not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
+
+    async def _push_body(self, request: PushBody) -> BodyPushed:
+        self.push(request.body, force_n=request.force_n, duration_s=request.duration_s, at_m=request.at_m)
+        return BodyPushed(body=request.body)
 
     async def _reset_parts(self, request: ResetParts) -> PartsReset:
         """Put the parts back; raises SkillFailed while a run holds an arm or something moves."""
@@ -173,6 +230,8 @@ class SimWorld:
 
     async def __aenter__(self) -> Self:
         await self._host.open(self._board)
+        for port in (*self._arm_ports.values(), *self._outputs.values()):
+            port.begin()
         self._status = DeviceStatus.READY
         loop = asyncio.get_running_loop()
         if isinstance(self._host, LockstepHost):
@@ -251,7 +310,6 @@ def new_world(
     return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
 
 
-def _summary(name: str, model: str) -> ArmSummary:
-    robot = model_by_name(model)
-    width = robot.gripper.max_width_m if robot.gripper is not None else 0.0
-    return ArmSummary(name=name, joints=robot.arm_joints, gripper_width_m=width)
+def _summary(placement: ArmPlacement) -> ArmSummary:
+    robot = placement.robot()
+    return ArmSummary(name=placement.name, joints=robot.arm_joints, tool=tool_summary(robot.tool))

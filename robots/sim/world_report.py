@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed
+from robots.control.motion_event import MotionFinished, MotionHeld, MotionResumed, ReflexTripped
 from robots.sim.snapshot import CellSummary
 
 
@@ -27,4 +27,4 @@ class WorldRestored(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"
     """The world is where the image was made, and its state can be read."""
 
 
-AnyReport = WorldReady | WorldRefused | WorldRestored | MotionFinished | MotionHeld | MotionResumed
+AnyReport = WorldReady | WorldRefused | WorldRestored | MotionFinished | MotionHeld | MotionResumed | ReflexTripped

@@ -8,7 +8,8 @@ from engine.cause import under
 from engine.event import Cause
 from engine.skills.gripper import ReadGripper
 from engine.state import Context, Outcome, State
-from states.gripper.naming import GripperName, PartLabel, gripper_address, part_label
+from states.gripper.naming import GripperName, gripper_address
+from states.part_label import PartLabel, part_label
 
 
 class CheckHeld(State, frozen=True, kw_only=True):

@@ -12,9 +12,10 @@ from engine.event import Cause
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
-from states.gripper.naming import GripperName, PartLabel, gripper_address, part_label
+from states.gripper.naming import GripperName, gripper_address
+from states.part_label import PartLabel, part_label
 
-Force = Annotated[float, Meta(gt=0, le=140, description="Grasp force", extra_json_schema={"unit": "N"})]
+Force = Annotated[float, Meta(gt=0, le=1000, description="Grasp force", extra_json_schema={"unit": "N"})]
 Margin = Annotated[
     float, Meta(ge=0, description="How far the opening may end off `width_m`", extra_json_schema={"unit": "m"})
 ]

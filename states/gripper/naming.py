@@ -7,14 +7,8 @@ from typing import Annotated
 from msgspec import Meta
 
 GripperName = Annotated[str, Meta(min_length=1, description="The arm that carries the gripper")]
-PartLabel = Annotated[str, Meta(description="The part it is about, as messages shall name it")]
 
 
 def gripper_address(arm: str) -> str:
     """Return the bus namespace, and resource, of the gripper on an arm."""
     return f"{arm}/gripper"
-
-
-def part_label(part: str) -> str:
-    """Name the part in a message, whether or not the behavior says which it is."""
-    return f"part {part}" if part else "a part"

@@ -7,7 +7,8 @@ from typing import ClassVar
 from engine.skills.gripper import FingerSpeed, GripperOpen
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
-from states.gripper.naming import GripperName, PartLabel, gripper_address
+from states.gripper.naming import GripperName, gripper_address
+from states.part_label import PartLabel
 
 
 class Open(State, frozen=True, kw_only=True):

@@ -6,14 +6,18 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.skills.motion import CartTrapVel, Speed
+from engine.skills.motion import CartTrapVel, PoseMatch, Speed
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
 
 
 class MovePose(State, frozen=True, kw_only=True):
-    """Move the tool centre point to a pose; the path is straight in joint space, not in the cell."""
+    """Move the tool centre point to a pose; the path is straight in joint space, not in the cell.
+
+    Arms of fewer than six joints reach hardly any whole pose: with `match: position` or `axis` the rest comes as it
+    comes.
+    """
 
     state_name: ClassVar[str] = "motion.MovePose"
     outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
@@ -23,6 +27,7 @@ class MovePose(State, frozen=True, kw_only=True):
     target: Annotated[PoseTarget, Meta(description="`{xyz, xyzw, frame}`, or `{entry: name}`")]
     offset_m: Offset = NO_OFFSET
     speed: Speed = 0.5
+    match: PoseMatch = "pose"
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
@@ -30,7 +35,8 @@ class MovePose(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""
-        goal = CartTrapVel(pose=await resolve_pose(ctx, self.target, self.offset_m), speed=self.speed)
+        pose = await resolve_pose(ctx, self.target, self.offset_m)
+        goal = CartTrapVel(pose=pose, speed=self.speed, match=self.match)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")

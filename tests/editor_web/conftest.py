@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import AsyncGenerator, Callable
+from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from pathlib import Path
 
 import httpx
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
 from editor_web.access import load_access
 from editor_web.server import Dashboard, dashboard
+from tests.editor_web.browsing import browser_program
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.served import Served
+from tests.editor_web.workshop import Workshop
 
 Serve = Callable[..., AbstractAsyncContextManager[Served]]
 
@@ -23,6 +26,22 @@ def loopback() -> str:
     """A loopback address that no other test process uses."""
     worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
     return f"127.0.0.{20 + int(worker)}"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Generator[Browser]:
+    """One browser for the module."""
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
+        yield running
+        running.close()
+
+
+@pytest.fixture
+def shop(tmp_path: Path, loopback: str) -> Generator[Workshop]:
+    """A served session of its own."""
+    with Workshop(host=loopback, project=tmp_path) as opened:
+        yield opened
 
 
 @pytest.fixture

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import AsyncGenerator, Callable, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
 
 from editor_web.operation import Attached, InterruptedRun
 from engine.bus.access import BusAccess
-from engine.control import Control
-from engine.errors import ControlError, FlexcellError
+from engine.bus.action import GoalEnd
+from engine.bus.bus import BusEntry
+from engine.control import Breakpoint, Control
+from engine.errors import BusError, ControlError, FlexcellError
 from engine.event import (
-    Cause,
     Entered,
     Event,
     Exited,
@@ -27,281 +28,29 @@ from engine.event import (
 )
 from engine.hot_change import ChangeReport
 from engine.launch import Moment
-from engine.messages import FramePoses, Quaternion, SceneDescription, Vector3, VisualGeometry
 from engine.supervision import Supervision
+from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER, Behavior, Node, Run
+from tests.editor_web.fake_scene import frames_at, new_scene
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
-    severity: str
-    code: str
-    message: str
-    path: str = ""
-    line: int = 1
-    column: int = 1
-    hint: str = ""
+class EmptyBus:
+    """A bus with nobody on it."""
 
+    async def listing(self) -> tuple[BusEntry, ...]:
+        return ()
 
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
-    name: str
-    schema: Mapping[str, object]
-    required: bool = False
+    async def echo(self, topic: str) -> AsyncGenerator[str, None]:
+        raise BusError("no such topic", where=topic)
+        yield ""
 
+    async def publish(self, topic: str, message: object) -> None:
+        raise BusError("no such topic", where=topic)
 
-@dataclass(frozen=True, kw_only=True)
-class Transition:
-    source: str
-    outcome: str
-    target: str
+    async def call(self, address: str, request: object) -> str:
+        raise BusError("nobody answers at this address", where=address)
 
-
-@dataclass(frozen=True, kw_only=True)
-class Node:
-    path: str
-    name: str
-    kind: str
-    title: str = ""
-    outcomes: tuple[str, ...] = ()
-    children: tuple[Node, ...] = ()
-    transitions: tuple[Transition, ...] = ()
-    initial: str | None = None
-    conditions: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Behavior:
-    id: str
-    name: str
-    description: str = ""
-    errors: int = 0
-    warnings: int = 0
-    parameters: tuple[Parameter, ...] = ()
-    findings: tuple[Finding, ...] = ()
-    graph: Node | None = None
-    view: Mapping[str, tuple[float, float]] = field(default_factory=dict[str, tuple[float, float]])
-    success: tuple[str, ...] = ("finished",)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Run:
-    id: str
-    behavior: str
-    status: str
-    started_at_s: float
-    outcome: str | None = None
-    success: bool = False
-    cause: str = ""
-    duration_s: float = 0.0
-
-
-def state(path: str, title: str, *outcomes: str) -> Node:
-    """Make a leaf."""
-    return Node(path=path, name=path.rsplit("/", 1)[-1], kind="state", title=title, outcomes=outcomes)
-
-
-def machine(path: str, children: tuple[Node, ...], arrows: str, *outcomes: str) -> Node:
-    """Make a machine; arrows as `a.done>b b.done>finished`."""
-    transitions = tuple(
-        Transition(source=source, outcome=outcome, target=target)
-        for source, outcome, target in (
-            (*arrow.split(">")[0].split("."), arrow.split(">")[1]) for arrow in arrows.split()
-        )
-    )
-    return Node(
-        path=path,
-        name=path.rsplit("/", 1)[-1],
-        kind="machine",
-        outcomes=outcomes,
-        children=children,
-        transitions=transitions,
-        initial=children[0].name,
-    )
-
-
-def both(path: str, left: Node, right: Node, outcome: str) -> Node:
-    """Make a concurrency container of two children that must both end with `outcome`."""
-    return Node(
-        path=path,
-        name=path.rsplit("/", 1)[-1],
-        kind="concurrency",
-        outcomes=("finished", "failed"),
-        children=(left, right),
-        conditions=(
-            f"finished: left={outcome} and right={outcome}",
-            "failed: left=failed",
-            "failed: right=failed",
-        ),
-    )
-
-
-def _pick(path: str) -> Node:
-    return machine(
-        path,
-        (
-            state(f"{path}/descend", "motion.MoveLine", "reached", "failed"),
-            state(f"{path}/grasp", "gripper.Grasp", "held", "empty"),
-            state(f"{path}/lift", "motion.MoveLine", "reached", "failed"),
-        ),
-        "descend.reached>grasp descend.failed>failed grasp.held>lift grasp.empty>failed "
-        "lift.reached>picked lift.failed>failed",
-        "picked",
-        "failed",
-    )
-
-
-def _move_both(path: str) -> Node:
-    return both(
-        path,
-        state(f"{path}/left", "motion.MoveJoints", "reached", "failed"),
-        state(f"{path}/right", "motion.MoveJoints", "reached", "failed"),
-        "reached",
-    )
-
-
-def _transfer_graph() -> Node:
-    steps = (
-        _move_both("root/approach"),
-        both("root/pick", _pick("root/pick/left"), _pick("root/pick/right"), "picked"),
-        _move_both("root/carry"),
-        both(
-            "root/place",
-            state("root/place/left", "gripper.Open", "opened", "failed"),
-            state("root/place/right", "gripper.Open", "opened", "failed"),
-            "opened",
-        ),
-        _move_both("root/home"),
-    )
-    arrows = (
-        "approach.finished>pick approach.failed>failed pick.finished>carry pick.failed>failed "
-        "carry.finished>place carry.failed>failed place.finished>home place.failed>failed "
-        "home.finished>finished home.failed>failed"
-    )
-    return machine("root", steps, arrows, "finished", "failed")
-
-
-TRANSFER = Behavior(
-    id="behaviors/reconcycle/two_arm_transfer.yaml",
-    name="two_arm_transfer",
-    description="Both arms pick a part each and place it on the other's tray.",
-    parameters=(
-        Parameter(
-            name="speed",
-            schema={
-                "type": "number",
-                "title": "Speed",
-                "description": "Share of the joint speed limits",
-                "default": 0.5,
-                "minimum": 0.05,
-                "maximum": 1.0,
-            },
-        ),
-        Parameter(
-            name="lift_m",
-            schema={
-                "type": "number",
-                "title": "Lift",
-                "unit": "m",
-                "description": "How far the parts are lifted off the tray",
-                "default": 0.12,
-                "minimum": 0.02,
-                "maximum": 0.3,
-            },
-        ),
-        Parameter(
-            name="cycles",
-            schema={
-                "type": "integer",
-                "title": "Cycles",
-                "description": "How often the parts are swapped",
-                "default": 1,
-                "minimum": 1,
-            },
-        ),
-        Parameter(
-            name="order",
-            schema={
-                "enum": ["together", "left first", "right first"],
-                "title": "Order",
-                "description": "Which arm moves first",
-                "default": "together",
-            },
-        ),
-        Parameter(
-            name="verify",
-            schema={
-                "type": "boolean",
-                "title": "Verify the grasp",
-                "description": "Check width and contact before lifting",
-                "default": True,
-            },
-        ),
-    ),
-    graph=_transfer_graph(),
-)
-SINGLE = Behavior(
-    id="behaviors/reconcycle/single_pick.yaml",
-    name="single_pick",
-    description="The left arm picks one part, and reports when nothing was between its fingers.",
-    warnings=1,
-    findings=(
-        Finding(
-            severity="warning",
-            code="unused-parameter",
-            message="parameter 'force_n' is declared and never used",
-            line=6,
-            column=3,
-            hint="use it in an expression as ${force_n}, or remove it",
-        ),
-    ),
-    parameters=(
-        Parameter(
-            name="part",
-            schema={"type": "string", "title": "Part", "description": "Name of the stored entry", "minLength": 1},
-            required=True,
-        ),
-    ),
-    graph=machine(
-        "root",
-        (
-            state("root/descend", "motion.MoveLine", "reached", "failed"),
-            state("root/grasp", "gripper.Grasp", "held", "failed"),
-            state("root/home", "motion.MoveJoints", "reached", "failed"),
-        ),
-        "descend.reached>grasp descend.failed>failed grasp.held>home grasp.failed>failed home.reached>finished "
-        "home.failed>failed",
-        "finished",
-        "failed",
-    ),
-)
-BROKEN = Behavior(
-    id="behaviors/drafts/palletise.yaml",
-    name="palletise",
-    errors=1,
-    findings=(
-        Finding(
-            severity="error",
-            code="unknown-state",
-            message="no state is named 'motion.MoveJoint'",
-            path="root/approach",
-            line=14,
-            column=21,
-            hint="did you mean motion.MoveJoints?",
-        ),
-    ),
-)
-
-NOTHING_HELD = Cause(
-    message="the grasp failed: nothing between the pads",
-    where="root/grasp",
-    kind="GraspFailed",
-    because=Cause(
-        message="pads closed to 0.4 mm, expected at least 28 mm",
-        where="left/gripper",
-        kind="SkillFailed",
-        because=Cause(message="no contact on either pad", where="cell/left_hand", kind="RobotError"),
-    ),
-)
+    async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
+        raise BusError("nobody answers at this address", where=address)
 
 
 class FakeBackend:
@@ -309,7 +58,8 @@ class FakeBackend:
 
     def __init__(self, *, step_s: float = 0.2, behaviors: tuple[Behavior, ...] = (BROKEN, SINGLE, TRANSFER)) -> None:
         self.cell_name = "dual_panda"
-        self.known_bus: BusAccess | None = None
+        self.known_bus: BusAccess = EmptyBus()
+        self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
         self.step_s = step_s
         self._behaviors = {b.id: b for b in behaviors}
         self._runs: dict[str, Run] = {}
@@ -323,8 +73,6 @@ class FakeBackend:
 
     @property
     def bus(self) -> BusAccess:
-        if self.known_bus is None:
-            raise FlexcellError("this fake has no bus")
         return self.known_bus
 
     def behaviors(self) -> tuple[Behavior, ...]:
@@ -401,6 +149,18 @@ class FakeBackend:
 
     def change(self, run_id: str) -> ChangeReport:
         raise ControlError("this fake has no control", where=run_id)
+
+    def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
+        self.behavior(behavior_id)
+        return self.kept_breakpoints.get(behavior_id, ())
+
+    def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
+        self.behavior(behavior_id)
+        self.kept_breakpoints[behavior_id] = tuple(breakpoints)
+
+    async def stop_all(self, *, reason: str) -> None:
+        for run_id in self._runs:
+            await self.stop(run_id, reason=reason)
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
         return ()
@@ -538,63 +298,3 @@ class FakeBackend:
         while True:
             self.publish("cell/frames", frames_at(time.monotonic() - began_s))
             await asyncio.sleep(1 / 30)
-
-
-_ARMS = {"left": (-0.55, 1.0), "right": (0.55, -1.0)}
-
-
-def new_scene() -> SceneDescription:
-    """Make a table with two trays and two arms of boxes and cylinders."""
-    geometries = [
-        _box("table", "world", (1.6, 1.2, 0.04), (0.0, 0.0, -0.02), (0.72, 0.69, 0.64, 1.0)),
-        _box("tray_north", "world", (0.36, 0.22, 0.02), (0.0, 0.28, 0.01), (0.25, 0.44, 0.56, 1.0)),
-        _box("tray_south", "world", (0.36, 0.22, 0.02), (0.0, -0.28, 0.01), (0.56, 0.42, 0.25, 1.0)),
-    ]
-    for name in _ARMS:
-        geometries += [
-            VisualGeometry(
-                name=f"{name}_base",
-                frame=f"{name}/base",
-                kind="cylinder",
-                size_m=(0.08, 0.2),
-                xyz=(0.0, 0.0, 0.1),
-                rgba=(0.85, 0.86, 0.88, 1.0),
-            ),
-            _box(f"{name}_upper", f"{name}/upper", (0.09, 0.09, 0.4), (0.0, 0.0, 0.2), (0.9, 0.91, 0.93, 1.0)),
-            _box(f"{name}_fore", f"{name}/fore", (0.07, 0.07, 0.4), (0.0, 0.0, 0.2), (0.2, 0.22, 0.26, 1.0)),
-        ]
-    return SceneDescription(geometries=tuple(geometries))
-
-
-def frames_at(time_s: float) -> FramePoses:
-    """Pose both arms, swinging from side to side."""
-    rows: list[tuple[str, Vector3, Quaternion]] = []
-    for name, (x, sign) in _ARMS.items():
-        yaw = 0.5 * math.sin(1.5 * time_s + sign)
-        lean = sign * (0.5 + 0.2 * math.sin(2.0 * time_s))
-        rows.append((f"{name}/base", (x, 0.0, 0.0), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))))
-        upper = _turn(yaw, lean)
-        rows.append((f"{name}/upper", (x, 0.0, 0.2), upper))
-        elbow = (
-            x + 0.4 * math.sin(lean) * math.cos(yaw),
-            0.4 * math.sin(lean) * math.sin(yaw),
-            0.2 + 0.4 * math.cos(lean),
-        )
-        rows.append((f"{name}/fore", elbow, _turn(yaw, lean + sign * 1.5)))
-    return FramePoses(
-        time_s=time_s,
-        names=tuple(r[0] for r in rows),
-        xyz=tuple(r[1] for r in rows),
-        xyzw=tuple(r[2] for r in rows),
-    )
-
-
-def _turn(yaw: float, pitch: float) -> Quaternion:
-    cy, sy, cp, sp = math.cos(yaw / 2), math.sin(yaw / 2), math.cos(pitch / 2), math.sin(pitch / 2)
-    return (-sy * sp, cy * sp, sy * cp, cy * cp)
-
-
-def _box(
-    name: str, frame: str, size_m: Vector3, xyz: Vector3, rgba: tuple[float, float, float, float]
-) -> VisualGeometry:
-    return VisualGeometry(name=name, frame=frame, kind="box", size_m=size_m, xyz=xyz, rgba=rgba)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import struct
 import urllib.error
 import urllib.request
 from collections.abc import AsyncGenerator
@@ -20,7 +21,8 @@ from editor_web.cell_view import KEY_HEADER, CellView
 from engine.errors import FlexcellError
 from engine.messages import SceneDescription
 from tests.editor_web.conftest import Serve
-from tests.editor_web.fake_backend import FakeBackend, frames_at, new_scene
+from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.fake_scene import frames_at, new_scene
 
 VISER = Subprotocol("viser-v1.1.1")
 
@@ -137,3 +139,28 @@ def test_no_public_tunnel_can_be_asked_for() -> None:
         view.close()
     with pytest.raises((urllib.error.URLError, FlexcellError)):
         urllib.request.urlopen(f"http://127.0.0.1:{view.port}/", timeout=1)
+
+
+async def test_a_viewer_that_was_away_gets_the_newest_poses_and_not_all_that_it_missed(serve: Serve) -> None:
+    """Thousands of frames while it reads nothing wait nowhere: only the newest ones are kept for it."""
+    async with (
+        serve(cell_view=True) as served,
+        websockets.asyncio.client.connect(
+            f"{served.origin.replace('http', 'ws', 1)}/cell/",
+            subprotocols=[VISER],
+            additional_headers=served.cookie,
+            origin=websockets.Origin(served.origin),
+            max_size=None,
+            max_queue=1,
+            proxy=None,
+        ) as socket,
+    ):
+        await read(socket, "/cell/left.fore/")
+        for number in range(5000):
+            served.backend.publish("cell/frames", frames_at(3.0 + number * 1e-3))
+        last, missed = frames_at(7.999), 0
+        newest = struct.pack(">d", last.xyz[last.names.index("left/fore")][0])
+        async with asyncio.timeout(20):
+            while newest not in (data := unpacked(await socket.recv())):
+                missed += data.count(b"/cell/left.fore")
+        assert missed < 500

@@ -8,12 +8,14 @@ import socket
 import pytest
 from websockets.exceptions import ConnectionClosedError
 
-from editor_web.live import Delta, LiveClient, LiveHub, Snapshot
+from editor_web.live import LiveClient, LiveHub
+from editor_web.live_frames import Delta, Snapshot
 from editor_web.live_run import LOG_LINES
 from editor_web.routes import live as live_route
 from engine.event import Entered, Exited, Logged, RunEnded, RunStarted
 from tests.editor_web.conftest import Serve
-from tests.editor_web.fake_backend import TRANSFER, FakeBackend
+from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.fake_behaviors import TRANSFER
 from tests.editor_web.served import Served
 
 STARTED: dict[str, object] = {"behavior": "b", "document": "d", "parameters": {}, "seed": 1, "clock": "real"}

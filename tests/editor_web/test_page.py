@@ -2,41 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Any, Literal
 
 import pytest
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Locator, Page, expect
 
-import hatch_build
-from tests.editor_web.fake_backend import BROKEN, SINGLE, TRANSFER
+from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.fake_behaviors import BROKEN, SINGLE, TRANSFER
 from tests.editor_web.site import Site
 
-AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-Scheme = Literal["light", "dark"]
 Visit = Callable[..., AbstractContextManager[Page]]
-
-
-def browser_program() -> str:
-    """The browser to drive: FLEXCELL_CHROMIUM, else the first one installed."""
-    named = os.environ.get("FLEXCELL_CHROMIUM")
-    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
-    assert found, "no Chromium: install the package `chromium`, or set FLEXCELL_CHROMIUM to its program"
-    return found
-
-
-@pytest.fixture(scope="module")
-def browser() -> Generator[Browser]:
-    """One browser for the module."""
-    with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
-        yield running
-        running.close()
 
 
 @pytest.fixture
@@ -51,27 +28,10 @@ def visit(browser: Browser, site: Site) -> Visit:
     """Log in and open an address: `with visit("/") as page`; console errors fail the test."""
 
     @contextmanager
-    def opened(
-        path: str = "/", *, quiet: bool = True, size: tuple[int, int] = (1366, 768), scheme: Scheme = "light"
-    ) -> Generator[Page]:
-        context = browser.new_context(
-            locale="en-US", viewport={"width": size[0], "height": size[1]}, color_scheme=scheme
-        )
-        page = context.new_page()
-        said: list[str] = []
-
-        def listen(message: ConsoleMessage) -> None:
-            if message.type == "error":
-                said.append(message.text)
-
-        page.on("console", listen)
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.goto(site.running.login_url)
-        page.goto(site.running.url.rstrip("/") + path)
-        expect(page.get_by_role("link", name="two_arm_transfer").first).to_be_visible()
-        yield page
-        context.close()
-        assert not (said and quiet), said
+    def opened(path: str = "/", *, quiet: bool = True, size: Size = DESK, scheme: Scheme = "light") -> Generator[Page]:
+        with opened_page(browser, site.running, path, quiet=quiet, size=size, scheme=scheme) as page:
+            expect(page.get_by_role("link", name="two_arm_transfer").first).to_be_visible()
+            yield page
 
     return opened
 
@@ -101,7 +61,7 @@ def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, si
             expect(node(page, f"root/pick/{arm}/descend")).to_have_attribute("data-status", "active")
         expect(node(page, "root/approach/left")).to_contain_text("reached")
         expect(page.locator(".course.is-taken")).to_have_count(1)
-        page.get_by_role("button", name="Stop").click()
+        page.get_by_role("button", name="Stop", exact=True).click()
         expect(page.locator(".page-head .badge")).to_have_text("stopped")
         expect(page.get_by_role("log")).to_contain_text("stop requested: stopped in the dashboard")
         expect(page.locator(".leaf.is-active")).to_have_count(0)
@@ -214,38 +174,28 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
 def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> None:
     """axe-core finds nothing on any page, idle, running, failed, and while logging in."""
     site.backend.step_s = 30.0
-    script = AXE.read_text(encoding="utf-8")
-
-    def check(page: Page, what: str) -> None:
-        # Colours fade for a moment when something changes.
-        page.evaluate("() => Promise.all(document.getAnimations().map((a) => a.finished.catch(() => null)))")
-        page.evaluate(f"() => {{ {script} }}")
-        result: dict[str, Any] = page.evaluate("() => axe.run(document)")
-        found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
-        assert found == [], f"{what}: {found}"
-
     with visit("/", scheme="dark") as page:
-        check(page, "home without runs")
+        require_accessible(page, "home without runs")
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
     schemes: tuple[Scheme, ...] = ("light", "dark")
     for scheme in schemes:
         with visit("/", scheme=scheme) as page:
-            check(page, f"home, {scheme}")
+            require_accessible(page, f"home, {scheme}")
             page.get_by_role("link", name="two_arm_transfer").first.click()
             expect(page.locator(".leaf.is-active")).to_have_count(2)
-            check(page, f"running, {scheme}")
+            require_accessible(page, f"running, {scheme}")
             page.get_by_role("tab", name="Outline").click()
             page.get_by_role("treeitem").nth(2).click()
-            check(page, f"outline, {scheme}")
+            require_accessible(page, f"outline, {scheme}")
             page.get_by_role("link", name="palletise").click()
             expect(page.locator(".finding")).to_be_visible()
-            check(page, f"broken, {scheme}")
+            require_accessible(page, f"broken, {scheme}")
             page.set_viewport_size({"width": 390, "height": 844})
-            check(page, f"small, {scheme}")
+            require_accessible(page, f"small, {scheme}")
         # The browser itself reports the refusal.
         with visit("/", scheme=scheme, quiet=False) as page:
             page.goto(f"{site.running.url}login?t=wrong")
-            check(page, f"login, {scheme}")
+            require_accessible(page, f"login, {scheme}")
 
 
 @pytest.mark.parametrize(("width", "height"), [(390, 844), (820, 1180), (1366, 768), (3840, 2160)])

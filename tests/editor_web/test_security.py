@@ -13,7 +13,8 @@ from websockets.exceptions import InvalidStatus
 from editor_web.access import OPERATOR, VIEWER, Access, load_access
 from editor_web.app import new_app
 from tests.editor_web.conftest import Serve
-from tests.editor_web.fake_backend import TRANSFER, FakeBackend
+from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.fake_behaviors import TRANSFER
 
 HOST = "127.0.0.1:8642"
 ORIGIN = f"http://{HOST}"

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.cell import OpenCell
+from engine.control import Breakpoint
 from engine.errors import DocumentError, FlexcellError
 from engine.journal import Journal, list_runs
 from engine.session import Session
@@ -123,3 +124,27 @@ async def test_what_cannot_start_says_why(
         with pytest.raises(FlexcellError, match="there is no run 'x'"):
             session.run("x")
     assert list_runs(project / "journal") == ()
+
+
+async def test_breakpoints_are_kept_beside_the_file_and_used_when_asked_for(project: Path) -> None:
+    """Without any there is no file; an id that names no behavior is refused."""
+    points = (Breakpoint(path="root/wait"),)
+    async with _session(project) as session:
+        session.keep_breakpoints("behaviors/quick.yaml", points)
+        assert session.breakpoints("behaviors/quick.yaml") == points
+        run = await session.start("behaviors/quick.yaml", parameters={}, seed=1, breakpoints=True)
+        assert session.control(run).view().breakpoints == points
+        session.keep_breakpoints("behaviors/quick.yaml", ())
+        with pytest.raises(DocumentError, match="there is no behavior"):
+            session.keep_breakpoints("behaviors/../other.yaml", points)
+    assert not (project / "behaviors" / "quick.breakpoints.yaml").exists()
+
+
+async def test_everything_is_stopped_at_once(project: Path) -> None:
+    """All runs end as stopped, for the reason given; later runs go on."""
+    async with _session(project) as session:
+        runs = [await session.start("behaviors/endless.yaml", parameters={}, seed=1) for _ in range(2)]
+        await session.stop_all(reason="smoke")
+        assert [(await session.wait(run)).status for run in runs] == ["stopped", "stopped"]
+        later = await session.start("behaviors/quick.yaml", parameters={}, seed=1)
+        assert (await session.wait(later)).outcome == "good"

@@ -24,8 +24,9 @@ FACES = [
 ]
 COMMANDS = [
     ("run",), ("check",), ("export",), ("replay",), ("serve",), ("schema",), ("states",), ("states", "show"),
-    *(("store", name) for name in ("list", "get", "set", "delete", "export", "import")),
-    *(("bus", name) for name in ("list", "echo", "hz", "call", "goal")),
+    *(("store", name) for name in ("list", "get", "show", "set", "delete", "history", "undo")),
+    *(("store", name) for name in ("export", "import", "migrate", "watch")),
+    *(("bus", name) for name in ("list", "echo", "hz", "publish", "call", "goal")),
 ]  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Makes the recordings of this folder anew: `python tests/replay/make_recordings.py`.
+"""Makes the recordings of this folder anew: `python tests/replay/make_recordings.py [NAME …]`.
 
 Needed when what happens in a run changes on purpose: a behavior, the motions, the text of an event.
 Look at what `flexcell replay tests/replay/*.mcap` says before.
@@ -13,7 +13,12 @@ from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
 PROJECT = FOLDER.parents[1]
-RECORDINGS = {"two_arm_transfer": "behaviors/reconcycle/two_arm_transfer.yaml"}
+RECORDINGS = {
+    "two_arm_transfer": "behaviors/reconcycle/two_arm_transfer.yaml",
+    "pick_and_place": "behaviors/pick_and_place/pick_and_place.yaml",
+    "plate_transfer": "behaviors/plate_transfer/plate_transfer.yaml",
+    "test_cylinder": "behaviors/test_cylinder/test_cylinder.yaml",
+}
 SLOW = ("--record-rate", "2", "--record-topic", "*/joint_state", "--record-topic", "cell/frames")
 
 
@@ -34,5 +39,5 @@ def make(name: str, behavior: str) -> None:
 
 
 if __name__ == "__main__":
-    for recorded, source in RECORDINGS.items():
-        make(recorded, source)
+    for wanted in sys.argv[1:] or RECORDINGS:
+        make(wanted, RECORDINGS[wanted])

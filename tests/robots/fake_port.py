@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 import asyncio
+import math
+from collections.abc import Callable
 
 import numpy as np
 
 from engine.errors import RobotError
 from robots.port import (
     ArmSample,
+    ArmSettings,
     Array,
+    Contact,
+    ForceRecord,
+    ForceTask,
     GripperSample,
     JointTrajectory,
     Motion,
     MotionEnd,
     MotionReport,
+    StreamKind,
     Tolerance,
 )
 
@@ -24,9 +31,10 @@ STOPPING_S = 0.1
 class FakeMotion:
     """A motion that takes `duration_s` of loop time and can be held, resumed, cancelled and made to fail."""
 
-    def __init__(self, duration_s: float) -> None:
+    def __init__(self, duration_s: float, *, data: bytes = b"") -> None:
         self._loop = asyncio.get_running_loop()
         self._duration_s = duration_s
+        self._data = data
         self._passed_s = 0.0
         self._since_s = self._loop.time()
         self._end: asyncio.Future[MotionReport] = self._loop.create_future()
@@ -73,6 +81,12 @@ class FakeMotion:
         self._freeze()
         self._finish(MotionEnd.FAILED, reason)
 
+    def touch(self) -> None:
+        """End as reached now, by a contact."""
+        self._freeze()
+        if not self._end.done():
+            self._end.set_result(MotionReport(end=MotionEnd.REACHED, contact=True, data=self._data))
+
     def _run(self) -> None:
         self._since_s = self._loop.time()
         self._timer = self._loop.call_later(self._duration_s - self._passed_s, self._arrive)
@@ -89,24 +103,79 @@ class FakeMotion:
 
     def _finish(self, end: MotionEnd, reason: str) -> None:
         if not self._end.done():
-            self._end.set_result(MotionReport(end=end, reason=reason))
+            self._end.set_result(MotionReport(end=end, reason=reason, data=self._data))
+
+
+class FakeStream(FakeMotion):
+    """Implements `Stream`: it lasts until it is finished or cancelled, and keeps what it was sent in `sent`."""
+
+    def __init__(self, width: int, *, take: Callable[[tuple[float, ...]], None]) -> None:
+        self._width = width
+        self._take = take
+        self.sent: list[tuple[float, ...]] = []
+        super().__init__(math.inf)
+
+    @property
+    def progress(self) -> float:
+        """There is no way to speak of."""
+        return 0.0
+
+    def send(self, values: tuple[float, ...]) -> None:
+        """Keep what was said; raises RobotError for a wrong number of values or one that is not finite."""
+        if len(values) != self._width or not np.isfinite(values).all():
+            raise RobotError(f"{values} cannot be sent", where="fake arm", hint=f"send {self._width} finite numbers")
+        self.sent.append(values)
+        self._take(values)
+
+    def finish(self) -> None:
+        """End as reached a little later."""
+        self._freeze()
+        self._loop.call_later(STOPPING_S, self._finish, MotionEnd.REACHED, "")
+
+    def _run(self) -> None:
+        self._since_s = self._loop.time()
 
 
 class FakeArmPort:
-    """Implements `ArmPort`: the joints are where the trajectory says."""
+    """Implements `ArmPort`: the joints are where the trajectory, the stream or the hand of the test says.
+
+    `touch_after_s` lets guarded motions meet something, `force_record` is what force tracking
+    reports, `external_nm` and `wrench` are measured; `motion` is what runs or ran last.
+    """
 
     def __init__(self, names: tuple[str, ...], position: Array, *, velocity_rad_s: float = 0.0) -> None:
         self._names = names
         self._position = position.copy()
         self._velocity = np.full(len(names), velocity_rad_s)
         self._trajectory: JointTrajectory | None = None
+        self._stretch = 1.0
+        self._reflex = ""
+        self._reflex_listeners: list[Callable[[str], None]] = []
+        self.settings = ArmSettings()
         self.motion: FakeMotion | None = None
         self.followed: list[JointTrajectory] = []
+        self.contacts: list[Contact | None] = []
+        self.touch_after_s: float | None = None
+        self.tracked: list[ForceTask] = []
+        self.force_record = ForceRecord.of(share=np.array([0.0, 1.0]), offset=np.zeros((2, 6)), wrench=np.zeros((2, 6)))
+        self.streamed: list[tuple[StreamKind, float]] = []
+        self.guided: list[float] = []
+        self.external_nm = np.zeros(len(names))
+        self.wrench = np.zeros(6)
 
     @property
     def joint_names(self) -> tuple[str, ...]:
         """Names in order."""
         return self._names
+
+    @property
+    def reflex_reason(self) -> str:
+        """Why it was tripped, until it is recovered."""
+        return self._reflex
+
+    def when_reflex(self, tell: Callable[[str], None]) -> None:
+        """Call `tell` when it is tripped."""
+        self._reflex_listeners.append(tell)
 
     def sample(self) -> ArmSample:
         """Where the arm is now; measured and desired are the same."""
@@ -117,32 +186,109 @@ class FakeArmPort:
             velocity_rad_s=self._velocity,
             effort_nm=np.zeros(len(position)),
             desired_rad=position,
+            external_nm=self.external_nm,
+            wrench=self.wrench,
+            reflex=bool(self._reflex),
         )
 
-    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance) -> Motion:
-        """Start following; raises RobotError while another motion runs."""
+    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: Contact | None = None) -> Motion:
+        """Start following; raises RobotError while another motion runs or a reflex is not recovered from."""
+        self._check_free()
+        motion = self._play(trajectory)
+        self.followed.append(trajectory)
+        self.contacts.append(until)
+        if until is not None and self.touch_after_s is not None:
+            asyncio.get_running_loop().call_later(self.touch_after_s, motion.touch)
+        return motion
+
+    def track_force(self, task: ForceTask, *, tolerance: Tolerance) -> Motion:
+        """Follow the nominal path and report `force_record`."""
+        self._check_free()
+        self.tracked.append(task)
+        return self._play(task.trajectory, data=self.force_record.to_bytes())
+
+    def stream(self, kind: StreamKind, *, watchdog_s: float) -> FakeStream:
+        """Start a stream; of `joint_position` the arm is at once where it is told, others do not move it."""
+        self._check_free()
+        self.streamed.append((kind, watchdog_s))
+        take = self.lead_to if kind == "joint_position" else _ignore
+        return self._start_stream(FakeStream(6 if kind == "tool_twist" else len(self._names), take=take))
+
+    def guide(self, *, damping: float = 0.0) -> FakeStream:
+        """Float; the test leads the arm by `lead_to`."""
+        self._check_free()
+        self.guided.append(damping)
+        return self._start_stream(FakeStream(0, take=_ignore))
+
+    def lead_to(self, joints: tuple[float, ...]) -> None:
+        """Put the arm there."""
+        self._position, self._trajectory = np.array(joints), None
+
+    def configure(self, settings: ArmSettings) -> None:
+        """Take the settings; raises RobotError for wrong numbers of joints, a senseless tool, or no speed override."""
+        if not (np.isfinite(settings.tool_xyz_m).all() and abs(math.hypot(*settings.tool_xyzw) - 1.0) < 1e-3):
+            raise RobotError(f"the tool cannot be at {settings.tool_xyz_m}, {settings.tool_xyzw}", where="fake arm")
+        if not np.isfinite((*settings.tool_xyz_m, settings.load_kg)).all() or max(map(abs, settings.tool_xyz_m)) > 2.0:
+            raise RobotError("a value is out of its range", where="fake arm")
+        per_joint = (settings.joint_stiffness_nm_rad, settings.collision_torque_nm)
+        if any(values and len(values) != len(self._names) for values in per_joint):
+            raise RobotError("there is not one value a joint", where="fake arm")
+        if not 0.0 < settings.speed_override <= 1.0:
+            raise RobotError(f"speed_override cannot be {settings.speed_override}", where="fake arm")
+        self.settings = settings
+
+    def trip(self, reason: str) -> None:
+        """Let the arm stop by itself."""
+        self._reflex = reason
+        for tell in self._reflex_listeners:
+            tell(reason)
+        if self.motion is not None and not self.motion.ended:
+            self.motion.fail(reason)
+
+    def recover(self) -> None:
+        """End a reflex."""
+        self._reflex = ""
+
+    def _check_free(self) -> None:
+        if self._reflex:
+            raise RobotError(
+                f"the arm has stopped by itself: {self._reflex}", where="fake arm", hint="recover it first"
+            )
         if self.motion is not None and not self.motion.ended:
             raise RobotError("another motion is under way", where="fake arm")
+
+    def _play(self, trajectory: JointTrajectory, *, data: bytes = b"") -> FakeMotion:
         assert np.abs(trajectory.position_rad[0] - self._present()).max() < 0.01
         self._trajectory = trajectory
-        self.followed.append(trajectory)
-        self.motion = FakeMotion((len(trajectory.position_rad) - 1) * trajectory.dt_s)
+        duration_s = trajectory.duration_s / self.settings.speed_override
+        self._stretch = self.settings.speed_override
+        self.motion = FakeMotion(duration_s, data=data)
         return self.motion
+
+    def _start_stream(self, stream: FakeStream) -> FakeStream:
+        self._position, self._trajectory = self._present().copy(), None
+        self.motion = stream
+        return stream
 
     def _present(self) -> Array:
         if self._trajectory is None or self.motion is None:
             return self._position
         way = self._trajectory
-        index = min(self.motion.passed_s / way.dt_s, len(way.position_rad) - 1.0)
+        index = min(self.motion.passed_s * self._stretch / way.dt_s, len(way.position_rad) - 1.0)
         below = int(index)
         above = min(below + 1, len(way.position_rad) - 1)
         return way.position_rad[below] + (index - below) * (way.position_rad[above] - way.position_rad[below])
+
+
+def _ignore(values: tuple[float, ...]) -> None:
+    """Let `values` have no effect."""
 
 
 class FakeGripperPort:
     """Implements `GripperPort`: the fingers stop at `obstacle_m` when closing, if something is there."""
 
     max_width_m = 0.08
+    max_force_n = 140.0
 
     def __init__(
         self,

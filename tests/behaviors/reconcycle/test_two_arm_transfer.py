@@ -46,13 +46,13 @@ class Transfer:
     log: list[Event] = field(default_factory=list[Event])
     joints: list[tuple[tuple[float, ...], ...]] = field(default_factory=list[tuple[tuple[float, ...], ...]])
 
-    def run(self, store: Path) -> RunResult:
-        """Run it to its end."""
+    def run(self, store: Path | None = None) -> RunResult:
+        """Run it to its end, with that store in place of the cell's."""
         return run_virtual(self._run(store))
 
-    async def _run(self, store: Path) -> RunResult:
+    async def _run(self, store: Path | None) -> RunResult:
         behavior = load_behavior(BEHAVIORS / "reconcycle" / "two_arm_transfer.yaml")
-        async with OpenCell(self.cell, seed=self.seed, store_path=str(store)) as cell:
+        async with OpenCell(self.cell, seed=self.seed, store_path=str(store) if store is not None else None) as cell:
             run = Run(
                 new_plan(behavior, load_states()),
                 run="transfer",

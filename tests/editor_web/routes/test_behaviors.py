@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.editor_web.conftest import Serve
-from tests.editor_web.fake_backend import BROKEN, SINGLE, TRANSFER
+from tests.editor_web.fake_behaviors import BROKEN, SINGLE, TRANSFER
 
 
 async def test_all_behaviors_are_listed_with_their_problems(serve: Serve) -> None:

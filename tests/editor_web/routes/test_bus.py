@@ -94,6 +94,25 @@ async def test_the_command_lines_bus_works_through_the_server(serve: Serve) -> N
                 await anext(remote.echo("nowhere"))
 
 
+async def test_messages_reach_the_server_that_obeys_their_topic(serve: Serve) -> None:
+    """Other topics only tell; the refusal names those that take commands."""
+    async with SkillBus(LoopClock()) as bus:
+        backend, _ = wired(bus)
+        heard: list[Number] = []
+        bus.topic("left/wanted", Number).obey(heard.append)
+        async with serve(backend) as served:
+            remote = RemoteBus(served.http)
+            for value in (1, 2):
+                await remote.publish("left/wanted", {"value": value})
+            with pytest.raises(BusError, match=r"it only tells.*commands are taken on left/wanted"):
+                await remote.publish("left/number", {"value": 3})
+            with pytest.raises(BusError, match="this is not a Number: Object contains unknown field"):
+                await remote.publish("left/wanted", {"value": 3, "unit": "m"})
+            with pytest.raises(BusError, match="left/wandet"):
+                await remote.publish("left/wandet", {"value": 3})
+    assert heard == [Number(value=1), Number(value=2)]
+
+
 async def test_a_goal_is_cancelled_when_its_client_goes(serve: Serve) -> None:
     """A lost connection must not leave a robot moving."""
     async with SkillBus(LoopClock()) as bus:
@@ -112,5 +131,5 @@ async def test_the_bus_is_closed_to_who_is_not_logged_in(serve: Serve) -> None:
     """It moves robots."""
     async with serve() as served, httpx.AsyncClient(base_url=served.running.url, trust_env=False) as stranger:
         assert (await stranger.get("/api/v1/bus")).status_code == 401
-        for path in ("call", "goal"):
+        for path in ("call", "goal", "publish"):
             assert (await stranger.post(f"/api/v1/bus/{path}", json={"address": "left/rest"})).status_code == 403

@@ -129,7 +129,8 @@ async def test_a_paused_run_is_stepped_and_resumed(project: Path, loopback: str)
 async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: str) -> None:
     async with site(project, loopback) as there:
         run = await there.start(supervision={"start_paused": True, "demand_operator": True, "autonomy": "low"})
-        assert (await there.command(run, "lock", path="root/one")).json()["locks"] == ["root/one"]
+        locked = await there.command(run, "lock", path="root/one", reason="the tray is being changed")
+        assert locked.json()["locks"] == ["root/one"]
         points = [{"path": "root/three", "condition": "value == 1", "when": "before"}]
         answered = (await there.command(run, "breakpoints", breakpoints=points)).json()["breakpoints"]
         assert [(each["path"], each["condition"], each["hits"]) for each in answered] == [
@@ -139,6 +140,9 @@ async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: st
         await there.told(run, GateReached, 2)
         assert (await there.command(run, "unlock", path="root/one")).json()["locks"] == []
         await there.told(run, GateReached, 3)
+        seen = (await there.served.http.get(f"/api/v1/runs/{run}/control")).json()
+        assert [(each["outcome"], each["required"]) for each in seen["waiting"]] == [("done", "high")]
+        assert (seen["demanded"], seen["loss_policy"], seen["loss_timeout_s"]) == (True, "hold", 5.0)
         assert (await there.command(run, "repeat", path="root/two")).status_code == 200
         await there.told(run, GateReached, 4)
         assert (await there.command(run, "answer", path="root/two")).status_code == 200
@@ -178,6 +182,9 @@ async def test_a_viewer_may_look_and_not_touch(project: Path, loopback: str) -> 
         async with httpx.AsyncClient(base_url=there.served.running.url, headers=headers, trust_env=False) as viewer:
             assert (await viewer.get(f"/api/v1/runs/{run}/control")).status_code == 200
             assert (await viewer.post(f"/api/v1/runs/{run}/control/resume")).status_code == 403
+            assert (await viewer.get(f"/api/v1/breakpoints/{STEPS_ID}")).status_code == 200
+            assert (await viewer.put(f"/api/v1/breakpoints/{STEPS_ID}", json={"breakpoints": []})).status_code == 403
+            assert (await viewer.post("/api/v1/cell/stop", json={})).status_code == 403
         assert VIEWER == "viewer"
 
 
@@ -223,6 +230,7 @@ async def test_an_interrupted_run_is_listed_asked_about_and_resumed(project: Pat
         asked = await http.post(f"/api/v1/interrupted/{run}/resume", json={})
         assert asked.status_code == 409
         assert "root/only (rerun, done)" in asked.json()["message"]
+        assert asked.json()["questions"] == [{"path": "root/only", "outcomes": ["done"]}]
         answer = await http.post(f"/api/v1/interrupted/{run}/resume", json={"answers": {"root/only": "done"}})
         assert (answer.status_code, answer.json()) == (201, {"run": run})
         assert (await there.session.wait(run)).outcome == "good"
@@ -243,3 +251,55 @@ async def test_a_run_begins_at_a_moment_of_another(project: Path, loopback: str)
             "/api/v1/runs", json={"behavior": STEPS_ID, "begin": {"run": before, "seq": 900}}
         )
         assert (answer.status_code, "has no event 900" in answer.json()["message"]) == (422, True)
+
+
+async def test_breakpoints_are_kept_beside_the_file_for_later_runs(project: Path, loopback: str) -> None:
+    """In the same file as those of the command line; what does not compile leaves it as it was."""
+    address = f"/api/v1/breakpoints/{STEPS_ID}"
+    points = [{"path": "root/two", "when": "after", "condition": "value == 1", "hits": 2, "outcomes": ["done"]}]
+    async with site(project, loopback) as there:
+        http = there.served.http
+        assert (await http.get(address)).json() == {"breakpoints": []}
+        kept = (await http.put(address, json={"breakpoints": points})).json()
+        assert kept == {"breakpoints": [{**points[0], "enabled": True}]}
+        wrong = await http.put(address, json={"breakpoints": [{"path": "root", "condition": "1 +"}]})
+        assert wrong.status_code == 422
+        assert (await http.get(address)).json() == kept
+        assert "root/two" in (project / "behaviors" / "steps.breakpoints.yaml").read_text(encoding="utf-8")
+        for nowhere in ("behaviors/none.yaml", "../steps.yaml", "%2e%2e/steps.yaml"):
+            refused = await http.put(f"/api/v1/breakpoints/{nowhere}", json={"breakpoints": []})
+            assert refused.status_code in (404, 422)
+        await http.put(address, json={"breakpoints": []})
+        assert not (project / "behaviors" / "steps.breakpoints.yaml").exists()
+
+
+async def test_the_live_stream_carries_the_control_of_the_watched_run(project: Path, loopback: str) -> None:
+    """With reasons of locks, questions with what they require, and nothing once the run is over."""
+    async with site(project, loopback) as there:
+        run = await there.start(supervision={"start_paused": True, "demand_operator": True, "autonomy": "low"})
+        await there.told(run, GateReached)
+        await there.command(run, "lock", path="root/one", reason="look first")
+        async with there.served.live(run) as page:
+            frame = await page.until("snapshot", run=run)
+            assert frame["control"]["paused"]
+            assert frame["control"]["locks"] == [{"path": "root/one", "reason": "look first"}]
+            assert [each["waits"] for each in frame["runs"]] == ["paused"]
+            await there.command(run, "unlock", path="root/one")
+            await there.command(run, "resume")
+            while not any("autonomy" in each["reasons"] for each in frame["control"]["waiting"]):
+                frame = await page.until("delta", run=run)
+            asking = frame["control"]["waiting"][0]
+            assert (asking["path"], asking["outcome"], asking["required"]) == ("root/two", "done", "high")
+            await there.command(run, "answer", path="root/two")
+            while frame["control"] is not None:
+                frame = await page.until("delta", run=run)
+        assert (await there.session.wait(run)).outcome == "good"
+
+
+async def test_the_cell_is_stopped_with_all_its_runs(project: Path, loopback: str) -> None:
+    async with site(project, loopback) as there:
+        runs = [await there.start(supervision={"start_paused": True}) for _ in range(2)]
+        answer = await there.served.http.post("/api/v1/cell/stop", json={"reason": "smoke"})
+        assert answer.status_code == 204
+        for run in runs:
+            assert (await there.session.wait(run)).status == "stopped"

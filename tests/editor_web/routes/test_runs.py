@@ -7,7 +7,8 @@ import asyncio
 import httpx
 
 from tests.editor_web.conftest import Serve
-from tests.editor_web.fake_backend import SINGLE, TRANSFER, FakeBackend
+from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.fake_behaviors import SINGLE, TRANSFER
 
 
 async def ended(http: httpx.AsyncClient, run: str) -> dict[str, object]:

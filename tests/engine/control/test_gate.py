@@ -9,7 +9,7 @@ import pytest
 from engine.control import Breakpoint
 from engine.control.step import StepMode
 from engine.errors import ControlError
-from engine.event import Event, GateReached, OutcomeRequested, OutcomeWithdrawn
+from engine.event import Commanded, Event, GateReached, OutcomeRequested, OutcomeWithdrawn
 from engine.run import Run
 from engine.supervision import Supervision
 from tests.engine.control.operate import Act, operate
@@ -84,6 +84,22 @@ def test_a_lock_holds_the_outcome_of_a_container_and_not_what_is_inside() -> Non
     )
     assert stops(told.events) == ["after root/two"]
     assert told.result.duration_s == pytest.approx(31.0)
+
+
+def test_the_reason_of_a_lock_is_in_its_event() -> None:
+    told = operate(
+        NESTED,
+        {
+            0.2: lambda run: run.control.lock("root/two", "the tray is being changed"),
+            0.3: lambda run: run.control.lock("root/one"),
+            0.4: lambda run: (run.control.unlock("root/one"), run.control.unlock("root/two")),
+        },
+    )
+    locks = [event for event in told.events if isinstance(event, Commanded) and event.command == "lock"]
+    assert [(event.path, event.arguments) for event in locks] == [
+        ("root/two", {"reason": "the tray is being changed"}),
+        ("root/one", {}),
+    ]
 
 
 def test_a_forced_outcome_preempts_what_runs_and_takes_its_transition() -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
 
 from engine.document import Placement, load_cell
+from engine.document.cell import MongoStore, SqliteStore
 from engine.errors import DocumentError, Position
 
 DEMO = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
@@ -34,9 +36,16 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
         "[0.05",
         "has 2 lengths, not 3 (diameter, length)",
     ),
+    "sphere with two lengths": ("shape: cylinder", "shape: sphere", "[0.05", "has one length, not 2 (diameter)"),
     "box with two lengths": ("[1, 1, 0.1]", "[1, 1]", "[1, 1]", "has 3 lengths, not 2"),
+    "sprung tray": (
+        "shape: box, size_m: [1, 1, 0.1],",
+        "shape: tray, size_m: [1, 1, 0.1], spring: {stiffness_n_m: 1000},",
+        "{stiffness",
+        "a tray cannot have a spring",
+    ),
     "unknown world": ("kind: mujoco", "kind: gazebo", "gazebo", "'gazebo'"),
-    "unknown store": ("kind: sqlite", "kind: mongodb", "mongodb", "'mongodb'"),
+    "unknown store": ("kind: sqlite", "kind: mongo", "mongo", "'mongo'"),
     "no world": ("world: {kind: mujoco}\n", "", "left", "robot `left` is simulated, and the cell has no world"),
     "capital in a name": ("left:", "Left:", "Left", "Lower-case letters"),
     "unknown driver word": ("model: panda,", "model: panda, driver: real,", "real", "known: sim"),
@@ -77,8 +86,36 @@ def test_paths_are_relative_to_the_document_except_the_database(tmp_path: Path) 
     file.write_text(SMALL, encoding="utf-8")
     cell = load_cell(file)
     assert cell.seed_file == tmp_path / "entries" / "small.yaml"
-    assert cell.document.store is not None
+    assert isinstance(cell.document.store, SqliteStore)
     assert cell.document.store.path == "data/cell.db"
+
+
+def test_a_store_may_be_on_a_server(tmp_path: Path) -> None:
+    """Its password is the name of an environment variable."""
+    file = tmp_path / "cell.yaml"
+    store = "store: {kind: mongodb, uri: 'mongodb://cell:${CELL_PASSWORD}@db:27017', seed: e.yaml}"
+    file.write_text(re.sub("store: .*", store, SMALL), encoding="utf-8")
+    cell = load_cell(file)
+    uri = "mongodb://cell:${CELL_PASSWORD}@db:27017"
+    assert cell.document.store == MongoStore(uri=uri, database="flexcell", seed="e.yaml")
+    assert cell.seed_file == tmp_path / "e.yaml"
+
+
+@pytest.mark.parametrize(
+    ("store", "says"),
+    [
+        ("{kind: mongodb, uri: 'mongodb://cell:secret@db'}", "the address of the store has a password in it"),
+        ("{kind: mongodb, uri: 'http://db'}", "uri"),
+        ("{kind: mongodb, uri: 'mongodb://db', database: 'a b'}", "database"),
+        ("{kind: mongo, uri: 'mongodb://db'}", "kind"),
+    ],
+)
+def test_a_store_that_cannot_be_meant_is_refused(tmp_path: Path, store: str, says: str) -> None:
+    """A secret in the file, another protocol, a name that no database has."""
+    file = tmp_path / "cell.yaml"
+    file.write_text(re.sub("store: .*", f"store: {store}", SMALL), encoding="utf-8")
+    with pytest.raises(DocumentError, match=says):
+        load_cell(file)
 
 
 def test_a_driver_of_its_own_keeps_its_options(tmp_path: Path) -> None:

@@ -19,6 +19,12 @@ poses:
   left/above: {xyz: [0.4, 0, 0.3], xyzw: [1, 0, 0, 0]}
 dmps:
   pour: {N: 2}
+cart_dmps:
+  wipe: {N: 3}
+cart_offsets:
+  pressed: {c_o: [1]}
+trajectories:
+  led: {times_s: [0, 1]}
 records:
   tray: {rows: 4}
 """
@@ -40,9 +46,14 @@ def test_each_section_gives_records_of_its_kind(tmp_path: Path) -> None:
         ("joints", "left_home", {"joints": [0.0, -0.5, 1.0]}),
         ("pose", "left/above", pose),
         ("dmp", "pour", {"N": 2}),
+        ("cart_dmp", "wipe", {"N": 3}),
+        ("cart_offsets", "pressed", {"c_o": [1]}),
+        ("trajectory", "led", {"times_s": [0, 1]}),
         ("record", "tray", {"rows": 4}),
     ]
-    assert entries.names() == {"left_home", "left/above", "pour", "tray"}
+    assert entries.names() == {"left_home", "left/above", "pour", "wipe", "pressed", "led", "tray"}
+    assert write_entries(entries.records()) == write_entries(reversed(entries.records()))
+    assert entries.names_by_kind()["cart_dmp"] == {"wipe"}
 
 
 @pytest.mark.parametrize(

@@ -275,14 +275,23 @@ def test_a_very_long_chain_of_references_is_refused(tmp_path: Path) -> None:
         load_behavior(tmp_path / "f0.yaml")
 
 
-def test_ten_thousand_states_load_within_a_second() -> None:
-    """The bar for large documents, in CPU time."""
+def test_ten_thousand_states_load_without_growing_slower() -> None:
+    """Ten times the states take far less than a hundred times as long; `benchmarks/engine.py` has the figures."""
+    small, large = _loading_s(1_000), _loading_s(10_000)
+    assert large < 40 * small
+
+
+def _loading_s(count: int) -> float:
+    """Return the least CPU time of three loads of a machine with `count` states."""
     states = "".join(
-        f"      s{i}: {{state: a.B, with: {{x: {i}}}, transitions: {{ok: s{i + 1}}}}}\n" for i in range(9_999)
+        f"      s{i}: {{state: a.B, with: {{x: {i}}}, transitions: {{ok: s{i + 1}}}}}\n" for i in range(count - 1)
     )
     head = "flexcell: 1\nname: x\noutcomes: [ok]\nroot:\n  machine:\n    initial: s0\n    states:\n"
-    text = f"{head}{states}      s9999: {{state: a.B}}\n"
-    start = time.process_time()
-    behavior = parse_behavior(text, file="x.yaml")
-    assert time.process_time() - start < 1.0
-    assert len(behavior.root.children) == 10_000
+    text = f"{head}{states}      s{count - 1}: {{state: a.B}}\n"
+    took: list[float] = []
+    for _ in range(3):
+        start = time.process_time()
+        behavior = parse_behavior(text, file="x.yaml")
+        took.append(time.process_time() - start)
+        assert len(behavior.root.children) == count
+    return min(took)

@@ -140,7 +140,7 @@ ACTS: list[Act] = [
     lambda run: run.control.pause(),
     lambda run: run.control.resume(),
     lambda run: run.control.step(),
-    lambda run: run.control.lock("root/only"),
+    lambda run: run.control.lock("root/only", "look first"),
     lambda run: run.control.unlock("root/only"),
     lambda run: run.control.set_breakpoints([Breakpoint(path="*/s1"), Breakpoint(path="*/c1", when="after")]),
     lambda run: run.control.attach_operator(),

@@ -1,39 +1,26 @@
-"""What every store does; a new implementation adds itself to `OPENERS` and passes the same tests."""
+"""What every store does, shown on each: SQLite, and MongoDB with and without a replica set."""
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
-from collections.abc import Callable
-from contextlib import AbstractAsyncContextManager
 from pathlib import Path
 
+import msgspec
 import pytest
 
-from engine.errors import EntryNotFound, StoreError
+from engine.errors import EntryConflict, EntryNotFound, StoreError
 from engine.messages import Pose
 from engine.skills.entries import EntryRecord
-from engine.store import EntryChange, EntryKey, Joints, SqliteStore, Store
+from engine.store import EntryChange, EntryKey, Joints, Store
+from tests.engine.store.stores import KINDS, Opener, opener_of
 
-Opener = Callable[[Path], AbstractAsyncContextManager[Store]]
-
-
-def _sqlite_inline(place: Path) -> SqliteStore:
-    return SqliteStore.open(place / "store.db", inline=True)
-
-
-def _sqlite_threaded(place: Path) -> SqliteStore:
-    return SqliteStore.open(place / "store.db")
-
-
-OPENERS: dict[str, Opener] = {"sqlite inline": _sqlite_inline, "sqlite threaded": _sqlite_threaded}
 HOME: dict[str, object] = {"joints": [0.0, -0.5, 1.0], "names": []}
 
 
-@pytest.fixture(params=OPENERS, name="opener")
+@pytest.fixture(params=KINDS, name="opener")
 def chosen_opener(request: pytest.FixtureRequest) -> Opener:
     """Give each implementation in turn."""
-    return OPENERS[request.param]
+    return opener_of(request.param, request)
 
 
 async def test_what_was_put_is_got_with_its_revision(opener: Opener, tmp_path: Path) -> None:
@@ -96,24 +83,48 @@ async def test_revision_zero_means_that_there_must_be_none(opener: Opener, tmp_p
             await store.put("record", "other", {}, expected_revision=4)
 
 
-async def test_of_many_writers_with_one_revision_exactly_one_wins(opener: Opener, tmp_path: Path) -> None:
-    """Counting with compare-and-set from two stores on one database loses no count."""
-    async with opener(tmp_path) as one, opener(tmp_path) as other:
-        await one.put("record", "counter", {"n": 0})
+async def test_eight_writers_at_once_lose_no_update_and_hear_of_each_conflict(opener: Opener, tmp_path: Path) -> None:
+    """Eight stores count in one entry by compare-and-set; whoever comes too late is told, and tries again."""
+    stores = [opener(tmp_path) for _ in range(8)]
+    conflicts: list[EntryConflict] = []
 
-        async def increment(store: Store) -> None:
-            while True:
-                seen = await store.get("record", "counter")
-                count = seen.value["n"]
-                assert isinstance(count, int)
-                with contextlib.suppress(StoreError):
-                    await store.put("record", "counter", {"n": count + 1}, expected_revision=seen.revision)
-                    return
+    async def count_up(store: Store) -> None:
+        done = 0
+        while done < 5:
+            seen = await store.get("record", "counter")
+            count = seen.value["n"]
+            assert isinstance(count, int)
+            try:
+                await store.put("record", "counter", {"n": count + 1}, expected_revision=seen.revision)
+                done += 1
+            except EntryConflict as conflict:
+                conflicts.append(conflict)
 
-        await asyncio.gather(*(increment(store) for store in (one, other) * 5))
-        assert await one.get("record", "counter") == EntryRecord(
-            kind="record", name="counter", value={"n": 10}, revision=11
-        )
+    try:
+        await stores[0].put("record", "counter", {"n": 0})
+        await asyncio.gather(*(count_up(store) for store in stores))
+        counted = await stores[0].get("record", "counter")
+        history = await stores[0].history("record", "counter")
+    finally:
+        for store in stores:
+            await store.close()
+    assert counted == EntryRecord(kind="record", name="counter", value={"n": 40}, revision=41)
+    assert [change.value for change in history] == [{"n": n} for n in range(41)]
+    assert all("is there, revision" in str(conflict) for conflict in conflicts)
+
+
+async def test_eight_writers_that_expect_nothing_all_leave_their_mark(opener: Opener, tmp_path: Path) -> None:
+    """Without an expected revision the last one wins, and the history has every write once."""
+    stores = [opener(tmp_path) for _ in range(8)]
+    try:
+        await asyncio.gather(*(store.put("record", "x", {"by": n}) for n, store in enumerate(stores)))
+        history = await stores[0].history("record", "x")
+        shown = await stores[0].get("record", "x")
+    finally:
+        for store in stores:
+            await store.close()
+    assert sorted(str(change.value) for change in history) == sorted(str({"by": n}) for n in range(8))
+    assert (shown.value, shown.revision) == (history[-1].value, 8)
 
 
 async def test_listing_filters_by_kind_and_prefix_and_sorts(opener: Opener, tmp_path: Path) -> None:
@@ -122,10 +133,11 @@ async def test_listing_filters_by_kind_and_prefix_and_sorts(opener: Opener, tmp_
         for name in ("left_b", "left_a", "leftxa", "right"):
             await store.put("joints", name, HOME)
         await store.put("record", "left_z", {})
-        assert await store.list(kind="joints", prefix="left_") == (
-            EntryKey(kind="joints", name="left_a", revision=1),
-            EntryKey(kind="joints", name="left_b", revision=1),
-        )
+        found = await store.list(kind="joints", prefix="left_")
+        assert [(key.kind, key.name, key.revision) for key in found] == [
+            ("joints", "left_a", 1),
+            ("joints", "left_b", 1),
+        ]
         assert [key.name for key in await store.list(prefix="left_")] == ["left_a", "left_b", "left_z"]
         assert len(await store.list()) == 5
 
@@ -151,25 +163,12 @@ async def test_deleting_a_stale_revision_is_refused(opener: Opener, tmp_path: Pa
         assert (await store.get("record", "state")).revision == 1
 
 
-async def test_the_history_tells_every_change(opener: Opener, tmp_path: Path) -> None:
-    """Writing, overwriting and deleting are three changes."""
-    async with opener(tmp_path) as store:
-        await store.put("record", "state", {"n": 1})
-        await store.put("record", "state", {"n": 2})
-        await store.delete("record", "state")
-        values: list[dict[str, object] | None] = [{"n": 1}, {"n": 2}, None]
-        assert await store.history("record", "state") == tuple(
-            EntryChange(kind="record", name="state", revision=n, value=value) for n, value in enumerate(values, 1)
-        )
-        assert await store.history("record", "never") == ()
-
-
 async def test_seeding_writes_only_what_is_missing(opener: Opener, tmp_path: Path) -> None:
     """A cell that starts again keeps what was taught in the meantime."""
     entries = [EntryRecord(kind="record", name=name, value={"from": "seed"}, revision=0) for name in ("a", "b")]
     async with opener(tmp_path) as store:
         await store.put("record", "a", {"from": "teaching"})
-        assert await store.seed(entries) == (EntryKey(kind="record", name="b", revision=1),)
+        assert [(key.name, key.revision) for key in await store.seed(entries)] == [("b", 1)]
         assert (await store.get("record", "a")).value == {"from": "teaching"}
 
 
@@ -179,7 +178,7 @@ async def test_overwriting_seed_replaces_what_differs_and_leaves_the_rest(opener
     async with opener(tmp_path) as store:
         await store.seed(entries)
         await store.put("record", "a", {"from": "teaching"})
-        assert await store.seed(entries, overwrite=True) == (EntryKey(kind="record", name="a", revision=3),)
+        assert [(key.name, key.revision) for key in await store.seed(entries, overwrite=True)] == [("a", 3)]
 
 
 async def test_a_seed_with_one_bad_entry_writes_none(opener: Opener, tmp_path: Path) -> None:
@@ -252,8 +251,134 @@ async def test_an_unknown_kind_is_answered_with_the_known_ones(opener: Opener, t
 async def test_a_closed_store_says_so_and_closes_again(opener: Opener, tmp_path: Path) -> None:
     """Use after closing is an error, closing twice is none."""
     store = opener(tmp_path)
-    async with store as opened:
+    async with store:
         pass
-    await opened.close()
+    await store.close()
     with pytest.raises(StoreError, match="the store is closed"):
-        await opened.get("record", "a")
+        await store.get("record", "a")
+
+
+async def test_tags_stay_until_they_are_replaced(opener: Opener, tmp_path: Path) -> None:
+    """Overwriting a value keeps them; an empty list takes them away."""
+    async with opener(tmp_path) as store:
+        await store.put("record", "a", {"n": 1}, tags=["tested", "bench-2", "tested"])
+        await store.put("record", "a", {"n": 2})
+        assert (await store.list())[0].tags == ("bench-2", "tested")
+        assert await store.list(tags=["tested", "bench-2"]) == await store.list()
+        assert await store.list(tags=["test"]) == ()
+        await store.put("record", "a", {"n": 3}, tags=[])
+        assert (await store.list())[0].tags == ()
+        assert await store.list(tags=["tested"]) == ()
+
+
+@pytest.mark.parametrize("tag", ["", "Two Words", "ä", "x" * 65])
+async def test_tags_outside_the_pattern_are_refused(opener: Opener, tmp_path: Path, tag: str) -> None:
+    """As names are."""
+    async with opener(tmp_path) as store:
+        with pytest.raises(StoreError, match=r"record a: .* cannot be a tag"):
+            await store.put("record", "a", {}, tags=[tag])
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("left", ["left_above_pick", "left_home", "old_left"]),
+        ("pick LE", ["left_above_pick"]),
+        ("home", ["left_home", "right_home"]),
+        ("eft", []),
+        ("slow", ["right_home"]),
+        ("home slow-", ["right_home"]),
+        ("", ["left_above_pick", "left_home", "old_left", "right_home"]),
+        ("!", []),
+        ("$where", []),
+    ],
+)
+async def test_search_finds_beginnings_of_words_of_names_and_tags(
+    opener: Opener, tmp_path: Path, text: str, found: list[str]
+) -> None:
+    """Each word that is typed must begin some word."""
+    async with opener(tmp_path) as store:
+        for name in ("left_home", "left_above_pick", "old_left"):
+            await store.put("record", name, {})
+        await store.put("record", "right_home", {}, tags=["slow-motion"])
+        await store.put("record", "gone_left", {})
+        await store.delete("record", "gone_left")
+        assert [key.name for key in await store.list(text=text)] == found
+
+
+async def test_pages_follow_one_another_without_gap_or_overlap(opener: Opener, tmp_path: Path) -> None:
+    """The last entry of a page is where the next begins."""
+    async with opener(tmp_path) as store:
+        for kind in ("record", "joints"):
+            for n in range(4):
+                await store.put(kind, f"e{n}", HOME)
+        pages: list[EntryKey] = []
+        page: tuple[EntryKey, ...] = ()
+        while page := await store.list(limit=3, after=page[-1] if page else None, text="e"):
+            pages += page
+        assert tuple(pages) == await store.list()
+        assert len(pages) == 8
+
+
+async def test_a_follower_hears_what_another_store_commits(opener: Opener, tmp_path: Path) -> None:
+    """Changes by others and its own, each once; an inline store, which nobody shares, hears its own."""
+    heard: asyncio.Queue[EntryChange] = asyncio.Queue()
+    async with opener(tmp_path) as mine, opener(tmp_path) as theirs:
+        end = await mine.follow(heard.put_nowait)
+        await mine.put("record", "mine", {"n": 1})
+        first = await asyncio.wait_for(heard.get(), 20)
+        await theirs.put("record", "theirs", {"n": 2}, by="them")
+        if await _is_inline(mine):
+            end()
+            return
+        second = await asyncio.wait_for(heard.get(), 20)
+        await mine.put("record", "mine", {"n": 3})
+        third = await asyncio.wait_for(heard.get(), 20)
+        end()
+        assert [(c.name, c.value, c.by) for c in (first, second, third)] == [
+            ("mine", {"n": 1}, ""),
+            ("theirs", {"n": 2}, "them"),
+            ("mine", {"n": 3}, ""),
+        ]
+
+
+async def _is_inline(store: Store) -> bool:
+    """Whether the store works on the calling thread: then an answer is there without the loop turning once."""
+    asking = asyncio.ensure_future(store.list())
+    await asyncio.sleep(0)
+    done = asking.done()
+    await asking
+    return done
+
+
+async def test_a_value_of_more_than_eight_megabytes_is_refused_in_words(opener: Opener, tmp_path: Path) -> None:
+    """A document of 16 MB, and one just above the limit."""
+    async with opener(tmp_path) as store:
+        for size in (16 * 1024 * 1024, 8 * 1024 * 1024):
+            with pytest.raises(
+                StoreError, match=r"record big: the value takes .* MB, more than 8\.4 MB \(store it in parts\)"
+            ):
+                await store.put("record", "big", {"text": "x" * size})
+        assert await store.list() == ()
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        {"$ref": "a", "$id": 1},
+        {"nested": [{"$oid": "650000000000000000000000"}, {"$date": 1}]},
+        {"a\x00b": 1},
+        {"": {"$set": {"a.b": None}}},
+        {"low": -(2**63), "high": 2**63 - 1, "small": 3, "tiny": 5e-324, "minus": -0.0, "one": 1.0},
+        {"many": [0] * 1_200_000},
+    ],
+    ids=["reference", "extended json", "zero byte", "operators", "numbers", "larger as BSON than as JSON"],
+)
+async def test_any_value_comes_back_as_it_was(opener: Opener, tmp_path: Path, value: dict[str, object]) -> None:
+    """Keys and numbers that a database could take for something else."""
+    async with opener(tmp_path) as store:
+        await store.put("record", "a", value)
+        got = await store.get("record", "a")
+        assert msgspec.json.encode(got.value, order="deterministic") == msgspec.json.encode(
+            value, order="deterministic"
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,18 @@ import pytest
 from engine.bus import SkillBus
 from engine.clock import LoopClock
 from engine.errors import EntryNotFound
-from engine.skills.entries import EntryList, EntryRecord, ListEntries, ReadEntry, WriteEntry
-from engine.store import SqliteStore, register_store
+from engine.skills.entries import (
+    DeleteEntry,
+    EntryChanged,
+    EntryList,
+    EntryRecord,
+    ListEntries,
+    ReadEntry,
+    ReadHistory,
+    UndoEntry,
+    WriteEntry,
+)
+from engine.store import SqliteStore, publish_changes, register_store
 
 
 async def test_entries_are_written_read_and_listed_over_the_bus(tmp_path: Path) -> None:
@@ -23,3 +34,32 @@ async def test_entries_are_written_read_and_listed_over_the_bus(tmp_path: Path) 
         assert await bus.call(ListEntries(prefix="a/"), to="store") == EntryList(entries=(("record", "a/b", 1),))
         with pytest.raises(EntryNotFound, match="did you mean a/b"):
             await bus.call(ReadEntry(kind="record", name="a/c"), to="store")
+
+
+async def test_changes_are_undone_told_and_published_over_the_bus(tmp_path: Path) -> None:
+    """Who changed what and why is on `store/changes` and in the history, whichever program did it."""
+    async with (
+        SqliteStore.open(tmp_path / "s.db") as store,
+        SqliteStore.open(tmp_path / "s.db") as other,
+        SkillBus(LoopClock()) as bus,
+    ):
+        register_store(bus, store)
+        await publish_changes(bus, store)
+        with bus.topic("store/changes", EntryChanged).stream() as changes:
+            write = WriteEntry(kind="record", name="a", value={"n": 1}, tags=("x",), by="ana", reason="taught")
+            await bus.call(write, to="store")
+            assert await bus.call(ListEntries(text="a", tags=("x",)), to="store") == EntryList(
+                entries=(("record", "a", 1),)
+            )
+            undone = await bus.call(UndoEntry(kind="record", name="a", by="bor"), to="store")
+            assert (undone.revision, undone.deleted, undone.by) == (2, True, "bor")
+            await other.put("record", "b", {}, by="another program")
+            told = [await asyncio.wait_for(changes.next(), 20) for _ in range(3)]
+        assert [(change.name, change.by, change.reason, change.tags) for change in told] == [
+            ("a", "ana", "taught", ("x",)),
+            ("a", "bor", "", ()),
+            ("b", "another program", "", ()),
+        ]
+        assert (await bus.call(ReadHistory(kind="record", name="a"), to="store")).changes == tuple(told[:2])
+        deleted = await bus.call(DeleteEntry(kind="record", name="b", by="eva", expected_revision=1), to="store")
+        assert (deleted.deleted, deleted.by, deleted.revision) == (True, "eva", 2)

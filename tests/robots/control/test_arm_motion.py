@@ -8,7 +8,9 @@ import numpy as np
 
 from robots.control.arm_motion import ArmMotion
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.control.playback import Playback
 from robots.port import Array, JointTrajectory, Tolerance
+from tests.robots.control.plane_arm import plane_state
 
 START = np.zeros(2)
 
@@ -31,7 +33,7 @@ def run(
     for step in range(limit):
         before, position = position, measure(motion.position)
         velocity = np.full(2, 0.5) if moving else (position - before) / 0.001
-        events = list(motion.step(0.001, position=position.copy(), velocity=velocity))
+        events = list(motion.step(0.001, plane_state(position, velocity)))
         position = measure(motion.position)
         if events:
             return events, step
@@ -40,9 +42,9 @@ def run(
 
 def new_motion(goal: Array, tolerance: Tolerance, *, contact: str = "") -> ArmMotion:
     """Return an arm's motions with number 7 under way."""
-    motion = ArmMotion(joints=("shoulder", "elbow"), acceleration_rad_s2=np.full(2, 10.0), touching=lambda: contact)
+    motion = ArmMotion(joints=("shoulder", "elbow"), touching=lambda: contact)
     motion.initialize(START)
-    motion.follow(7, ramp(goal), tolerance)
+    motion.start(7, Playback(ramp(goal), acceleration_rad_s2=np.full(2, 10.0)), tolerance)
     return motion
 
 

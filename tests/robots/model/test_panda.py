@@ -11,10 +11,11 @@ from robots.model.description import installed_share_dir, resolve_uri
 from robots.model.registry import model_by_name
 
 PANDA = model_by_name("panda")
+DESCRIBED = PANDA.licence_file.parent / "urdf" / "panda.urdf"
 
 
 def test_every_name_it_uses_is_in_the_urdf() -> None:
-    root = ET.parse(PANDA.urdf).getroot()
+    root = ET.fromstring(PANDA.urdf_text)
     names = {element.attrib["name"] for element in (*root.iter("link"), *root.iter("joint"))}
     gripper = PANDA.gripper
     assert gripper is not None
@@ -24,7 +25,7 @@ def test_every_name_it_uses_is_in_the_urdf() -> None:
 
 
 def test_its_position_velocity_and_effort_limits_are_those_of_the_urdf() -> None:
-    joints = {joint.attrib["name"]: joint for joint in ET.parse(PANDA.urdf).getroot().iter("joint")}
+    joints = {joint.attrib["name"]: joint for joint in ET.parse(DESCRIBED).getroot().iter("joint")}
     for index, name in enumerate(PANDA.arm_joints):
         limit = joints[name].find("limit")
         assert limit is not None
@@ -63,4 +64,4 @@ def test_a_missing_package_is_named_with_the_way_to_install_it() -> None:
 
 def test_a_missing_mesh_is_named() -> None:
     with pytest.raises(CellError, match="no mesh file"):
-        resolve_uri("package://nowhere/link.dae", package_dir=PANDA.package_dir, relative_to=PANDA.urdf.parent)
+        resolve_uri("package://nowhere/link.dae", package_dirs=PANDA.package_dirs, relative_to=DESCRIBED.parent)

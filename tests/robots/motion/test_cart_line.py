@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -67,7 +68,7 @@ def test_a_line_starts_and_ends_exactly_at_rest() -> None:
     assert (way.position_rad[0] == home()).all()
     assert not way.velocity_rad_s[[0, -1]].any()
     assert end.distance_m(shifted(home(), move, np.zeros(3))) < 1e-6
-    assert (len(way.position_rad) - 1) * way.dt_s == pytest.approx(2.0)
+    assert way.duration_s == pytest.approx(2.0)
 
 
 def test_a_line_that_is_too_fast_names_joint_time_and_limit_and_the_time_it_asks_for_suffices() -> None:
@@ -111,3 +112,10 @@ def test_half_a_turn_of_the_hand_is_followed() -> None:
     """Pure rotation about the tool's axis, close to where SLERP has two ways."""
     way = plan(np.zeros(3), np.array([0.0, 0.0, 2.0]), duration_s=4.0)
     assert way.position_rad[-1][6] - home()[6] == pytest.approx(-2.0, abs=0.5)
+
+
+@pytest.mark.parametrize("duration_s", [0.0, -1.0, 1e308, math.nan, math.inf])
+def test_a_duration_that_is_no_time_is_refused(duration_s: float) -> None:
+    end = Rigid(xyz=panda_kinematics().tool_pose(home()).xyz + 0.01, xyzw=panda_kinematics().tool_pose(home()).xyzw)
+    with pytest.raises(RobotError, match="a line cannot take"):
+        plan_line(panda_kinematics(), home(), end, duration_s=duration_s)

@@ -96,3 +96,19 @@ def test_a_goal_that_cannot_be_is_refused_with_the_joint(goal: tuple[float, ...]
     with pytest.raises(RobotError) as refusal:
         plan(home(), np.array(goal), speed=0.5)
     assert str(refusal.value).startswith(message)
+
+
+def test_the_slowest_motion_has_no_more_samples_than_a_long_one() -> None:
+    model = panda_model()
+    way = plan_joints(home(), home() + 0.3, speed=1e-5, limits=model.limits, joint_names=model.arm_joints)
+    _, velocity, acceleration = played(way)
+    assert len(way.position_rad) <= 20_001
+    assert (np.abs(velocity) <= 1e-5 * np.array(model.limits.velocity_rad_s)).all()
+    assert (np.abs(acceleration) <= np.array(model.limits.acceleration_rad_s2)).all()
+
+
+@pytest.mark.parametrize("speed", [0.0, -0.1, 1.1, 1e-9, math.nan, math.inf])
+def test_a_speed_that_is_no_share_is_refused(speed: float) -> None:
+    model = panda_model()
+    with pytest.raises(RobotError, match=r"the speed cannot be .*give a share from 1e-05 to 1"):
+        plan_joints(home(), home() + 0.3, speed=speed, limits=model.limits, joint_names=model.arm_joints)

@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.document.cell import CellDocument, GripperEntry, load_cell
+from engine.document.cell import CellDocument, Fixture, GripperEntry, Spring, load_cell
 from engine.errors import CellError
 from robots.sim.cell_model import build_cell
 from robots.sim.cell_scene import scene_of
@@ -38,7 +38,38 @@ def test_a_part_taken_from_the_document_is_gone_from_the_world(document: CellDoc
     assert build_cell(scene_of(msgspec.structs.replace(document, parts={}))).parts == ()
 
 
-def test_a_gripper_that_the_robot_does_not_come_with_is_refused_by_name(document: CellDocument) -> None:
-    robots = {"left": msgspec.structs.replace(document.robots["left"], gripper=GripperEntry(model="claw"))}
-    with pytest.raises(CellError, match="comes with the gripper panda_hand, not claw"):
-        scene_of(msgspec.structs.replace(document, robots=robots))
+def left_alone(document: CellDocument, **changes: object) -> CellDocument:
+    """Return the document with the left robot only, changed."""
+    robot = msgspec.structs.replace(document.robots["left"], **changes)
+    return msgspec.structs.replace(document, robots={"left": robot}, fixtures={}, parts={})
+
+
+def test_a_gripper_that_there_is_none_of_is_refused_with_the_near_name(document: CellDocument) -> None:
+    wanted = left_alone(document, gripper=GripperEntry(model="servo_clow"))
+    with pytest.raises(CellError, match=r"robot left: no gripper model is called servo_clow \(did you mean servo_claw"):
+        scene_of(wanted)
+
+
+def test_the_tool_is_chosen_in_the_cell_document_or_left_out(document: CellDocument) -> None:
+    def links(gripper: GripperEntry | None) -> set[str]:
+        return {
+            frame.removeprefix("left/") for frame in build_cell(scene_of(left_alone(document, gripper=gripper))).frames
+        }
+
+    bare, claw = links(None), links(GripperEntry(model="servo_claw"))
+    assert bare < claw
+    assert claw - bare == {"servo_claw_base", "servo_claw_left_finger", "servo_claw_right_finger", "servo_claw_tcp"}
+
+
+def test_an_option_that_the_arm_does_not_have_is_refused(document: CellDocument) -> None:
+    with pytest.raises(CellError, match="robot left: the joints of panda are not coupled"):
+        scene_of(left_alone(document, coupled_joints=True))
+    with pytest.raises(CellError, match="panda knows no calibration files"):
+        scene_of(left_alone(document, calibration="x.yaml"))
+
+
+def test_a_fixture_with_a_spring_gives_way(document: CellDocument) -> None:
+    spring = Spring(stiffness_n_m=5000.0, friction=0.5)
+    pad = Fixture(shape="box", size_m=(0.2, 0.2, 0.02), spring=spring)
+    (body,) = scene_of(msgspec.structs.replace(document, fixtures={"pad": pad})).fixtures
+    assert (body.spring_n_m, body.spring_ns_m, body.sprung_kg, body.skin_friction) == (5000.0, 60.0, 0.1, 0.5)

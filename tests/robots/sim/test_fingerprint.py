@@ -45,7 +45,7 @@ def test_whatever_changes_the_future_changes_the_fingerprint(other: Scene) -> No
 def test_a_moved_installation_has_the_same_worlds(tmp_path: Path) -> None:
     """The meshes are the same, only found elsewhere."""
     moved = tmp_path / "a-much-longer-way-to-the-descriptions"
-    moved.symlink_to(PANDA.package_dir)
-    here, there = arm_spec(PANDA).compile(), arm_spec(replace(PANDA, package_dir=moved)).compile()
+    moved.symlink_to(PANDA.package_dirs[0])
+    here, there = arm_spec(PANDA).compile(), arm_spec(replace(PANDA, package_dirs=(moved,))).compile()
     assert here.paths != there.paths
     assert fingerprint(here) == fingerprint(there)

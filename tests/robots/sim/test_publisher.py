@@ -8,7 +8,15 @@ import pytest
 
 from engine.bus import SkillBus
 from engine.clock import new_clock
-from engine.messages import FramePoses, GripperState, JointState, PartPoses, SceneDescription
+from engine.messages import (
+    ExternalTorque,
+    FramePoses,
+    GripperState,
+    JointState,
+    PartPoses,
+    SceneDescription,
+    Wrench,
+)
 from tests.robots.sim.sim_cell import HOME, box, move, one_arm, opened
 
 
@@ -42,6 +50,23 @@ async def test_streams_come_at_their_rates_in_world_time() -> None:
         assert len(joints) == 100
         assert 29 <= len(frames) <= 31
         assert joints == sorted(joints)
+
+
+@pytest.mark.virtual
+async def test_what_an_arm_feels_is_told_as_wrench_and_joint_torques() -> None:
+    async with opened(one_arm()) as world:
+        bus = SkillBus(new_clock())
+        world.register(bus)
+        heard: list[Wrench] = []
+        bus.topic("left/wrench", Wrench).subscribe(heard.append)
+        world.push("left/panda_hand_tcp", force_n=(0.0, 12.0, 0.0), duration_s=2.0)
+        await asyncio.sleep(1.0)
+        torque = bus.topic("left/external", ExternalTorque).latest
+        assert torque is not None
+        # The tool is 0.307 m before the base's axis.
+        assert torque.torque_nm[0] == pytest.approx(12.0 * 0.307, rel=0.03)
+        assert (torque.names[0], len(heard), heard[-1].frame) == ("panda_joint1", 100, "world")
+        assert heard[-1].force_n == pytest.approx((0.0, 12.0, 0.0), abs=0.05)
 
 
 async def test_streams_come_in_real_time_as_well() -> None:

@@ -10,10 +10,15 @@ from hypothesis import strategies as st
 
 from engine.errors import RobotError
 from robots.gripper.grip_judgement import Grip
+from robots.port import ArmSettings
 from robots.sim.seal import FORMAT, WorldImage, sealed, unsealed
 
 NUMBERS = np.arange(40.0) / 3.0
-IMAGE = WorldImage.of(NUMBERS, {"left/gripper": Grip(least_m=0.02, most_m=0.04, force_n=20.0)})
+GRIPS = {"left/gripper": Grip(least_m=0.02, most_m=0.04, force_n=20.0)}
+SETTINGS = {"left": ArmSettings(controller="cartesian_impedance", load_kg=2.0, collision_force_n=20.0)}
+REFLEXES = {"left": "the tool feels 31.0 N from outside, its threshold is 20 N"}
+OUTPUTS = {"left": (True, False)}
+IMAGE = WorldImage.of(NUMBERS, GRIPS, SETTINGS, REFLEXES, OUTPUTS)
 SNAPSHOT = sealed(IMAGE, model="m")
 
 
@@ -30,7 +35,8 @@ def test_what_was_sealed_comes_back() -> None:
 
 
 def test_equal_worlds_have_equal_snapshots() -> None:
-    assert sealed(WorldImage.of(NUMBERS.copy(), dict(IMAGE.grips)), model="m") == SNAPSHOT
+    again = WorldImage.of(NUMBERS.copy(), dict(GRIPS), dict(SETTINGS), dict(REFLEXES), dict(OUTPUTS))
+    assert sealed(again, model="m") == SNAPSHOT
 
 
 def test_another_world_is_refused() -> None:
@@ -50,7 +56,7 @@ def test_another_simulator_is_refused() -> None:
 
 @pytest.mark.parametrize("numbers", [np.zeros(39), np.full(40, np.nan)])
 def test_a_world_that_cannot_be_is_refused(numbers: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
-    assert "a world that cannot be" in refusal(sealed(WorldImage.of(numbers, {}), model="m"))
+    assert "a world that cannot be" in refusal(sealed(WorldImage.of(numbers, {}, {}, {}, {}), model="m"))
 
 
 @given(st.binary(max_size=400))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from robots.port import Tolerance
+from robots.sim.arm_commands import Follow
 from robots.sim.cell_model import build_cell
-from robots.sim.commands import Cancel, Follow
+from robots.sim.commands import Cancel
 from robots.sim.simulation import Simulation
 from robots.sim.snapshot import Snapshot
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, PANDA, box, one_arm, smooth, two_arms

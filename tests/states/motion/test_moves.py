@@ -98,6 +98,22 @@ async def test_a_pose_entry_with_an_offset_is_commanded_along_the_world() -> Non
     assert ctx.sent[1] == ("right/cart_trap_vel", CartTrapVel(pose=pose, speed=1.0))
 
 
+async def test_what_of_the_pose_counts_is_told_to_the_arm() -> None:
+    """All of it, unless the behavior says otherwise."""
+    ctx = FakeContext({"right/cart_trap_vel": DONE_CART})
+    target = PoseTarget(xyz=(0.1, 0.2, 0.3))
+    for state in (
+        MovePose(robot="right", target=target),
+        MovePose(robot="right", target=target, match="position"),
+    ):
+        assert await state.run(ctx) == Outcome("reached")
+    pose = Pose(xyz=(0.1, 0.2, 0.3))
+    assert [goal for _, goal in ctx.sent] == [
+        CartTrapVel(pose=pose, speed=0.5, match="pose"),
+        CartTrapVel(pose=pose, speed=0.5, match="position"),
+    ]
+
+
 async def test_a_failed_pose_motion_names_the_entry_and_its_offset() -> None:
     """The message tells which of several motions to one entry it was."""
     ctx = FakeContext(

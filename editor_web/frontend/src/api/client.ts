@@ -1,11 +1,27 @@
 /** The HTTP interface: typed calls, and errors that carry the server's words. */
-import type { BehaviorBody, BehaviorSummaryBody, ErrorBody, SessionBody, StartBody, StartedBody } from './types'
+import type {
+  BehaviorBody,
+  BehaviorSummaryBody,
+  BreakpointsBody,
+  ChangeBody,
+  ControlBody,
+  ErrorBody,
+  InterruptedBody,
+  QuestionBody,
+  ResumeBody,
+  SessionBody,
+  StartBody,
+  StartedBody,
+  StepBody,
+} from './types'
 
 /** The server refused; `where` names the parameter or place it is about. */
 export class ServerError extends Error {
   constructor(
     readonly status: number,
     readonly body: ErrorBody,
+    /** What an interrupted run asks before it goes on. */
+    readonly questions: readonly QuestionBody[] = [],
   ) {
     super(body.message)
     this.name = 'ServerError'
@@ -16,7 +32,7 @@ async function call<T>(path: string, init?: RequestInit): Promise<T> {
   const response = await fetch(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
   const text = await response.text()
   const body: unknown = text ? parse(text) : undefined
-  if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText))
+  if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body))
   return body as T
 }
 
@@ -33,12 +49,31 @@ function errorOf(body: unknown, otherwise: string): ErrorBody {
   return { message: given.message ?? otherwise, where: given.where ?? '', hint: given.hint ?? '' }
 }
 
-function post<T>(path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
+function questionsOf(body: unknown): readonly QuestionBody[] {
+  const given = typeof body === 'object' && body !== null ? (body as { questions?: unknown }).questions : undefined
+  return Array.isArray(given) ? (given as QuestionBody[]) : []
+}
+
+/** What the server said, in one line with its advice. */
+export function wordsOf(error: unknown): string {
+  if (error instanceof ServerError) return [error.body.message, error.body.hint].filter(Boolean).join(' – ')
+  return error instanceof Error ? error.message : String(error)
+}
+
+function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
   return call<T>(path, {
-    method: 'POST',
+    method,
     headers: { 'content-type': 'application/json', accept: 'application/json', ...headers },
     body: JSON.stringify(body),
   })
+}
+
+function post<T>(path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
+  return sent<T>('POST', path, body, headers)
+}
+
+function command(run: string, name: string, body: unknown = {}): Promise<ControlBody> {
+  return post<ControlBody>(`/runs/${encodeURIComponent(run)}/control/${name}`, body)
 }
 
 function idPath(id: string): string {
@@ -52,5 +87,26 @@ export const api = {
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
   start: (body: StartBody, key: string) => post<StartedBody>('/runs', body, { 'idempotency-key': key }),
   resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
+  pause: (run: string) => command(run, 'pause'),
+  resume: (run: string) => command(run, 'resume'),
+  step: (run: string, body: StepBody) => command(run, 'step', body),
+  lock: (run: string, path: string, reason: string) => command(run, 'lock', { path, reason }),
+  unlock: (run: string, path: string) => command(run, 'unlock', { path }),
+  force: (run: string, path: string, outcome: string) => command(run, 'force', { path, outcome }),
+  repeat: (run: string, path: string) => command(run, 'repeat', { path }),
+  answer: (run: string, path: string) => command(run, 'answer', { path }),
+  autonomy: (run: string, level: string) => command(run, 'autonomy', { level }),
+  breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),
+  change: (run: string) => post<ChangeBody>(`/runs/${encodeURIComponent(run)}/control/change`, {}),
+  keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
+  keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
+    sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
+  interrupted: () => call<readonly InterruptedBody[]>('/interrupted'),
+  resumeInterrupted: (run: string, body: ResumeBody) =>
+    post<StartedBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
+  stopCell: () => post<void>('/cell/stop', { reason: 'the cell was stopped in the dashboard' }),
+  setSpeed: (arm: string, share: number) =>
+    post<unknown>('/bus/call', { address: `${arm}/set_speed_override`, request: { share } }),
+  recover: (arm: string) => post<unknown>('/bus/call', { address: `${arm}/recover_from_error`, request: {} }),
   stop: (run: string) => post<void>(`/runs/${encodeURIComponent(run)}/stop`, { reason: 'stopped in the dashboard' }),
 }

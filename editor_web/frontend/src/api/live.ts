@@ -1,8 +1,8 @@
 /** The live connection: one websocket, reopened when it is lost, folded into one store. */
 import { create } from 'zustand'
-import { EMPTY, fold, type LiveState } from '../document/live'
+import { EMPTY, fold, isActive, type LiveState } from '../document/live'
 import { api, ServerError } from './client'
-import type { Frame, Watch } from './types'
+import type { Frame, Operate, Watch } from './types'
 
 export type Connection = 'connecting' | 'live' | 'lost' | 'denied'
 
@@ -10,9 +10,18 @@ interface LiveStore extends LiveState {
   readonly connection: Connection
   /** Counts restarts of the server; what was fetched before one is out of date. */
   readonly generation: number
+  /** The run that this page operates; kept over a reload of the page, empty for none. */
+  readonly operated: string
 }
 
-export const useLive = create<LiveStore>(() => ({ ...EMPTY, connection: 'connecting', generation: 0 }))
+const OPERATED = 'flexcell.operated'
+
+export const useLive = create<LiveStore>(() => ({
+  ...EMPTY,
+  connection: 'connecting',
+  generation: 0,
+  operated: sessionStorage.getItem(OPERATED) ?? '',
+}))
 
 const SILENCE_MS = 12_000
 const RETRY_MS = [250, 500, 1000, 2000, 3000]
@@ -29,6 +38,26 @@ export function watch(run: string): void {
   sendWatch()
 }
 
+/** Be the operator of this run from now on, until it is over or the page says so; empty leaves it. */
+export function operate(run: string): void {
+  if (run) sessionStorage.setItem(OPERATED, run)
+  else sessionStorage.removeItem(OPERATED)
+  useLive.setState({ operated: run })
+  sendOperate()
+}
+
+/** Wait until the run that is shown has an operator. */
+export function attached(run: string): Promise<void> {
+  return new Promise((resolve) => {
+    const isAttached = () => useLive.getState().run === run && useLive.getState().control?.operator === 'attached'
+    const unsubscribe = useLive.subscribe(() => isAttached() && (unsubscribe(), resolve()))
+    if (isAttached()) {
+      unsubscribe()
+      resolve()
+    }
+  })
+}
+
 /** Open the connection and keep it open; returns how to end it. */
 export function connect(): () => void {
   let ended = false
@@ -40,6 +69,7 @@ export function connect(): () => void {
     opened.onopen = () => {
       attempt = 0
       if (watched) sendWatch()
+      if (useLive.getState().operated) sendOperate()
     }
     opened.onmessage = (message: MessageEvent<string>) => receive(opened, JSON.parse(message.data) as Frame)
     opened.onclose = () => {
@@ -89,12 +119,20 @@ function receive(from: WebSocket, frame: Frame): void {
   }
   const restarted = before.epoch !== '' && before.epoch !== next.epoch
   useLive.setState({ ...next, connection: 'live', generation: before.generation + (restarted ? 1 : 0) })
+  // A run that is over, or of another server, has no operator any more.
+  const operated = next.runs.find((run) => run.id === before.operated)
+  if (before.operated && (restarted || (operated && !isActive(operated)))) operate('')
 }
 
 /** The server speaks every five seconds; a connection that is silent for longer is dead. */
 function listenForSilence(on: WebSocket): void {
   clearTimeout(silence)
   silence = setTimeout(() => on.close(), SILENCE_MS)
+}
+
+function sendOperate(): void {
+  const request: Operate = { k: 'operate', run: useLive.getState().operated }
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(request))
 }
 
 function sendWatch(): void {

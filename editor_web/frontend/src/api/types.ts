@@ -1,5 +1,13 @@
 // Made by `python -m editor_web.schema`; edit the Python models instead.
 
+/** An interrupted run cannot go on before these questions are answered. */
+export interface AskBody {
+  readonly message: string
+  readonly where: string
+  readonly hint: string
+  readonly questions: readonly QuestionBody[]
+}
+
 /** Outcomes that require less than `level` pass by themselves. */
 export interface AutonomyBody {
   readonly level: "off" | "low" | "high" | "full"
@@ -38,7 +46,17 @@ export interface BreakpointBody {
   readonly enabled?: boolean
 }
 
-/** All breakpoints of the run; they replace those before. */
+/** A breakpoint of the run, as it is sent to `control/breakpoints`. */
+export interface BreakpointLive {
+  readonly path: string
+  readonly when: "after" | "before"
+  readonly condition: string | null
+  readonly hits: number
+  readonly outcomes: readonly string[]
+  readonly enabled: boolean
+}
+
+/** All breakpoints of a run, or of a behavior; they replace those before. */
 export interface BreakpointsBody {
   readonly breakpoints: readonly BreakpointBody[]
 }
@@ -66,9 +84,29 @@ export interface ControlBody {
   readonly autonomy: "off" | "low" | "high" | "full"
   readonly operator: string
   readonly active: readonly string[]
+  readonly stepping: boolean
+  readonly demanded: boolean
+  readonly loss_policy: "hold" | "continue" | "stop"
+  readonly loss_timeout_s: number
 }
 
-/** What changed in the watched run since `after`, and the runs that changed; `dropped` log lines are missing. */
+/** The control of a run that is under way. `confirmed` once everything that was to be held is at rest; `operator` is none, attached, detached or lost; `loss_policy` is what happens `loss_timeout_s` after a loss. */
+export interface ControlLive {
+  readonly paused: boolean
+  readonly confirmed: boolean
+  readonly stepping: boolean
+  readonly cannot: readonly string[]
+  readonly waiting: readonly WaitingLive[]
+  readonly locks: readonly LockLive[]
+  readonly breakpoints: readonly BreakpointLive[]
+  readonly autonomy: "full" | "high" | "low" | "off"
+  readonly operator: string
+  readonly demanded: boolean
+  readonly loss_policy: string
+  readonly loss_timeout_s: number
+}
+
+/** What changed in the watched run since `after`, the runs and arms that changed, and the run's present control. `dropped` log lines are missing. */
 export interface Delta {
   readonly k: "delta"
   readonly run: string
@@ -80,6 +118,8 @@ export interface Delta {
   readonly nodes: Readonly<Record<string, NodeLive>>
   readonly log: readonly LogLine[]
   readonly dropped: number
+  readonly control: ControlLive | null
+  readonly robots: Readonly<Record<string, RobotLine>>
 }
 
 /** Why a request failed: what, where (a parameter's name, a file, a node path), what to do. */
@@ -142,6 +182,18 @@ export interface InterruptedBody {
   readonly last_seq: number
 }
 
+/** Hold the outcome of a node; `reason` goes into the event log. */
+export interface LockBody {
+  readonly path: string
+  readonly reason: string
+}
+
+/** A locked node and why, in the words of whoever locked it. */
+export interface LockLive {
+  readonly path: string
+  readonly reason: string
+}
+
 /** One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag. */
 export interface LogLine {
   readonly seq: number
@@ -200,10 +252,26 @@ export interface Pong {
   readonly k: "pong"
 }
 
+/** A state that a crash found in mid-work: what became of it is for a person to say. */
+export interface QuestionBody {
+  readonly path: string
+  readonly outcomes: readonly string[]
+}
+
 /** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
 export interface ResumeBody {
   readonly answers?: Readonly<Record<string, string>>
   readonly changed?: boolean
+}
+
+/** One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at. */
+export interface RobotLine {
+  readonly name: string
+  readonly mode: string
+  readonly activity: string
+  readonly error: string
+  readonly speed_override: number
+  readonly controller: string
 }
 
 /** One run, under way or over. */
@@ -218,7 +286,7 @@ export interface RunBody {
   readonly duration_s: number
 }
 
-/** One run in the list of runs; the same fields as the HTTP interface has. */
+/** One run in the list of runs; `waits` is asks, paused or locked while it waits for somebody. */
 export interface RunLine {
   readonly id: string
   readonly behavior: string
@@ -228,6 +296,7 @@ export interface RunLine {
   readonly cause: string
   readonly started_at_s: number
   readonly duration_s: number
+  readonly waits: string
 }
 
 /** Who is logged in, and what this server has. */
@@ -238,7 +307,7 @@ export interface SessionBody {
   readonly epoch: string
 }
 
-/** Everything of the watched run (empty when none is) and all runs, newest first. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. */
+/** Everything of the watched run (empty when none is), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is there while the run is under way. */
 export interface Snapshot {
   readonly k: "snapshot"
   readonly run: string
@@ -248,6 +317,8 @@ export interface Snapshot {
   readonly runs: readonly RunLine[]
   readonly nodes: Readonly<Record<string, NodeLive>>
   readonly log: readonly LogLine[]
+  readonly control: ControlLive | null
+  readonly robots: Readonly<Record<string, RobotLine>>
 }
 
 /** A request to start a run; without a seed the server draws one. */
@@ -299,6 +370,16 @@ export interface WaitingBody {
   readonly visit: number
   readonly point: "before" | "after"
   readonly outcome: string
+  readonly required: string
+  readonly reasons: readonly string[]
+}
+
+/** A node that waits `before` its entry or `after` its outcome; `reasons` are pause, lock, autonomy. */
+export interface WaitingLive {
+  readonly path: string
+  readonly point: "after" | "before"
+  readonly outcome: string
+  readonly required: string
   readonly reasons: readonly string[]
 }
 

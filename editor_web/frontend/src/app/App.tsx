@@ -52,7 +52,8 @@ export function App() {
         <Header
           cellName={session.value?.cell_name ?? ''}
           mayOperate={session.value?.role === 'operator'}
-          active={runs.find(isActive)}
+          active={shown && isActive(shown) ? shown : runs.find(isActive)}
+          others={runs.filter(isActive).length - 1}
           onHome={() => open('/')}
           onRun={(id) => open(runHref(id))}
         />
@@ -70,15 +71,15 @@ export function App() {
         <Interruption />
         {behaviorId ? (
           <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
-          <BehaviorPage
-            key={behaviorId}
-            id={behaviorId}
-            run={shown}
-            busyWith={runs.find(isActive)}
-            session={session.value}
-            isNarrow={isNarrow}
-            onStarted={() => open(behaviorHref(behaviorId))}
-          />
+            <BehaviorPage
+              key={behaviorId}
+              id={behaviorId}
+              run={shown}
+              active={runs.filter(isActive)}
+              session={session.value}
+              isNarrow={isNarrow}
+              onStarted={() => open(behaviorHref(behaviorId))}
+            />
           </Suspense>
         ) : (
           <HomePage hasCellView={session.value?.has_cell_view ?? false} onOpenRun={(id) => open(runHref(id))} isUnknownRun={route.page === 'run'} />

@@ -1,9 +1,11 @@
-/** The page of a behavior: head, graph, log, cell, parameters, outline and problems. */
-import { Button, Tabs } from '@mantine/core'
+/** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
+import { Button } from '@mantine/core'
 import { IconPlayerPlayFilled } from '@tabler/icons-react'
-import { useState, type ReactNode } from 'react'
-import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { useEffect, useState } from 'react'
+import { loadKept, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { api } from '../api/client'
+import { useLive } from '../api/live'
+import { forgive, refuse } from '../api/refusal'
 import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { Panel } from '../components/Panel'
@@ -12,20 +14,32 @@ import { isActive } from '../document/live'
 import { nodeAt, pathsTo } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
+import { ChangeReport } from '../features/control/ChangeReport'
+import { Holds } from '../features/control/Holds'
+import { FORCE_ID, NodeCard } from '../features/control/NodeCard'
+import { RefusalLine } from '../features/control/RefusalLine'
+import { Requests, REQUESTS_ID } from '../features/control/Requests'
+import { RunBar } from '../features/control/RunBar'
+import { ShortcutSheet } from '../features/control/ShortcutSheet'
+import { useCommands, type Commands } from '../features/control/useCommands'
+import { useShortcuts } from '../features/control/useShortcuts'
 import { FindingList } from '../features/findings/FindingList'
-import { Graph } from '../features/graph/Graph'
+import { Graph, type Shown } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
 import { EventLog } from '../features/log/EventLog'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
+import { RobotStrip } from '../features/robots/RobotStrip'
+import { StopCell } from '../features/robots/StopCell'
 import { useFetched } from './useFetched'
+import { Narrow, NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 
 export interface BehaviorPageProps {
   readonly id: string
   /** The run that is shown, if any. */
   readonly run: RunLine | undefined
-  /** The run that occupies the cell, if any. */
-  readonly busyWith: RunLine | undefined
+  /** All runs under way. */
+  readonly active: readonly RunLine[]
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onStarted: () => void
@@ -33,23 +47,79 @@ export interface BehaviorPageProps {
 
 export function BehaviorPage(props: BehaviorPageProps) {
   const { id } = props
-  const fetched = useFetched(id, () => api.behavior(id))
+  const generation = useLive((s) => s.generation)
+  // Whoever changed the behavior under way: what is drawn is what runs.
+  const changedAt = useLive((s) => s.log.findLast((line) => line.kind === 'behavior_changed')?.seq ?? 0)
+  const fetched = useFetched(id, () => api.behavior(id), changedAt)
+  useEffect(() => {
+    forgive()
+    void loadKept(id)
+  }, [id, generation])
   if (fetched.problem) return <Empty title="This behavior cannot be shown">{fetched.problem}</Empty>
   if (!fetched.value) return <div className="page-wait" role="status" aria-label="Loading" />
   return <Loaded {...props} behavior={fetched.value} />
 }
 
-function Loaded({ behavior, run, busyWith, session, isNarrow, onStarted }: BehaviorPageProps & { behavior: BehaviorBody }) {
+function Loaded({ behavior, run, active, session, isNarrow, onStarted }: BehaviorPageProps & { behavior: BehaviorBody }) {
   const [selected, setSelected] = useState<string>()
-  const obstacle = obstacleOf(behavior, busyWith, session)
+  const [shown, setShown] = useState<Shown>()
+  const [tab, setTab] = useState<Tab>(behavior.errors > 0 ? 'problems' : 'parameters')
+  const [isSheetOpen, setSheetOpen] = useState(false)
+  const obstacle = obstacleOf(behavior, active, session)
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
+  const commands = useCommands(run, node?.path)
+  const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
+  const mayOperate = session?.role === 'operator'
 
+  /** Choose a node on the canvas: what can be done with it comes forward. */
+  function choose(path: string | undefined): void {
+    setSelected(path)
+    if (path) setTab('node')
+    else if (tab === 'node') setTab('parameters')
+  }
+
+  function show(path: string): void {
+    choose(path)
+    setShown({ path })
+  }
+
+  const keys = useShortcuts({
+    pause: commands.pauseOrResume,
+    into: () => commands.step('into'),
+    over: () => commands.step('over'),
+    out: () => commands.step('out'),
+    stop: commands.stop,
+    sheet: () => setSheetOpen(true),
+    break: () => withNode('Breakpoint', 'breakpoint', (path) => void toggleBreakpoint(path)),
+    lock: () =>
+      withNode('Lock', 'lock', (path) => {
+        const isLocked = useLive.getState().control?.locks.some((each) => each.path === path)
+        void (isLocked ? commands.unlock(path) : commands.lock(path, ''))
+      }),
+    repeat: () => withNode('Run again', 'repeat', (path) => void commands.repeat(path)),
+    force: () => withNode('Force', 'force', () => focusFirst(FORCE_ID)),
+    answer: () => focusFirst(REQUESTS_ID) || refuse('Answer', 'the run asks nothing'),
+    waiting: () => {
+      const waiting = useLive.getState().control?.waiting[0]
+      if (waiting) show(waiting.path)
+      else refuse('Go to a node that waits', 'no node waits')
+    },
+  })
+
+  function withNode(words: string, command: Parameters<Commands['obstacle']>[0], act: (path: string) => void): void {
+    const why = commands.obstacle(command)
+    if (why || !node) refuse(words, why ?? 'choose a node in the graph first')
+    else act(node.path)
+  }
+
+  const card = node && <NodeCard node={node} commands={commands} />
   const graph = behavior.graph ? (
     <Graph
       root={behavior.graph}
       selected={selected}
-      onSelect={setSelected}
-      breadcrumb={<Breadcrumb selected={selected} onSelect={setSelected} />}
+      onSelect={choose}
+      shown={shown}
+      breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
     />
   ) : (
     <Panel title="Graph">
@@ -57,13 +127,37 @@ function Loaded({ behavior, run, busyWith, session, isNarrow, onStarted }: Behav
     </Panel>
   )
   const cell = (
-    <Panel title="Cell" className="cell-panel" tools={session?.role === 'operator' && <ResetParts isBusy={busyWith !== undefined} />}>
+    <Panel
+      title="Cell"
+      className="cell-panel"
+      tools={
+        mayOperate && (
+          <>
+            <ResetParts isBusy={active.length > 0} />
+            <StopCell />
+          </>
+        )
+      }
+      foot={<RobotStrip />}
+    >
       <CellFrame isServed={session?.has_cell_view ?? false} />
     </Panel>
   )
   const parameters = (
     <div className="tab-body">
-      <ParameterForm behavior={behavior} obstacle={obstacle} onStarted={onStarted} />
+      <ParameterForm behavior={behavior} obstacle={obstacle} place={placeOf(session, active.filter((each) => each.behavior !== behavior.id))} onStarted={onStarted} />
+    </div>
+  )
+  const nodeTab = (
+    <div className="tab-body is-flush">
+      {node ? (
+        <>
+          {card}
+          <Selection node={node} />
+        </>
+      ) : (
+        <Empty title="No node is chosen">Click a node in the graph, or choose one in the outline.</Empty>
+      )}
     </div>
   )
   const outline = (
@@ -72,9 +166,14 @@ function Loaded({ behavior, run, busyWith, session, isNarrow, onStarted }: Behav
       {node && <Selection node={node} />}
     </div>
   )
+  const held = (
+    <div className="tab-body">
+      <Holds commands={commands} onShow={show} />
+    </div>
+  )
   const problems = (
     <div className="tab-body">
-      <FindingList document={behavior.id} findings={behavior.findings} onSelect={setSelected} />
+      <FindingList document={behavior.id} findings={behavior.findings} onSelect={show} />
     </div>
   )
 
@@ -99,89 +198,47 @@ function Loaded({ behavior, run, busyWith, session, isNarrow, onStarted }: Behav
           Start
         </Button>
       </header>
+      <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
+      <RefusalLine />
+      <Requests root={behavior.graph} commands={commands} onShow={show} />
       {isNarrow ? (
-        <Narrow views={{ Parameters: parameters, Graph: graph, Cell: cell, Log: <EventLog />, Outline: outline, Problems: problems }} />
+        <Narrow
+          views={{
+            Start: parameters,
+            Graph: <NarrowGraph graph={graph} card={card} />,
+            Cell: cell,
+            Log: <EventLog />,
+            Outline: outline,
+            Breakpoints: held,
+            Problems: problems,
+          }}
+        />
       ) : (
-        <Wide graph={graph} cell={cell} tabs={<SideTabs behavior={behavior} parameters={parameters} outline={outline} problems={problems} selected={selected} />} />
+        <Wide
+          graph={graph}
+          log={<EventLog />}
+          cell={cell}
+          tabs={
+            <SideTabs
+              tab={tab}
+              onTab={setTab}
+              counts={{ holds, problems: behavior.findings.length }}
+              bodies={{ parameters, node: nodeTab, outline, holds: held, problems }}
+            />
+          }
+        />
       )}
+      <ChangeReport commands={commands} />
+      <ShortcutSheet isOpen={isSheetOpen} onClose={() => setSheetOpen(false)} areOn={keys.areOn} onSwitch={keys.setOn} />
     </div>
   )
 }
 
-function Wide({ graph, cell, tabs }: { graph: ReactNode; cell: ReactNode; tabs: ReactNode }) {
-  return (
-    <Group orientation="horizontal" className="work-space">
-      <Pane id="left" defaultSize="67%" minSize="30%">
-        <Group orientation="vertical">
-          <Pane id="graph" defaultSize="71%" minSize="20%">
-            {graph}
-          </Pane>
-          <Separator className="splitter is-flat" aria-label="Height of the graph" />
-          <Pane id="log" defaultSize="29%" minSize="12%">
-            <EventLog />
-          </Pane>
-        </Group>
-      </Pane>
-      <Separator className="splitter" aria-label="Width of the graph" />
-      <Pane id="right" defaultSize="33%" minSize="22%">
-        <Group orientation="vertical">
-          <Pane id="cell" defaultSize="48%" minSize="15%">
-            {cell}
-          </Pane>
-          <Separator className="splitter is-flat" aria-label="Height of the cell" />
-          <Pane id="tabs" defaultSize="52%" minSize="15%">
-            {tabs}
-          </Pane>
-        </Group>
-      </Pane>
-    </Group>
-  )
-}
-
-interface SideTabsProps {
-  readonly behavior: BehaviorBody
-  readonly selected: string | undefined
-  readonly parameters: ReactNode
-  readonly outline: ReactNode
-  readonly problems: ReactNode
-}
-
-function SideTabs({ behavior, parameters, outline, problems }: SideTabsProps) {
-  return (
-    <Tabs defaultValue={behavior.errors > 0 ? 'problems' : 'parameters'} className="side-tabs" keepMounted>
-      <Tabs.List>
-        <Tabs.Tab value="parameters">Parameters</Tabs.Tab>
-        <Tabs.Tab value="outline">Outline</Tabs.Tab>
-        <Tabs.Tab value="problems">
-          Problems{behavior.findings.length > 0 && <span className="tab-count">{behavior.findings.length}</span>}
-        </Tabs.Tab>
-      </Tabs.List>
-      <Tabs.Panel value="parameters">{parameters}</Tabs.Panel>
-      <Tabs.Panel value="outline">{outline}</Tabs.Panel>
-      <Tabs.Panel value="problems">{problems}</Tabs.Panel>
-    </Tabs>
-  )
-}
-
-/** One view at a time, for small screens. */
-function Narrow({ views }: { views: Readonly<Record<string, ReactNode>> }) {
-  const names = Object.keys(views)
-  return (
-    <Tabs defaultValue={names[0] ?? ''} className="side-tabs narrow-tabs" keepMounted>
-      <Tabs.List>
-        {names.map((name) => (
-          <Tabs.Tab key={name} value={name}>
-            {name}
-          </Tabs.Tab>
-        ))}
-      </Tabs.List>
-      {names.map((name) => (
-        <Tabs.Panel key={name} value={name}>
-          {views[name]}
-        </Tabs.Panel>
-      ))}
-    </Tabs>
-  )
+/** Put the keyboard on the first button of an area; false where there is none. */
+function focusFirst(id: string): boolean {
+  const button = document.querySelector<HTMLElement>(`#${id} .command`)
+  button?.focus()
+  return button !== null
 }
 
 function Breadcrumb({ selected, onSelect }: { selected: string | undefined; onSelect: (path: string) => void }) {
@@ -202,8 +259,14 @@ function Breadcrumb({ selected, onSelect }: { selected: string | undefined; onSe
   )
 }
 
-function obstacleOf(behavior: BehaviorBody, busyWith: RunLine | undefined, session: SessionBody | undefined): string | undefined {
+function obstacleOf(behavior: BehaviorBody, active: readonly RunLine[], session: SessionBody | undefined): string | undefined {
   if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
   if (behavior.errors > 0) return 'The document has errors; see its problems'
-  return busyWith ? 'The cell is busy with a run' : undefined
+  return active.some((run) => run.behavior === behavior.id) ? 'This behavior is running' : undefined
+}
+
+function placeOf(session: SessionBody | undefined, active: readonly RunLine[]): string {
+  const where = session?.cell_name ? `It runs in the cell ${session.cell_name}, in real time.` : 'It runs without a cell, in real time.'
+  const others = active.length === 1 ? 'Another run is' : `${active.length} other runs are`
+  return active.length > 0 ? `${where} ${others} under way: an arm that one of them holds is refused to this one.` : where
 }

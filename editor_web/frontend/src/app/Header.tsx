@@ -11,12 +11,15 @@ import { nameOf, RunTime } from '../features/runs/RunList'
 export interface HeaderProps {
   readonly cellName: string
   readonly mayOperate: boolean
+  /** The run under way that is shown, else any. */
   readonly active: RunLine | undefined
+  /** How many more are under way. */
+  readonly others: number
   readonly onHome: () => void
   readonly onRun: (id: string) => void
 }
 
-export function Header({ cellName, mayOperate, active, onHome, onRun }: HeaderProps) {
+export function Header({ cellName, mayOperate, active, others, onHome, onRun }: HeaderProps) {
   return (
     <>
       <a
@@ -40,6 +43,7 @@ export function Header({ cellName, mayOperate, active, onHome, onRun }: HeaderPr
             <span>{nameOf(active.behavior)}</span>
           </button>
           <RunTime run={active} />
+          {others > 0 && <span>+ {others}</span>}
         </div>
       )}
       {active && mayOperate && <StopButton run={active} />}

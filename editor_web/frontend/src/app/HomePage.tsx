@@ -1,13 +1,18 @@
 /** The page of the cell: the 3D view, and the runs as a table. */
 import { Table } from '@mantine/core'
+import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { Empty } from '../components/Empty'
 import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
 import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
-import { nameOf, RunTime } from '../features/runs/RunList'
+import { RobotStrip } from '../features/robots/RobotStrip'
+import { StopCell } from '../features/robots/StopCell'
+import { Interrupted } from '../features/runs/Interrupted'
+import { nameOf, RunTime, waitsText } from '../features/runs/RunList'
 import { runHref } from './route'
+import { useFetched } from './useFetched'
 
 export interface HomePageProps {
   readonly hasCellView: boolean
@@ -18,14 +23,27 @@ export interface HomePageProps {
 export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps) {
   const runs = useLive((s) => s.runs)
   const connection = useLive((s) => s.connection)
+  const role = useLive((s) => s.role)
+  // A resumed run is one more run of this server.
+  const interrupted = useFetched('interrupted', api.interrupted, runs.length)
   return (
     <div className="home">
       <h1 className="visually-hidden">The cell</h1>
       {isUnknownRun && connection === 'live' && <p className="note">That run is not known to this server any more.</p>}
-      <Panel title="Cell" className="home-cell">
+      <Panel title="Cell" className="home-cell" tools={role === 'operator' && <StopCellTools />} foot={<RobotStrip />}>
         <CellFrame isServed={hasCellView} />
       </Panel>
       <Panel title="Latest runs" className="home-runs">
+        {interrupted.value && interrupted.value.length > 0 && (
+          <section aria-label="Interrupted runs" className="interrupted-area">
+            <h3>Interrupted runs</h3>
+            <Interrupted
+              runs={interrupted.value}
+              obstacle={role === 'operator' ? undefined : 'you may look only; log in with the operator token'}
+              onResumed={onOpenRun}
+            />
+          </section>
+        )}
         {runs.length === 0 ? (
           <Empty title="No runs yet">Choose a behavior on the left, set its parameters and start it.</Empty>
         ) : (
@@ -53,6 +71,7 @@ export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps
                       >
                         {nameOf(run.behavior)}
                       </a>
+                      {run.waits && <div className="run-cause run-asks">{waitsText(run)}</div>}
                       {run.cause && <div className="quiet run-cause">{run.cause}</div>}
                     </Table.Td>
                     <Table.Td>
@@ -70,5 +89,14 @@ export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps
         )}
       </Panel>
     </div>
+  )
+}
+
+function StopCellTools() {
+  return (
+    <>
+      <span className="spacer" />
+      <StopCell />
+    </>
   )
 }

@@ -1,6 +1,6 @@
-/** Something fetched from the server, fetched again when its key changes, or the server was restarted. */
+/** Something fetched from the server, fetched again when its key or revision changes, or the server was restarted. */
 import { useEffect, useState } from 'react'
-import { ServerError } from '../api/client'
+import { wordsOf } from '../api/client'
 import { useLive } from '../api/live'
 
 export interface Fetched<T> {
@@ -8,7 +8,7 @@ export interface Fetched<T> {
   readonly problem: string | undefined
 }
 
-export function useFetched<T>(key: string, load: () => Promise<T>): Fetched<T> {
+export function useFetched<T>(key: string, load: () => Promise<T>, revision: number | string = 0): Fetched<T> {
   const generation = useLive((s) => s.generation)
   const [state, setState] = useState<Fetched<T> & { key: string }>({ key, value: undefined, problem: undefined })
   useEffect(() => {
@@ -21,12 +21,7 @@ export function useFetched<T>(key: string, load: () => Promise<T>): Fetched<T> {
       current = false
     }
     // eslint-disable-next-line react-hooks/exhaustive-deps -- the key stands for what `load` depends on
-  }, [key, generation])
+  }, [key, generation, revision])
   // What another server process said is shown until this one has answered: nothing typed is lost.
   return state.key === key ? state : { value: undefined, problem: undefined }
-}
-
-function wordsOf(error: unknown): string {
-  if (error instanceof ServerError) return [error.body.message, error.body.hint].filter(Boolean).join(' – ')
-  return error instanceof Error ? error.message : String(error)
 }

@@ -5,10 +5,12 @@ export interface PanelProps {
   readonly title: string
   readonly tools?: ReactNode
   readonly children: ReactNode
+  /** Stays in sight below what is shown. */
+  readonly foot?: ReactNode
   readonly className?: string
 }
 
-export function Panel({ title, tools, children, className = '' }: PanelProps) {
+export function Panel({ title, tools, children, foot, className = '' }: PanelProps) {
   return (
     <section className={`panel ${className}`} aria-label={title}>
       <header className="panel-header">
@@ -16,6 +18,7 @@ export function Panel({ title, tools, children, className = '' }: PanelProps) {
         {tools}
       </header>
       <div className="panel-body">{children}</div>
+      {foot}
     </section>
   )
 }

@@ -22,6 +22,7 @@ const run = (id: string, started_at_s: number, status = 'running'): RunLine => (
   cause: '',
   started_at_s,
   duration_s: 0,
+  waits: '',
 })
 const snapshot = (change: Partial<Snapshot> = {}): Snapshot => ({
   k: 'snapshot',
@@ -32,6 +33,8 @@ const snapshot = (change: Partial<Snapshot> = {}): Snapshot => ({
   runs: [run('r1', 1)],
   nodes: { root: node('active') },
   log: [line(1), line(2), line(3)],
+  control: null,
+  robots: {},
   ...change,
 })
 const delta = (change: Partial<Delta> = {}): Delta => ({
@@ -45,6 +48,8 @@ const delta = (change: Partial<Delta> = {}): Delta => ({
   nodes: {},
   log: [],
   dropped: 0,
+  control: null,
+  robots: {},
   ...change,
 })
 const started = fold(EMPTY, snapshot(), 10) as LiveState

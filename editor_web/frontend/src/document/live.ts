@@ -1,5 +1,5 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
-import type { Delta, Frame, LogLine, NodeLive, RunLine, Snapshot } from '../api/types'
+import type { ControlLive, Delta, Frame, LogLine, NodeLive, RobotLine, RunLine, Snapshot } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -17,6 +17,9 @@ export interface LiveState {
   readonly nodes: Readonly<Record<string, NodeLive>>
   readonly log: readonly LogLine[]
   readonly dropped: number
+  /** What can be done with the watched run; null when it is over. */
+  readonly control: ControlLive | null
+  readonly robots: Readonly<Record<string, RobotLine>>
 }
 
 export const EMPTY: LiveState = {
@@ -31,6 +34,8 @@ export const EMPTY: LiveState = {
   nodes: {},
   log: [],
   dropped: 0,
+  control: null,
+  robots: {},
 }
 
 /** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
@@ -50,7 +55,9 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
 function fromSnapshot(state: LiveState, frame: Snapshot, atMs: number): LiveState {
   const { run, seq, runs, nodes, log, ticking } = frame
   const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
-  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped }
+  const { robots } = frame
+  const control = unchanged(state.control, frame.control)
+  return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, robots }
 }
 
 function withDelta(state: LiveState, frame: Delta, atMs: number): LiveState {
@@ -66,7 +73,14 @@ function withDelta(state: LiveState, frame: Delta, atMs: number): LiveState {
     nodes: Object.keys(frame.nodes).length > 0 ? { ...state.nodes, ...frame.nodes } : state.nodes,
     log: over > 0 ? log.slice(over) : log,
     dropped: state.dropped + frame.dropped + over,
+    control: unchanged(state.control, frame.control),
+    robots: Object.keys(frame.robots).length > 0 ? { ...state.robots, ...frame.robots } : state.robots,
   }
+}
+
+/** The old object where the new one says the same, so that nothing is drawn again. */
+function unchanged(old: ControlLive | null, fresh: ControlLive | null): ControlLive | null {
+  return JSON.stringify(old) === JSON.stringify(fresh) ? old : fresh
 }
 
 function mergeRuns(runs: readonly RunLine[], changed: readonly RunLine[]): readonly RunLine[] {

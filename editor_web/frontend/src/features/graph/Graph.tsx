@@ -33,8 +33,15 @@ export interface GraphProps {
   /** Path of the selected node. */
   readonly selected: string | undefined
   readonly onSelect: (path: string | undefined) => void
+  /** A node to bring into view; a new object asks anew. */
+  readonly shown: Shown | undefined
   /** Shown in the head of the panel. */
   readonly breadcrumb: ReactNode
+}
+
+/** Which node was asked for. */
+export interface Shown {
+  readonly path: string
 }
 
 export function Graph(props: GraphProps) {
@@ -45,7 +52,7 @@ export function Graph(props: GraphProps) {
   )
 }
 
-function Canvas({ root, selected, onSelect, breadcrumb }: GraphProps) {
+function Canvas({ root, selected, onSelect, shown, breadcrumb }: GraphProps) {
   const { ref, width, height } = useElementSize()
   const [flow, setFlow] = useState<Flow>('AUTO')
   const [follows, setFollows] = useState(false)
@@ -79,6 +86,7 @@ function Canvas({ root, selected, onSelect, breadcrumb }: GraphProps) {
           pane={`${width}x${height}`}
           selected={selected}
           onSelect={onSelect}
+          shown={shown}
           follows={follows}
         />
       )}
@@ -103,7 +111,7 @@ function followOptions(active: string) {
   return { nodes: active.split('\n').map((id) => ({ id })), padding: 0.35, maxZoom: 1, duration: 300 }
 }
 
-function Drawn({ laidOut, pane, selected, onSelect, follows }: DrawnProps) {
+function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps) {
   const { fitView } = useReactFlow()
   const active = useLive((s) => (follows ? activeLeaves(laidOut.root, s.nodes) : ''))
   const drawn = useMemo(() => canvasNodes(laidOut), [laidOut])
@@ -117,6 +125,10 @@ function Drawn({ laidOut, pane, selected, onSelect, follows }: DrawnProps) {
     const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
     return () => cancelAnimationFrame(frame)
   }, [laidOut, pane, active, fitView])
+
+  useEffect(() => {
+    if (shown) void fitView({ nodes: [{ id: shown.path }], padding: 0.6, maxZoom: 1, duration: 300 })
+  }, [shown, fitView])
 
   return (
     <ReactFlow

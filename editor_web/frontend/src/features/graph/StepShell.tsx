@@ -9,6 +9,7 @@ import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 import type { OutcomeNode, StepNode } from './elements'
+import { HeldText, Marks } from './Marks'
 
 const KIND_ICONS: Record<string, typeof IconBox> = {
   machine: IconSitemap,
@@ -23,6 +24,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
     <div className={`step leaf is-${status}${selected ? ' is-selected' : ''}`} data-status={status}>
       <Ports />
       {data.isInitial && <span className="initial-mark" title="The first state" />}
+      <Marks path={id} />
       {/* A new key starts the animation again, so that a visit shorter than a frame is seen. */}
       <span key={live?.visits ?? 0} className={live && live.visits > 0 ? 'blink' : undefined} />
       <div className="leaf-head">
@@ -33,6 +35,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
       <div className="step-title">{data.node.title || kindLabel(data.node.kind)}</div>
       <div className="step-foot">
         <LiveText live={live} />
+        <HeldText path={id} />
       </div>
       <Exits data={data} />
     </div>
@@ -51,11 +54,13 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
     >
       <Ports />
       {data.isInitial && <span className="initial-mark" title="The first state" />}
+      <Marks path={id} />
       <div className="container-head">
         <Icon size={16} className="kind-icon" aria-hidden />
         <span className="step-name">{node.name}</span>
         <span className="kind-name">{kindLabel(node.kind)}</span>
         <span className="spacer" />
+        <HeldText path={id} />
         {status !== 'idle' && <StatusIcon status={status} size={14} />}
         <span className="container-live">
           <LiveText live={live} />

@@ -1,9 +1,10 @@
 /** The form that sets a behavior's parameters for one run. */
 import { Alert, Collapse, NumberInput, UnstyledButton } from '@mantine/core'
 import { IconAlertCircle, IconChevronDown, IconChevronRight } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useState, type ReactNode } from 'react'
 import type { BehaviorBody } from '../../api/types'
 import { ParameterField } from './ParameterField'
+import { StartOptions } from './StartOptions'
 import { useStart } from './useStart'
 
 /** The id by which buttons elsewhere on the page submit the form. */
@@ -13,13 +14,14 @@ export interface ParameterFormProps {
   readonly behavior: BehaviorBody
   /** Why it cannot be started now; undefined when it can. */
   readonly obstacle: string | undefined
+  /** Where it will run, in words. */
+  readonly place: string
   readonly onStarted: () => void
 }
 
-export function ParameterForm({ behavior, obstacle, onStarted }: ParameterFormProps) {
-  const { fields, values, set, problems, refusal, submit, seed, setSeed } = useStart(behavior, onStarted)
-  const [advanced, setAdvanced] = useState(false)
-  const Chevron = advanced ? IconChevronDown : IconChevronRight
+export function ParameterForm({ behavior, obstacle, place, onStarted }: ParameterFormProps) {
+  const start = useStart(behavior, onStarted)
+  const { fields, values, set, problems, refusal, submit, seed, setSeed } = start
   return (
     <form
       id={FORM_ID}
@@ -47,24 +49,37 @@ export function ParameterForm({ behavior, obstacle, onStarted }: ParameterFormPr
           onChange={(value) => set(field.name, value)}
         />
       ))}
-      <div>
-        <UnstyledButton className="disclosure" aria-expanded={advanced} onClick={() => setAdvanced(!advanced)}>
-          <Chevron size={14} aria-hidden /> Repeatability
-        </UnstyledButton>
-        <Collapse expanded={advanced}>
-          <NumberInput
-            size="sm"
-            mt={8}
-            label="Seed"
-            description="The same seed draws the same random numbers; empty draws a new one"
-            value={seed}
-            onChange={setSeed}
-            min={0}
-            max={2 ** 31 - 1}
-            allowDecimal={false}
-          />
-        </Collapse>
-      </div>
+      <Disclosure title="Operation">
+        <StartOptions supervision={start.supervision} onChange={start.setSupervision} hasBreakpoints={start.hasBreakpoints} />
+      </Disclosure>
+      <Disclosure title="Repeatability">
+        <NumberInput
+          size="sm"
+          label="Seed"
+          description="The same seed draws the same random numbers; empty draws a new one"
+          value={seed}
+          onChange={setSeed}
+          min={0}
+          max={2 ** 31 - 1}
+          allowDecimal={false}
+        />
+      </Disclosure>
+      <p className="quiet start-place">{place}</p>
     </form>
+  )
+}
+
+function Disclosure({ title, children }: { title: string; children: ReactNode }) {
+  const [isOpen, setOpen] = useState(false)
+  const Chevron = isOpen ? IconChevronDown : IconChevronRight
+  return (
+    <div>
+      <UnstyledButton className="disclosure" aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
+        <Chevron size={14} aria-hidden /> {title}
+      </UnstyledButton>
+      <Collapse expanded={isOpen}>
+        <div className="disclosed">{children}</div>
+      </Collapse>
+    </div>
   )
 }

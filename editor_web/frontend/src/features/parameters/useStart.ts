@@ -1,8 +1,12 @@
 /** The form's behavior: values, checks, and the request to start. */
 import { useMemo, useState } from 'react'
+import { useKept } from '../../api/breakpoints'
 import { api, ServerError } from '../../api/client'
-import type { BehaviorBody, ErrorBody } from '../../api/types'
+import { attached, operate } from '../../api/live'
+import { send } from '../../api/refusal'
+import type { BehaviorBody, ErrorBody, StartBody } from '../../api/types'
 import { fieldOf, parametersOf, problemWith, type Field } from '../../document/schema'
+import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
 type Values = Readonly<Record<string, unknown>>
 type Problems = Readonly<Record<string, string | undefined>>
@@ -13,6 +17,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const [problems, setProblems] = useState<Problems>({})
   const [refusal, setRefusal] = useState<ErrorBody>()
   const [seed, setSeed] = useState<string | number>('')
+  const [supervision, setSupervision] = useState<Supervision>(SUPERVISION)
+  const hasBreakpoints = useKept((s) => s.kept.length > 0)
 
   function set(name: string, value: unknown): void {
     setValues({ ...values, [name]: value })
@@ -26,9 +32,15 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     setRefusal(undefined)
     if (Object.values(found).some(Boolean)) return
     try {
-      const body = { behavior: behavior.id, parameters: parametersOf(fields, values), seed: seedOf(seed) }
-      await api.start(body, newKey())
+      const body: StartBody = {
+        behavior: behavior.id,
+        parameters: parametersOf(fields, values),
+        seed: seedOf(seed),
+        supervision: supervisionOf(supervision, hasBreakpoints),
+      }
+      const { run } = await api.start(body, newKey())
       onStarted()
+      if (supervision.operates) await attend(run)
     } catch (error) {
       const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
       const name = fields.find((f) => said.where === f.name || said.where.endsWith(`.${f.name}`))?.name
@@ -37,7 +49,15 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     }
   }
 
-  return { fields, values, set, problems, refusal, submit, seed, setSeed }
+  /** Be its operator before its first node is entered, or it would ask nobody for the first outcomes. */
+  async function attend(run: string): Promise<void> {
+    operate(run)
+    if (supervision.startsPaused) return
+    await attached(run)
+    await send('Resume', () => api.resume(run))
+  }
+
+  return { fields, values, set, problems, refusal, submit, seed, setSeed, supervision, setSupervision, hasBreakpoints }
 }
 
 function problemsOf(fields: readonly Field[], values: Values): Problems {

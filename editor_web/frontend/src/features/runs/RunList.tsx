@@ -33,7 +33,7 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
                 onOpen(run.id)
               }}
             >
-              <StatusIcon status={statusOf(isFailure(run) ? 'failed' : run.status)} size={15} />
+              <StatusIcon status={run.waits ? 'warning' : statusOf(isFailure(run) ? 'failed' : run.status)} size={15} />
               <span className="side-item-name">{nameOf(run.behavior)}</span>
               <span className="side-item-text">
                 {wallTime(run.started_at_s)} · {runText(run)}
@@ -46,8 +46,15 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
   )
 }
 
+const WAITS: Record<string, string> = { asks: 'asks', paused: 'paused', locked: 'waits at a lock' }
+
+/** What a run waits for that somebody has to give, in words. */
+export function waitsText(run: RunLine): string {
+  return WAITS[run.waits] ?? run.waits
+}
+
 function runText(run: RunLine): string {
-  if (isActive(run)) return run.status
+  if (isActive(run)) return [run.status, waitsText(run)].filter(Boolean).join(', ')
   return `${run.outcome ?? run.status}, ${duration(run.duration_s)}`
 }
 

@@ -1,0 +1,97 @@
+"""The demo cell with everything on: a behavior that moves both arms, journal, recorder, dashboard, a viewer."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+import time
+from asyncio.subprocess import PIPE, Process
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from editor_web.server import dashboard
+from engine.cell import OpenCell
+from engine.cli.inputs import read_behavior, read_cell
+from engine.journal import Journal
+from engine.launch import new_origin, new_run
+from engine.plan import new_plan
+from engine.recording import RecordingOrder, RunRecording, collect_documents
+from engine.registry import load_states
+from engine.run import Run
+from engine.session import Session
+from robots.port import ControllerName
+from robots.sim.process_host import ProcessHost
+from robots.sim.world import SimWorld
+
+BEHAVIOR = Path(__file__).with_name("two_arms_for_ever.yaml")
+_ROOT = Path(__file__).parents[1]
+
+
+@dataclass(kw_only=True)
+class BusyCell:
+    """A cell at work. `recording` and `viewer` tell what was written and seen, once it is closed."""
+
+    cell: OpenCell
+    host: ProcessHost
+    run: Run
+    viewer_pid: int
+    recording: Path
+    events: int = 0
+    seen: dict[str, int] = field(default_factory=dict[str, int])
+
+
+@asynccontextmanager
+async def busy_cell(controller: ControllerName, *, folder: Path, browser: bool = False) -> AsyncGenerator[BusyCell]:
+    """Open the cell and let the behavior run until the block ends; all files go to `folder`."""
+    catalogue = load_states()
+    behavior, _ = read_behavior(BEHAVIOR, catalogue)
+    document = read_cell(None, behavior)
+    order = RecordingOrder(path=folder / "run.mcap", documents=collect_documents(behavior, document))
+    with Journal.open(folder) as journal:
+        async with (
+            RunRecording.open(order, inline=False) as recording,
+            OpenCell(document, store_path=str(folder / "store.db")) as cell,
+            Session(cell, project=_ROOT, catalogue=catalogue, journal=journal) as session,
+            dashboard(session, token_file=folder / "tokens", shadows=browser) as page,
+        ):
+            assert isinstance(cell.world, SimWorld)
+            assert isinstance(cell.world.host, ProcessHost)
+            viewer = await _viewer(page.url, page.token, browser=browser)
+            run = new_run(
+                new_plan(behavior, catalogue),
+                cell=cell,
+                journal=journal,
+                parameters={"controller": controller},
+                origin=new_origin(behavior, cell=cell),
+            )
+            recording.attach(run, cell.bus, started_unix_s=time.time())
+            busy = BusyCell(cell=cell, host=cell.world.host, run=run, viewer_pid=viewer.pid, recording=order.path)
+            run.watch(lambda event: setattr(busy, "events", event.seq))
+            running = asyncio.create_task(run.execute(), name="the behavior")
+            try:
+                yield busy
+            finally:
+                run.stop("it was long enough")
+                result = await running
+                busy.seen = await _closed(viewer)
+            if result.status != "stopped":
+                raise RuntimeError(f"the behavior ended by itself: {result.cause}")
+
+
+async def _viewer(url: str, token: str, *, browser: bool) -> Process:
+    options = ("--browser",) if browser else ()
+    viewer = await asyncio.create_subprocess_exec(
+        sys.executable, "-P", "-m", "benchmarks.viewer", url, token, *options, stdin=PIPE, stdout=PIPE, cwd=_ROOT
+    )
+    assert viewer.stdout is not None
+    if await viewer.stdout.readline() != b"ready\n":
+        raise RuntimeError("the viewer did not start; see above")
+    return viewer
+
+
+async def _closed(viewer: Process) -> dict[str, int]:
+    out, _ = await viewer.communicate(b"")
+    return json.loads(out)

@@ -1,0 +1,64 @@
+/** The breakpoints of the shown behavior: those of the run under way, and those kept beside its file. */
+import { create } from 'zustand'
+import { completed, matches, toggled } from '../document/breakpoints'
+import { api } from './client'
+import { useLive } from './live'
+import { refuse, send } from './refusal'
+import type { BreakpointLive } from './types'
+
+interface Kept {
+  readonly behavior: string
+  readonly kept: readonly BreakpointLive[]
+}
+
+export const useKept = create<Kept>(() => ({ behavior: '', kept: [] }))
+
+/** Show the breakpoints of this behavior from now on. */
+export async function loadKept(behavior: string): Promise<void> {
+  if (useKept.getState().behavior !== behavior) useKept.setState({ behavior, kept: [] })
+  const answer = await send('Read the breakpoints', () => api.keptBreakpoints(behavior))
+  if (answer && useKept.getState().behavior === behavior) useKept.setState({ kept: answer.breakpoints.map(completed) })
+}
+
+/** Those that hold now: of the run while one is under way, else those for the next one. */
+export function useBreakpoints(): readonly BreakpointLive[] {
+  const ofRun = useLive((s) => s.control?.breakpoints)
+  const kept = useKept((s) => s.kept)
+  return ofRun ?? kept
+}
+
+/** Those that stop at this node, wildcards included. */
+export function useBreakpointsAt(path: string): string {
+  const all = useBreakpoints()
+  const here = all.filter((each) => each.enabled && matches(each.path, path))
+  return here.map((each) => each.when).sort().join(' ')
+}
+
+type Edit = (list: readonly BreakpointLive[]) => readonly BreakpointLive[]
+
+/** Edit the breakpoints of the run and those beside the file alike; false when the server refused. */
+export async function editBreakpoints(edit: Edit): Promise<boolean> {
+  const { run, control, role } = useLive.getState()
+  const { behavior, kept } = useKept.getState()
+  if (role !== 'operator') {
+    refuse('Breakpoint', 'You may look only', 'log in with the operator token')
+    return false
+  }
+  const done = await send('Breakpoint', async () => {
+    const [answer] = await Promise.all([
+      api.keepBreakpoints(behavior, { breakpoints: edit(kept) }),
+      control && api.breakpoints(run, { breakpoints: edit(control.breakpoints) }),
+    ])
+    return answer
+  })
+  if (done && useKept.getState().behavior === behavior) useKept.setState({ kept: done.breakpoints.map(completed) })
+  return done !== undefined
+}
+
+/** Set or take away the plain breakpoint of a node. */
+export function toggleBreakpoint(path: string, when: BreakpointLive['when'] = 'before'): Promise<boolean> {
+  const { control } = useLive.getState()
+  const shown = control?.breakpoints ?? useKept.getState().kept
+  const isSet = shown.some((each) => each.path === path && each.when === when)
+  return editBreakpoints((list) => toggled(list, { path, when }, !isSet))
+}

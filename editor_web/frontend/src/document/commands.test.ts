@@ -1,0 +1,72 @@
+/** Which commands are possible, and why not. */
+import { describe, expect, it } from 'vitest'
+import type { ControlLive, RunLine, WaitingLive } from '../api/types'
+import { obstacleTo, operatorWords, requestsOf, standing, waitingWords, type Command, type Situation } from './commands'
+
+const run: RunLine = {
+  id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '',
+}
+const control: ControlLive = {
+  paused: false, confirmed: false, stepping: false, cannot: [], waiting: [], locks: [], breakpoints: [], autonomy: 'full',
+  operator: 'none', demanded: false, loss_policy: 'hold', loss_timeout_s: 5,
+}
+const now: Situation = { role: 'operator', isConnected: true, run, control, node: undefined, nodeStatus: 'idle' }
+const asks: WaitingLive = { path: 'root/a', point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
+
+describe('a command', () => {
+  it.each<[Command, Partial<Situation>, string | undefined]>([
+    ['pause', {}, undefined],
+    ['pause', { role: 'viewer' }, 'you may look only; log in with the operator token'],
+    ['pause', { isConnected: false }, 'the server does not answer'],
+    ['pause', { run: undefined, control: null }, 'no run is under way'],
+    ['pause', { run: { ...run, status: 'stopping' } }, 'the run is stopping'],
+    ['pause', { control: { ...control, paused: true } }, 'the run is paused'],
+    ['pause', { control: { ...control, paused: true, stepping: true } }, undefined],
+    ['step', {}, 'pause the run first'],
+    ['step', { control: { ...control, paused: true } }, undefined],
+    ['change', {}, 'pause the run first'],
+    ['change', { control: { ...control, locks: [{ path: 'root', reason: '' }] } }, undefined],
+    ['lock', {}, 'choose a node in the graph first'],
+    ['lock', { node: 'root/a' }, undefined],
+    ['force', { node: 'root/a' }, 'this node is not active'],
+    ['force', { node: 'root/a', nodeStatus: 'active' }, undefined],
+    ['force', { node: 'root/a', control: { ...control, waiting: [asks] } }, undefined],
+    ['breakpoint', { node: 'root/a', run: undefined, control: null }, undefined],
+  ])('%s with %j: %s', (command, given, expected) => {
+    expect(obstacleTo(command, { ...now, ...given })).toBe(expected)
+  })
+})
+
+describe('the words of a run', () => {
+  it.each<[Partial<ControlLive>, string]>([
+    [{}, 'Running'],
+    [{ paused: true }, 'Pausing: what moves comes to rest'],
+    [{ paused: true, confirmed: true }, 'Paused, everything rests'],
+    [{ paused: true, confirmed: true, cannot: ['g1'] }, 'Paused; cannot be held: g1'],
+    [{ paused: true, stepping: true }, 'Stepping: runs to the next stop'],
+    [{ waiting: [asks] }, 'Asks for an answer'],
+    [{ waiting: [{ ...asks, reasons: ['lock'] }] }, 'Waits at a lock'],
+  ])('%j: %s', (given, words) => {
+    expect(standing(run, { ...control, ...given })).toBe(words)
+  })
+
+  it('says where a node waits and for what', () => {
+    expect(waitingWords(asks)).toBe('with held: asks for your agreement')
+    expect(waitingWords({ ...asks, point: 'before', outcome: '', reasons: ['pause', 'lock'] })).toBe(
+      'before its entry: paused, locked',
+    )
+  })
+
+  it('says what becomes of the run when the page is lost', () => {
+    expect(operatorWords({ ...control, operator: 'attached' }, true)).toContain('5 s later the run is paused')
+    expect(operatorWords({ ...control, operator: 'lost', loss_policy: 'stop', loss_timeout_s: 0 }, false)).toBe(
+      'The operator was lost: the run is stopped',
+    )
+  })
+})
+
+it('asks only for what waits for agreement', () => {
+  const waiting = [asks, { ...asks, path: 'root/b', reasons: ['lock'] }]
+  expect(requestsOf({ ...control, waiting }).map((each) => each.path)).toEqual(['root/a'])
+  expect(requestsOf(null)).toEqual([])
+})

@@ -1,0 +1,107 @@
+/** Which commands a run takes now, and in words why it does not take the others. Pure. */
+import type { ControlLive, RunLine, WaitingLive } from '../api/types'
+import { isActive } from './live'
+
+export const LEVELS = ['off', 'low', 'high', 'full'] as const
+export type Level = (typeof LEVELS)[number]
+
+/** What a level of autonomy means, for an outcome that names what it requires. */
+export const LEVEL_WORDS: Record<Level, string> = {
+  off: 'every outcome asks',
+  low: 'outcomes that require low, high or full ask',
+  high: 'outcomes that require high or full ask',
+  full: 'only outcomes that require full ask',
+}
+
+export type Command =
+  | 'pause' | 'resume' | 'step' | 'stop' | 'autonomy' | 'operate' | 'change' | 'lock' | 'force' | 'repeat' | 'breakpoint'
+
+export interface Situation {
+  readonly role: string
+  readonly isConnected: boolean
+  readonly run: RunLine | undefined
+  readonly control: ControlLive | null
+  /** Path of the chosen node. */
+  readonly node: string | undefined
+  readonly nodeStatus: string
+}
+
+/** Why a command is not possible now; undefined when it is. */
+export function obstacleTo(command: Command, now: Situation): string | undefined {
+  const { control, node, run } = now
+  if (!now.isConnected) return 'the server does not answer'
+  if (now.role !== 'operator') return 'you may look only; log in with the operator token'
+  if (command === 'breakpoint') return node ? undefined : 'choose a node in the graph first'
+  if (!run || !isActive(run) || !control) return 'no run is under way'
+  if (run.status === 'stopping') return 'the run is stopping'
+  switch (command) {
+    case 'pause':
+      return control.paused && !control.stepping ? 'the run is paused' : undefined
+    case 'resume':
+    case 'step':
+      return control.paused ? undefined : 'pause the run first'
+    case 'change':
+      return control.paused || control.locks.length > 0 ? undefined : 'pause the run first'
+    case 'lock':
+      return node ? undefined : 'choose a node in the graph first'
+    case 'force':
+    case 'repeat':
+      return obstacleToOrder(now)
+    default:
+      return undefined
+  }
+}
+
+function obstacleToOrder({ control, node, nodeStatus }: Situation): string | undefined {
+  if (!node) return 'choose a node in the graph first'
+  const waits = control?.waiting.some((each) => each.path === node)
+  return waits || nodeStatus === 'active' ? undefined : 'this node is not active'
+}
+
+/** The questions of a run to its operator. */
+export function requestsOf(control: ControlLive | null): readonly WaitingLive[] {
+  return control?.waiting.filter((each) => each.reasons.includes('autonomy')) ?? []
+}
+
+const REASONS: Record<string, string> = { pause: 'paused', lock: 'locked', autonomy: 'asks for your agreement' }
+
+/** `before its entry: paused`, `with held: locked`. */
+export function waitingWords({ point, outcome, reasons }: WaitingLive): string {
+  const place = point === 'before' ? 'before its entry' : outcome ? `with ${outcome}` : 'after its end'
+  return `${place}: ${reasons.map((reason) => REASONS[reason] ?? `held by ${reason}`).join(', ')}`
+}
+
+/** How a run stands, in one line. */
+export function standing(run: RunLine | undefined, control: ControlLive | null): string {
+  if (!run || !isActive(run) || !control) return ''
+  if (run.status === 'stopping') return 'Stopping: states clean up, robots come to rest'
+  const asked = requestsOf(control).length
+  if (control.stepping) return 'Stepping: runs to the next stop'
+  if (control.paused && !control.confirmed) return 'Pausing: what moves comes to rest'
+  if (control.paused) {
+    return control.cannot.length > 0 ? `Paused; cannot be held: ${control.cannot.join(', ')}` : 'Paused, everything rests'
+  }
+  if (asked > 0) return asked === 1 ? 'Asks for an answer' : `Asks for ${asked} answers`
+  return control.waiting.some((each) => each.reasons.includes('lock')) ? 'Waits at a lock' : 'Running'
+}
+
+const LOSSES: Record<string, string> = {
+  hold: 'the run is paused',
+  continue: 'the run goes on without questions',
+  stop: 'the run is stopped',
+}
+
+/** What becomes of a run whose operator is lost. */
+export function lossWords({ loss_policy: policy, loss_timeout_s: after }: ControlLive): string {
+  return `${after > 0 ? `${after} s later ` : ''}${LOSSES[policy] ?? policy}`
+}
+
+/** What is known of the operator, in words; `isMine` when this page is one. */
+export function operatorWords(control: ControlLive, isMine: boolean): string {
+  if (control.operator === 'lost') return `The operator was lost: ${lossWords(control)}`
+  if (isMine) return `You operate this run. If this page is lost, ${lossWords(control)}.`
+  if (control.operator === 'attached') return 'Another page or console operates this run.'
+  return control.demanded
+    ? 'Nobody operates this run, and it demands an operator: it asks all the same.'
+    : 'Nobody operates this run: it asks nothing.'
+}

@@ -1,0 +1,82 @@
+/** The breakpoints of one node: before its entry and after its outcome, each with condition and count. */
+import { NumberInput, Switch, TextInput } from '@mantine/core'
+import { useEffect, useState } from 'react'
+import { editBreakpoints, toggleBreakpoint, useBreakpoints } from '../../api/breakpoints'
+import type { BreakpointLive } from '../../api/types'
+import { breakpointWords, matches, replaced } from '../../document/breakpoints'
+
+const PLACES = [
+  { when: 'before', label: 'Pause before its entry' },
+  { when: 'after', label: 'Pause after its outcome' },
+] as const
+
+export function BreakpointEditor({ path, isOff }: { path: string; isOff: string | undefined }) {
+  const all = useBreakpoints()
+  const wide = all.filter((each) => each.path !== path && matches(each.path, path))
+  return (
+    <div className="breakpoints">
+      {PLACES.map(({ when, label }) => {
+        const set = all.find((each) => each.path === path && each.when === when)
+        return (
+          <div key={when}>
+            <Switch
+              size="xs"
+              label={label}
+              checked={set !== undefined}
+              disabled={isOff !== undefined}
+              onChange={() => void toggleBreakpoint(path, when)}
+            />
+            {set && <Details point={set} isOff={isOff !== undefined} />}
+          </div>
+        )
+      })}
+      {wide.map((each) => (
+        <p key={`${each.path}${each.when}`} className="quiet">
+          Also by <code>{each.path}</code>: {breakpointWords(each)}
+        </p>
+      ))}
+    </div>
+  )
+}
+
+/** Condition and count; they count when the field is left, or with Enter. */
+function Details({ point, isOff }: { point: BreakpointLive; isOff: boolean }) {
+  const [condition, setCondition] = useState(point.condition ?? '')
+  const [hits, setHits] = useState<number | string>(point.hits)
+  useEffect(() => {
+    setCondition(point.condition ?? '')
+    setHits(point.hits)
+  }, [point.condition, point.hits])
+
+  function keep(): void {
+    const fresh = { ...point, condition: condition.trim() || null, hits: Math.max(1, Number(hits) || 1) }
+    if (fresh.condition === point.condition && fresh.hits === point.hits) return
+    void editBreakpoints((list) => replaced(list, fresh))
+  }
+
+  return (
+    <form
+      className="breakpoint-details"
+      onSubmit={(event) => {
+        event.preventDefault()
+        keep()
+      }}
+    >
+      <TextInput
+        size="xs"
+        label="Only if"
+        placeholder="tries > 1"
+        className="grow"
+        classNames={{ input: 'mono' }}
+        value={condition}
+        disabled={isOff}
+        onChange={(event) => setCondition(event.currentTarget.value)}
+        onBlur={keep}
+      />
+      <NumberInput size="xs" label="From time" min={1} allowDecimal={false} w={84} value={hits} disabled={isOff} onChange={setHits} onBlur={keep} />
+      <button type="submit" className="visually-hidden" tabIndex={-1}>
+        Keep
+      </button>
+    </form>
+  )
+}

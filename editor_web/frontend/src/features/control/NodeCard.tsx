@@ -1,0 +1,76 @@
+/** What can be done with the chosen node: why it waits, breakpoints, lock, forced outcomes, run again. */
+import { TextInput } from '@mantine/core'
+import { IconLock, IconLockOpen, IconRepeat } from '@tabler/icons-react'
+import { useState } from 'react'
+import { useLive } from '../../api/live'
+import type { GraphNodeBody } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { waitingWords } from '../../document/commands'
+import { BreakpointEditor } from './BreakpointEditor'
+import type { Commands } from './useCommands'
+
+/** Where the key `f` goes. */
+export const FORCE_ID = 'force'
+
+export function NodeCard({ node, commands }: { node: GraphNodeBody; commands: Commands }) {
+  const waiting = useLive((s) => s.control?.waiting.find((each) => each.path === node.path))
+  const forced = { obstacle: commands.obstacle('force'), onObstacle: () => commands.explain('force', 'Force') }
+  return (
+    <section className="node-card" aria-label={`Node ${node.path}`}>
+      <p className="node-name mono">{node.path}</p>
+      {waiting && (
+        <p className="node-waits">
+          <strong>Waits</strong> {waitingWords(waiting)}
+        </p>
+      )}
+      <h3>Break</h3>
+      <BreakpointEditor key={node.path} path={node.path} isOff={commands.obstacle('breakpoint')} />
+      <h3>Lock</h3>
+      <Lock key={`${node.path} lock`} path={node.path} commands={commands} />
+      <h3>Force</h3>
+      <div className="command-row" id={FORCE_ID} role="group" aria-label="Force an outcome">
+        {node.outcomes.map((outcome) => (
+          <CommandButton key={outcome} {...forced} label={outcome} hint={`End it with ${outcome}; what runs in it is preempted and cleans up first`} onPress={() => void commands.force(node.path, outcome)} />
+        ))}
+      </div>
+      <h3>Repeat</h3>
+      <div className="command-row">
+        <CommandButton
+          label="Run again"
+          hint="What runs in it is preempted and cleans up first"
+          icon={<IconRepeat size={16} aria-hidden />}
+          shortcut="r"
+          obstacle={commands.obstacle('repeat')}
+          onObstacle={() => commands.explain('repeat', 'Run again')}
+          onPress={() => void commands.repeat(node.path)}
+        />
+      </div>
+    </section>
+  )
+}
+
+function Lock({ path, commands }: { path: string; commands: Commands }) {
+  const lock = useLive((s) => s.control?.locks.find((each) => each.path === path))
+  const [reason, setReason] = useState('')
+  const common = { obstacle: commands.obstacle('lock'), onObstacle: () => commands.explain('lock', 'Lock'), shortcut: 'l' }
+  if (lock) {
+    return (
+      <div className="command-row">
+        <CommandButton {...common} label="Unlock" icon={<IconLockOpen size={16} aria-hidden />} onPress={() => void commands.unlock(path)} />
+        <span className="quiet">{lock.reason ? `Locked: ${lock.reason}` : 'Locked without a reason given'}</span>
+      </div>
+    )
+  }
+  return (
+    <div className="command-row">
+      <TextInput size="xs" aria-label="Reason of the lock" placeholder="Reason" maxLength={200} value={reason} onChange={(event) => setReason(event.currentTarget.value)} className="grow" />
+      <CommandButton
+        {...common}
+        label="Lock"
+        hint="Hold the outcome of this node until it is unlocked; transitions inside it still pass"
+        icon={<IconLock size={16} aria-hidden />}
+        onPress={() => void commands.lock(path, reason.trim()).then(() => setReason(''))}
+      />
+    </div>
+  )
+}

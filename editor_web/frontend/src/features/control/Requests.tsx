@@ -1,0 +1,69 @@
+/** What the run asks its operator; a question that has become void is gone. */
+import { IconMessageQuestion } from '@tabler/icons-react'
+import { useLive } from '../../api/live'
+import type { GraphNodeBody, WaitingLive } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { requestsOf } from '../../document/commands'
+import { nodeAt } from '../../document/tree'
+import type { Commands } from './useCommands'
+
+/** Where the key `a` goes. */
+export const REQUESTS_ID = 'requests'
+
+export interface RequestsProps {
+  readonly root: GraphNodeBody | null
+  readonly commands: Commands
+  readonly onShow: (path: string) => void
+}
+
+export function Requests({ root, commands, onShow }: RequestsProps) {
+  const control = useLive((s) => s.control)
+  const requests = requestsOf(control)
+  return (
+    <div aria-live="assertive" className="requests-area">
+      {requests.length > 0 && (
+        <section className="requests" id={REQUESTS_ID} aria-label="The run asks">
+          <ul className="plain-list">
+            {requests.map((each) => (
+              <Request key={each.path} request={each} outcomes={(root && nodeAt(root, each.path)?.outcomes) ?? []} commands={commands} onShow={onShow} />
+            ))}
+          </ul>
+        </section>
+      )}
+    </div>
+  )
+}
+
+interface RequestProps {
+  readonly request: WaitingLive
+  readonly outcomes: readonly string[]
+  readonly commands: Commands
+  readonly onShow: (path: string) => void
+}
+
+function Request({ request, outcomes, commands, onShow }: RequestProps) {
+  const { path, outcome, required } = request
+  // What answers a question is possible or not like any other command.
+  const obstacle = commands.obstacle('autonomy')
+  const others = outcomes.filter((each) => each !== outcome)
+  const common = { obstacle, onObstacle: () => commands.explain('autonomy', 'Answer') }
+  return (
+    <li className="request" aria-label={`Question of ${path}`}>
+      <IconMessageQuestion size={20} aria-hidden />
+      <span className="request-text">
+        <button type="button" className="link" onClick={() => onShow(path)}>
+          {path}
+        </button>{' '}
+        wants to end with <strong>{outcome}</strong>
+        {required && <span className="quiet">, which requires {required}</span>}
+      </span>
+      <span className="request-answers">
+        <CommandButton {...common} label={`Agree: ${outcome}`} tone="strong" onPress={() => void commands.answer(path)} />
+        {others.map((each) => (
+          <CommandButton key={each} {...common} label={`Instead: ${each}`} hint={`End it with ${each}`} onPress={() => void commands.force(path, each)} />
+        ))}
+        <CommandButton {...common} label="Run again" hint="Run the node again from its start" onPress={() => void commands.repeat(path)} />
+      </span>
+    </li>
+  )
+}

@@ -1,0 +1,108 @@
+/** The operator's bar: pause, steps, autonomy, operating, hot change; and how the run stands. */
+import {
+  IconArrowBarDown,
+  IconArrowBarUp,
+  IconArrowRampRight,
+  IconHeadset,
+  IconKeyboard,
+  IconPlayerPause,
+  IconPlayerPlay,
+  IconRefreshDot,
+} from '@tabler/icons-react'
+import { useLive } from '../../api/live'
+import type { RunLine } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { CommitSlider } from '../../components/CommitSlider'
+import { isActive } from '../../document/live'
+import { LEVEL_WORDS, LEVELS, operatorWords, standing, waitingWords, type Command } from '../../document/commands'
+import type { Commands } from './useCommands'
+
+export interface RunBarProps {
+  readonly run: RunLine | undefined
+  readonly commands: Commands
+  readonly onSheet: () => void
+  /** Choose a node and bring it into view. */
+  readonly onShow: (path: string) => void
+}
+
+export function RunBar({ run, commands, onSheet, onShow }: RunBarProps) {
+  const control = useLive((s) => s.control)
+  const operated = useLive((s) => s.operated)
+  const isHeld = control?.paused === true && !control.stepping
+  // What asks has its own place below the bar.
+  const waiting = control?.waiting.filter((each) => !each.reasons.includes('autonomy')) ?? []
+  const isMine = run !== undefined && operated === run.id
+  const bar = (command: Command, label: string) => ({
+    label,
+    obstacle: commands.obstacle(command),
+    onObstacle: () => commands.explain(command, label),
+    isCompact: true,
+  })
+  return (
+    <section className="run-bar" aria-label="Run control">
+      <div className="run-bar-row" role="toolbar" aria-label="Commands to the run">
+        <CommandButton
+          {...bar(isHeld ? 'resume' : 'pause', isHeld ? 'Resume' : 'Pause')}
+          hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
+          icon={isHeld ? <IconPlayerPlay size={16} aria-hidden /> : <IconPlayerPause size={16} aria-hidden />}
+          shortcut="p"
+          tone={isHeld ? 'strong' : 'plain'}
+          isCompact={false}
+          onPress={commands.pauseOrResume}
+        />
+        <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut="i" onPress={() => commands.step('into')} />
+        <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut="o" onPress={() => commands.step('over')} />
+        <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut="u" onPress={() => commands.step('out')} />
+        <span className="run-bar-gap" />
+        <CommitSlider
+          label="Autonomy"
+          min={0}
+          max={3}
+          step={1}
+          value={LEVELS.indexOf(control?.autonomy ?? 'full')}
+          words={(index) => LEVELS[index] ?? 'full'}
+          hint={LEVELS.map((level) => `${level}: ${LEVEL_WORDS[level]}`).join('\n')}
+          obstacle={commands.obstacle('autonomy')}
+          onCommit={(index) => commands.setAutonomy(LEVELS[index] ?? 'full')}
+        />
+        <CommandButton
+          {...bar('operate', 'Operate')}
+          hint="Be asked for outcomes that are above the autonomy of the run; closing this page is then an operator lost"
+          icon={<IconHeadset size={16} aria-hidden />}
+          isPressed={isMine}
+          onPress={commands.toggleOperating}
+        />
+        <CommandButton
+          {...bar('change', 'Take file')}
+          hint="Go on with the behavior as its file is now, and see what that changes"
+          icon={<IconRefreshDot size={16} aria-hidden />}
+          onPress={commands.change}
+        />
+        <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />
+      </div>
+      {run && isActive(run) && control && (
+        <div className="run-state">
+          <span role="status" aria-label="State of the run" className={`run-standing${control.paused ? ' is-paused' : ''}`}>
+            {standing(run, control)}
+          </span>
+          <span className="quiet run-autonomy">
+            Autonomy {control.autonomy}: {LEVEL_WORDS[control.autonomy]}.
+          </span>
+          <span className={control.operator === 'lost' ? 'is-lost' : 'quiet'}>{operatorWords(control, isMine)}</span>
+          {waiting.length > 0 && (
+            <ul className="plain-list run-waits" aria-label="Nodes that wait">
+              {waiting.map((each) => (
+                <li key={`${each.path}|${each.point}`}>
+                  <button type="button" className="link" onClick={() => onShow(each.path)}>
+                    {each.path}
+                  </button>{' '}
+                  {waitingWords(each)}
+                </li>
+              ))}
+            </ul>
+          )}
+        </div>
+      )}
+    </section>
+  )
+}

@@ -1,0 +1,77 @@
+/** What the operator can do with the shown run: each command, and why it is not possible now. */
+import { useMemo, useState } from 'react'
+import { api } from '../../api/client'
+import { operate, useLive } from '../../api/live'
+import { refuse, send } from '../../api/refusal'
+import type { RunLine } from '../../api/types'
+import { obstacleTo, type Command, type Level, type Situation } from '../../document/commands'
+
+export interface Commands {
+  /** Why a command is not possible; undefined when it is. */
+  readonly obstacle: (command: Command) => string | undefined
+  /** Show why a command is not possible. */
+  readonly explain: (command: Command, words: string) => void
+  readonly pauseOrResume: () => void
+  readonly step: (mode: 'into' | 'over' | 'out') => void
+  readonly stop: () => void
+  readonly setAutonomy: (level: Level) => Promise<boolean>
+  readonly toggleOperating: () => void
+  readonly change: () => void
+  readonly lock: (path: string, reason: string) => Promise<unknown>
+  readonly unlock: (path: string) => Promise<unknown>
+  readonly force: (path: string, outcome: string) => Promise<unknown>
+  readonly repeat: (path: string) => Promise<unknown>
+  readonly answer: (path: string) => Promise<unknown>
+  /** What the last hot change did; undefined before one, or when its words were put away. */
+  readonly report: readonly string[] | undefined
+  readonly forgetReport: () => void
+}
+
+export function useCommands(run: RunLine | undefined, node: string | undefined): Commands {
+  const role = useLive((s) => s.role)
+  const isConnected = useLive((s) => s.connection === 'live')
+  const control = useLive((s) => s.control)
+  const nodeStatus = useLive((s) => (node ? (s.nodes[node]?.status ?? 'idle') : 'idle'))
+  const [report, setReport] = useState<readonly string[]>()
+  const id = run?.id ?? ''
+
+  return useMemo(() => {
+    const now: Situation = { role, isConnected, run, control, node, nodeStatus }
+    const obstacle = (command: Command) => obstacleTo(command, now)
+    /** Send it, or say why not. */
+    const attempt = (command: Command, words: string, request: () => Promise<unknown>): void => {
+      const why = obstacle(command)
+      if (why) refuse(words, why)
+      else void send(words, request)
+    }
+    return {
+      obstacle,
+      explain: (command, words) => refuse(words, obstacle(command) ?? ''),
+      pauseOrResume: () => {
+        const isHeld = control?.paused === true && !control.stepping
+        if (isHeld) attempt('resume', 'Resume', () => api.resume(id))
+        else attempt('pause', 'Pause', () => api.pause(id))
+      },
+      // A chosen node that waits says which branch is meant.
+      step: (mode) => {
+        const path = control?.waiting.some((each) => each.path === node) ? (node ?? '') : ''
+        attempt('step', `Step ${mode}`, () => api.step(id, { mode, path }))
+      },
+      stop: () => attempt('stop', 'Stop', () => api.stop(id)),
+      setAutonomy: async (level) => (await send('Autonomy', () => api.autonomy(id, level))) !== undefined,
+      toggleOperating: () => {
+        const why = obstacle('operate')
+        if (why) refuse('Operate', why)
+        else operate(useLive.getState().operated === id ? '' : id)
+      },
+      change: () => attempt('change', 'Take the file as it is now', async () => setReport((await api.change(id)).changes)),
+      lock: (path, reason) => send('Lock', () => api.lock(id, path, reason)),
+      unlock: (path) => send('Unlock', () => api.unlock(id, path)),
+      force: (path, outcome) => send(`Force ${outcome}`, () => api.force(id, path, outcome)),
+      repeat: (path) => send('Run again', () => api.repeat(id, path)),
+      answer: (path) => send('Agree', () => api.answer(id, path)),
+      report,
+      forgetReport: () => setReport(undefined),
+    }
+  }, [role, isConnected, run, control, node, nodeStatus, id, report])
+}

@@ -1,0 +1,53 @@
+/** What holds a node: the dots of its breakpoints, its lock, and the words of what it waits for. */
+import { IconLock } from '@tabler/icons-react'
+import { toggleBreakpoint, useBreakpointsAt } from '../../api/breakpoints'
+import { useLive } from '../../api/live'
+
+export function Marks({ path }: { path: string }) {
+  const points = useBreakpointsAt(path)
+  const isLocked = useLive((s) => s.control?.locks.some((each) => each.path === path) ?? false)
+  const waits = useLive((s) => s.control?.waiting.some((each) => each.path === path) ?? false)
+  return (
+    <>
+      {waits && <span className="waiting-ring" />}
+      <Dot path={path} when="before" isSet={points.includes('before')} />
+      {points.includes('after') && <Dot path={path} when="after" isSet />}
+      {isLocked && (
+        <span className="lock-mark" title="Locked: its outcome is held">
+          <IconLock size={13} aria-hidden />
+        </span>
+      )}
+    </>
+  )
+}
+
+/** For the mouse; the keyboard has the key `b` and the form of the chosen node. */
+function Dot({ path, when, isSet }: { path: string; when: 'before' | 'after'; isSet: boolean }) {
+  return (
+    <button
+      type="button"
+      tabIndex={-1}
+      className={`break-dot is-${when}${isSet ? ' is-set' : ''}`}
+      aria-label={`Breakpoint ${when} ${path}`}
+      aria-pressed={isSet}
+      title={isSet ? `Pauses ${when} this node; click to let it pass` : 'Click to pause before this node'}
+      onClick={(event) => {
+        event.stopPropagation()
+        void toggleBreakpoint(path, when)
+      }}
+    />
+  )
+}
+
+const WORDS: Record<string, string> = { pause: 'paused', lock: 'locked', autonomy: 'asks' }
+
+/** `paused`, `asks: held`. */
+export function HeldText({ path }: { path: string }) {
+  const words = useLive((s) => {
+    const waiting = s.control?.waiting.find((each) => each.path === path)
+    if (!waiting) return ''
+    const reasons = waiting.reasons.map((reason) => WORDS[reason] ?? 'held').join(', ')
+    return waiting.outcome ? `${reasons}: ${waiting.outcome}` : reasons
+  })
+  return words ? <span className="held-text">{words}</span> : null
+}

@@ -1,0 +1,73 @@
+/** How the run is watched over: autonomy, operator, where it pauses, what happens when the operator is lost. */
+import { NumberInput, Select, Switch } from '@mantine/core'
+import { LEVEL_WORDS, LEVELS, type Level } from '../../document/commands'
+import { withAutonomy, type LossPolicy, type Supervision } from '../../document/supervision'
+
+const LOSSES = [
+  { value: 'hold', label: 'pause the run' },
+  { value: 'continue', label: 'let it go on without questions' },
+  { value: 'stop', label: 'stop the run' },
+]
+
+export interface StartOptionsProps {
+  readonly supervision: Supervision
+  readonly onChange: (supervision: Supervision) => void
+  readonly hasBreakpoints: boolean
+}
+
+export function StartOptions({ supervision, onChange, hasBreakpoints }: StartOptionsProps) {
+  const set = (change: Partial<Supervision>) => onChange({ ...supervision, ...change })
+  return (
+    <div className="start-options">
+      <Select
+        size="sm"
+        label="Autonomy at the start"
+        description={`While somebody operates the run, ${LEVEL_WORDS[supervision.autonomy]}`}
+        data={[...LEVELS]}
+        value={supervision.autonomy}
+        allowDeselect={false}
+        onChange={(level) => onChange(withAutonomy(supervision, (level ?? 'full') as Level))}
+      />
+      <Switch
+        size="sm"
+        label="Operate it from this page"
+        description="Its questions come here; closing this page is then an operator lost"
+        checked={supervision.operates}
+        onChange={(event) => set({ operates: event.currentTarget.checked })}
+      />
+      <Switch
+        size="sm"
+        label="Demand an operator"
+        description="It asks also while nobody is there"
+        checked={supervision.demandsOperator}
+        onChange={(event) => set({ demandsOperator: event.currentTarget.checked })}
+      />
+      <Switch size="sm" label="Begin paused" checked={supervision.startsPaused} onChange={(event) => set({ startsPaused: event.currentTarget.checked })} />
+      <Switch
+        size="sm"
+        label="Pause at the breakpoints"
+        description={hasBreakpoints ? undefined : 'None is set'}
+        checked={supervision.usesBreakpoints}
+        onChange={(event) => set({ usesBreakpoints: event.currentTarget.checked })}
+      />
+      <div className="loss">
+        <Select
+          size="sm"
+          label="When the operator is lost"
+          data={LOSSES}
+          value={supervision.lossPolicy}
+          allowDeselect={false}
+          onChange={(policy) => set({ lossPolicy: (policy ?? 'hold') as LossPolicy })}
+        />
+        <NumberInput
+          size="sm"
+          label="After"
+          min={0}
+          value={supervision.lossTimeoutS}
+          onChange={(value) => set({ lossTimeoutS: Math.max(0, Number(value) || 0) })}
+          rightSection={<span className="field-unit">s</span>}
+        />
+      </div>
+    </div>
+  )
+}

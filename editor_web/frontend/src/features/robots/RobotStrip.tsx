@@ -1,0 +1,100 @@
+/** The arms of the cell: what each does, how fast it may, and out of a reflex again. */
+import { IconRobot } from '@tabler/icons-react'
+import { useState } from 'react'
+import { api, wordsOf } from '../../api/client'
+import { useLive } from '../../api/live'
+import type { RobotLine } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { CommitSlider } from '../../components/CommitSlider'
+import { StatusIcon, type Status } from '../../components/StatusIcon'
+
+const LOOKS: Record<string, Status> = {
+  moving: 'active',
+  jogging: 'active',
+  guiding: 'active',
+  direct: 'warning',
+  reflex: 'failed',
+  fault: 'failed',
+  disconnected: 'stopped',
+}
+// A goal that is held is still carried out: `moving` would be wrong of an arm that a paused run keeps at rest.
+const WORDS: Record<string, string> = {
+  moving: 'carries out',
+  reflex: 'stopped by a reflex',
+  guiding: 'led by hand',
+  direct: 'under direct control',
+}
+
+export function RobotStrip() {
+  const robots = useLive((s) => s.robots)
+  const names = Object.keys(robots).sort()
+  if (names.length === 0) return null
+  return (
+    <ul className="plain-list robots" aria-label="Arms">
+      {names.map((name) => {
+        const robot = robots[name]
+        return robot && <Robot key={name} robot={robot} />
+      })}
+    </ul>
+  )
+}
+
+function Robot({ robot }: { robot: RobotLine }) {
+  const isConnected = useLive((s) => s.connection === 'live')
+  const role = useLive((s) => s.role)
+  const [problem, setProblem] = useState('')
+  const { name, mode, activity, error, speed_override: share } = robot
+  const look = LOOKS[mode] ?? 'idle'
+  const obstacle = !isConnected ? 'the server does not answer' : role === 'operator' ? undefined : 'you may look only'
+
+  async function attempt(request: () => Promise<unknown>): Promise<boolean> {
+    try {
+      await request()
+      setProblem('')
+      return true
+    } catch (refused) {
+      setProblem(wordsOf(refused))
+      return false
+    }
+  }
+
+  return (
+    <li className={`robot is-${look}`} aria-label={`Arm ${name}`}>
+      <span className="robot-name">
+        <IconRobot size={16} aria-hidden />
+        {name}
+      </span>
+      <span className="robot-mode" role="status" aria-label={`State of ${name}`}>
+        <StatusIcon status={look} size={14} />
+        {(mode !== 'moving' || activity) && WORDS[mode] ? WORDS[mode] : mode}
+        {activity && <span className="quiet">{activity}</span>}
+      </span>
+      <CommitSlider
+        label="Speed"
+        min={5}
+        max={100}
+        step={5}
+        value={Math.round(share * 100)}
+        words={(percent) => `${percent} %`}
+        hint="Share of their own speed that all motions run at, the one under way included"
+        obstacle={obstacle}
+        onCommit={(percent) => attempt(() => api.setSpeed(name, percent / 100))}
+      />
+      {(mode === 'reflex' || mode === 'fault') && (
+        <CommandButton
+          label="Recover"
+          hint="Look at the arm first. It then holds itself where it stands and takes goals again"
+          tone="strong"
+          obstacle={obstacle}
+          onPress={() => void attempt(() => api.recover(name))}
+        />
+      )}
+      {error && <span className="robot-error">{error}</span>}
+      {problem && (
+        <span className="robot-error" role="alert">
+          {problem}
+        </span>
+      )}
+    </li>
+  )
+}

@@ -1,0 +1,99 @@
+/** Runs whose engine died: what they ask, and going on with them. */
+import { Alert, Button, Checkbox, Radio } from '@mantine/core'
+import { IconHeartbeat } from '@tabler/icons-react'
+import { useState } from 'react'
+import { api, ServerError } from '../../api/client'
+import type { ErrorBody, InterruptedBody, QuestionBody } from '../../api/types'
+import { wallTime } from '../../document/time'
+
+export interface InterruptedProps {
+  readonly runs: readonly InterruptedBody[]
+  /** Why nothing can be resumed from this page. */
+  readonly obstacle: string | undefined
+  readonly onResumed: (run: string) => void
+}
+
+export function Interrupted({ runs, obstacle, onResumed }: InterruptedProps) {
+  return (
+    <ul className="plain-list interrupted">
+      {runs.map((run) => (
+        <Resumable key={run.id} run={run} obstacle={obstacle} onResumed={onResumed} />
+      ))}
+    </ul>
+  )
+}
+
+interface ResumableProps extends Omit<InterruptedProps, 'runs'> {
+  readonly run: InterruptedBody
+}
+
+function Resumable({ run, obstacle, onResumed }: ResumableProps) {
+  const [questions, setQuestions] = useState<readonly QuestionBody[]>([])
+  const [answers, setAnswers] = useState<Readonly<Record<string, string>>>({})
+  const [changed, setChanged] = useState(false)
+  const [problem, setProblem] = useState<ErrorBody>()
+  const [isSent, setSent] = useState(false)
+  const isOpen = questions.some((question) => !answers[question.path])
+
+  async function resume(): Promise<void> {
+    setSent(true)
+    try {
+      onResumed((await api.resumeInterrupted(run.id, { answers, changed })).run)
+    } catch (error) {
+      const asked = error instanceof ServerError ? error.questions : []
+      setQuestions(asked.length > 0 ? asked : questions)
+      const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
+      setProblem(asked.length > 0 ? undefined : said)
+    } finally {
+      setSent(false)
+    }
+  }
+
+  return (
+    <li className="resumable" aria-label={`Interrupted run of ${run.behavior}`}>
+      <div className="resumable-head">
+        <IconHeartbeat size={18} aria-hidden />
+        <span>
+          <strong>{run.behavior}</strong> <span className="quiet mono">{run.id}</span>
+          <span className="quiet resumable-facts">
+            started {wallTime(run.started_at_s)}; its engine ended in the middle of it, after event {run.last_seq}
+          </span>
+        </span>
+      </div>
+      {questions.length > 0 && (
+        <div className="questions">
+          <p>
+            These states had begun and nobody knows whether they had their effect. Look at the cell, then say what became of
+            each: it is either run again from its start, or taken as ended.
+          </p>
+          {questions.map((question) => (
+            <Radio.Group
+              key={question.path}
+              label={question.path}
+              size="sm"
+              value={answers[question.path] ?? ''}
+              onChange={(answer) => setAnswers({ ...answers, [question.path]: answer })}
+            >
+              <Radio value="rerun" label="Run it again" size="sm" />
+              {question.outcomes.map((outcome) => (
+                <Radio key={outcome} value={outcome} label={`It ended with ${outcome}`} size="sm" />
+              ))}
+            </Radio.Group>
+          ))}
+        </div>
+      )}
+      {problem && (
+        <Alert color="red" variant="light" title="It was not resumed" role="alert">
+          {problem.message}
+          {problem.hint && <div className="quiet">{problem.hint}</div>}
+        </Alert>
+      )}
+      <div className="command-row">
+        <Button size="compact-sm" disabled={obstacle !== undefined || isOpen || isSent} title={obstacle} onClick={() => void resume()}>
+          {questions.length > 0 ? 'Go on with these answers' : 'Resume'}
+        </Button>
+        <Checkbox size="xs" label="Also if its file has changed since" checked={changed} onChange={(event) => setChanged(event.currentTarget.checked)} />
+      </div>
+    </li>
+  )
+}

@@ -1,0 +1,200 @@
+"""Skills on dynamic movement primitives of one arm, answered under the arm's name (RCL 4.3.5 to 4.3.7, RCY 7.1).
+
+The parameters are those of RCL tables 6 to 8, see `engine.primitive`. A preempted or failed goal
+leaves the arm at rest and ready for the next.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+
+from engine.demonstration import Trajectory
+from engine.messages import Message, Pose, Wrench
+from engine.primitive import CartDmp, CartOffsets, ForceReference, JointDmp
+from engine.skill import Action, Service
+from engine.skills.direction import Axes
+from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
+
+Six = tuple[float, float, float, float, float, float]
+Kernels = Annotated[int, msgspec.Meta(ge=0, le=184, description="Number of kernels N; 0 lets the fit decide")]
+GainZ = Annotated[float, msgspec.Meta(gt=0, description="Gain of the transformation system")]
+GainX = Annotated[float, msgspec.Meta(gt=0, description="Gain of the phase")]
+
+
+class JointDMP(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
+    """Move along a joint-space DMP (RCL table 6).
+
+    Rejected beforehand, with the reason, where the arm stands more than `start_reach_rad` from the
+    primitive's start `y0`, or a joint would leave its range, speed or acceleration. A smaller distance
+    fades out on the way. `goal` replaces the primitive's goal smoothly; empty for none.
+    """
+
+    dmp: JointDmp
+    goal: tuple[float, ...] = ()
+    start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.1
+
+
+class CartDMP(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
+    """Move the tool centre point along a Cartesian DMP (RCL table 7).
+
+    Rejected beforehand, with the reason, where the tool stands farther from the primitive's start than
+    the two reaches, or the motion cannot be followed. `goal` replaces the primitive's goal smoothly.
+    """
+
+    dmp: CartDmp
+    goal: Pose | None = None
+    start_reach_m: Annotated[float, msgspec.Meta(ge=0.0)] = 0.03
+    start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.2
+
+
+class Compliance(Message, frozen=True, kw_only=True):
+    """M ẍ + D ẋ + K x = F_measured - F_wanted for the offset x, for each axis: along x y z, then about x y z.
+
+    An axis with `active` 0 keeps to the path, one with 1 follows the force. Masses are kg and kg m²,
+    damping N s/m and N m s/rad, stiffness N/m and N m/rad (0: pure force control). `frame` says along
+    which axes, the task frame: those of the world, of the arm's base, or of the tool as it stands when
+    the motion starts. The offset stays within `reach_m` and `turn_rad`, its speed within `speed_m_s`
+    and `turn_rad_s`.
+    """
+
+    active: Six = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    mass: Six = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
+    damping: Six = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
+    stiffness: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    frame: Axes = "world"
+    reach_m: Annotated[float, msgspec.Meta(gt=0.0)] = 0.05
+    turn_rad: Annotated[float, msgspec.Meta(gt=0.0)] = 0.3
+    speed_m_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.1
+    turn_rad_s: Annotated[float, msgspec.Meta(gt=0.0)] = 0.5
+
+    def __post_init__(self) -> None:
+        if any(not 0.0 <= share <= 1.0 for share in self.active):
+            raise ValueError("`active` is from 0 to 1 for each axis")
+        if min(self.mass) < 0.0 or min(self.damping) <= 0.0 or min(self.stiffness) < 0.0:
+            raise ValueError("`mass` and `stiffness` are at least 0, `damping` is above 0, for each axis")
+
+
+class CartAdmitFeedback(Message, frozen=True, kw_only=True):
+    """The measured force and torque on the tool (world axes) and where it is (RCL table 8)."""
+
+    wrench: Wrench
+    pose: Pose
+    progress: float
+
+
+class CartAdmitResult(Message, frozen=True, kw_only=True):
+    """What a pass has learned (RCL table 8): give `offsets` to the next pass; None after one that was cut short.
+
+    The force errors are newton, over the whole pass and the active axes x, y and z together; 0 after one that failed.
+    """
+
+    offsets: CartOffsets | None
+    pose: Pose
+    force_error_rms_n: float
+    force_error_max_n: float
+    duration_s: float
+
+
+class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_only=True):
+    """Move along a Cartesian DMP and press as `force` says, by admittance; returns the learned offsets (RCL table 8).
+
+    `offsets` of an earlier pass are added from the beginning, cut off at the reach; None for zero.
+    `slow_per_n` is the phase stopping: the motion slows to 1 / (1 + slow_per_n · |force error|). `N`
+    kernels encode the offsets.
+    """
+
+    dmp: CartDmp
+    offsets: CartOffsets | None = None
+    force: ForceReference
+    compliance: Compliance = Compliance()
+    slow_per_n: Annotated[float, msgspec.Meta(ge=0.0)] = 0.0
+    N: Kernels = 0
+    start_reach_m: Annotated[float, msgspec.Meta(ge=0.0)] = 0.03
+    start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.2
+
+
+class Cut(Message, frozen=True, kw_only=True):
+    """What was used of a recording: from `start_s` to `end_s`, counted from its first sample."""
+
+    start_s: float
+    end_s: float
+
+
+class JointFit(Message, frozen=True, kw_only=True):
+    """How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end.
+
+    `joint` is the one with the greatest error, counted from 0.
+    """
+
+    kernels: int
+    rms_rad: float
+    max_rad: float
+    end_rad: float
+    joint: int
+    cut: Cut
+
+
+class CartFit(Message, frozen=True, kw_only=True):
+    """How far a learned Cartesian DMP is from its recording: over all samples, the worst one, the goal at the end."""
+
+    kernels: int
+    rms_m: float
+    max_m: float
+    end_m: float
+    rms_rad: float
+    max_rad: float
+    end_rad: float
+    cut: Cut
+
+
+class LearnedJointDmp(Message, frozen=True, kw_only=True):
+    """A joint DMP and how well it fits."""
+
+    dmp: JointDmp
+    fit: JointFit
+
+
+class LearnedCartDmp(Message, frozen=True, kw_only=True):
+    """A Cartesian DMP and how well it fits."""
+
+    dmp: CartDmp
+    fit: CartFit
+
+
+class LearnJointDmp(Service[LearnedJointDmp], frozen=True, kw_only=True):
+    """Learn a joint DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+
+    `trim` cuts the rest at both ends off.
+    """
+
+    entry: str = ""
+    trajectory: Trajectory | None = None
+    N: Kernels = 0
+    a_z: GainZ = 48.0
+    a_x: GainX = 2.0
+    trim: bool = True
+
+    def __post_init__(self) -> None:
+        if bool(self.entry) == (self.trajectory is not None):
+            raise ValueError("give either `entry` or `trajectory`")
+
+
+class LearnCartDmp(Service[LearnedCartDmp], frozen=True, kw_only=True):
+    """Learn a Cartesian DMP from a recorded motion: the entry of kind `trajectory`, or `trajectory` itself.
+
+    A recording without tool poses is followed through the arm's kinematics. `trim` cuts the rest at
+    both ends off.
+    """
+
+    entry: str = ""
+    trajectory: Trajectory | None = None
+    N: Kernels = 0
+    a_z: GainZ = 48.0
+    a_x: GainX = 2.0
+    trim: bool = True
+
+    def __post_init__(self) -> None:
+        if bool(self.entry) == (self.trajectory is not None):
+            raise ValueError("give either `entry` or `trajectory`")

@@ -1,0 +1,30 @@
+"""Reads the documents of any collection on a MongoDB server, such as those of `mongodb_store`."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from engine.store.mongo_errors import explained
+from engine.store.mongo_server import connect
+from engine.store.opening import split_database
+from engine.store.ros_plain import plain
+
+DATABASE = "message_store"
+"""Where `mongodb_store` keeps its entries unless told otherwise."""
+
+
+def read_collection(uri: str, *, collection: str, patience_s: float = 10.0) -> tuple[dict[str, Any], ...]:
+    """Return the documents of a collection in the order of their insertion, as plain objects.
+
+    Raises:
+        StoreError: the server cannot be reached, or does not let us read.
+    """
+    address, database = split_database(uri)
+    server = connect(address, database=database or DATABASE, patience_s=patience_s, oldest=(4, 2))
+    try:
+        with explained("cannot be read", address=server.address, user=server.user):
+            return tuple(
+                cast("dict[str, Any]", plain(document)) for document in server.database[collection].find().sort("_id")
+            )
+    finally:
+        server.client.close()

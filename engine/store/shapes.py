@@ -1,0 +1,56 @@
+"""Turns the rows of a database into what a store shows, and back."""
+
+from __future__ import annotations
+
+from engine.skills.entries import EntryRecord
+from engine.store.contract import EntryChange, EntryKey
+from engine.store.limits import decode_value
+from engine.store.row import Row
+
+
+def record_of(row: Row) -> EntryRecord:
+    """Return an entry with its value."""
+    return EntryRecord(kind=row.kind, name=row.name, value=decode_value(row.value or "{}"), revision=row.revision)
+
+
+def key_of(row: Row) -> EntryKey:
+    """Return an entry without its value."""
+    return EntryKey(
+        kind=row.kind,
+        name=row.name,
+        revision=row.revision,
+        tags=row.tags,
+        changed_unix_ms=row.changed_unix_ms,
+        by=row.by,
+    )
+
+
+def change_of(row: Row) -> EntryChange:
+    """Return a change with the value it left."""
+    return EntryChange(
+        kind=row.kind,
+        name=row.name,
+        revision=row.revision,
+        value=None if row.value is None else decode_value(row.value),
+        tags=row.tags,
+        changed_unix_ms=row.changed_unix_ms,
+        by=row.by,
+        reason=row.reason,
+        restores=row.restores,
+    )
+
+
+def row_from(change: EntryChange, value: str | None, *, writer: str) -> Row:
+    """Return a change as a row, with its value as JSON."""
+    return Row(
+        kind=change.kind,
+        name=change.name,
+        revision=change.revision,
+        value=value,
+        tags=change.tags,
+        changed_unix_ms=change.changed_unix_ms,
+        by=change.by,
+        reason=change.reason,
+        restores=change.restores,
+        writer=writer,
+    )

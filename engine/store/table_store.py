@@ -1,0 +1,240 @@
+"""A store over the table of any database: checks what goes in, works off the event loop, tells its watchers."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+import uuid
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from types import TracebackType
+from typing import Self, TypeVar
+
+from engine.errors import StoreError
+from engine.skills.entries import EntryRecord
+from engine.store.contract import ChangeListener, EntryChange, EntryKey, Value
+from engine.store.following import Following
+from engine.store.kinds import EntryKind, verified_value
+from engine.store.limits import encode_value, is_name_start, verify_name, verify_note, verify_tags
+from engine.store.row import Draft, Row, Selection, Stamp
+from engine.store.shapes import change_of, key_of, record_of, row_from
+from engine.store.table import Table
+from engine.store.words import searched
+
+T = TypeVar("T")
+
+
+class TableStore:
+    """The `Store` that every database has in common; one worker thread, or none when `inline`."""
+
+    def __init__(self, table: Table, *, inline: bool, kinds: Mapping[str, EntryKind]) -> None:
+        self._table = table
+        self._worker = None if inline else ThreadPoolExecutor(max_workers=1, thread_name_prefix="store")
+        self._kinds = kinds
+        self._listeners: dict[object, ChangeListener] = {}
+        self._writer = uuid.uuid4().hex
+        self._following: Following | None = None
+        self._closed = False
+
+    @property
+    def address(self) -> str:
+        """Where the entries are, without secrets."""
+        return self._table.address
+
+    async def get(self, kind: str, name: str) -> EntryRecord:
+        """Return an entry; raises EntryNotFound with the near names."""
+        verify_name(kind, name)
+        return await self._do(lambda: record_of(self._table.get(kind, name)))
+
+    async def put(
+        self,
+        kind: str,
+        name: str,
+        value: Value,
+        *,
+        expected_revision: int | None = None,
+        tags: Iterable[str] | None = None,
+        by: str = "",
+        reason: str = "",
+    ) -> EntryRecord:
+        """Write an entry durably; raises StoreError when refused or when another revision is there."""
+        stamp = self._stamp(f"{kind} {name}", by, reason)
+
+        def write() -> tuple[Row, ...]:
+            draft = self._draft(kind, name, value, tags)
+            return (self._table.put(draft, stamp, expected_revision=expected_revision),)
+
+        return record_of((await self._change(write))[0])
+
+    async def list(
+        self,
+        *,
+        kind: str = "",
+        prefix: str = "",
+        tags: Iterable[str] = (),
+        text: str = "",
+        after: EntryKey | None = None,
+        limit: int | None = None,
+    ) -> tuple[EntryKey, ...]:
+        """Return the entries that meet all conditions, sorted by kind and name."""
+        selection = Selection(
+            kind=kind,
+            prefix=prefix,
+            tags=tuple(tags),
+            words=searched(text),
+            after=None if after is None else (after.kind, after.name),
+            limit=limit,
+        )
+        impossible = not is_name_start(prefix) or (text.strip() != "" and not selection.words)
+        if impossible:
+            return ()
+        return await self._do(lambda: tuple(map(key_of, self._table.select(selection, values=False))))
+
+    async def delete(
+        self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
+    ) -> None:
+        """Remove an entry; its history stays."""
+        verify_name(kind, name)
+        stamp = self._stamp(f"{kind} {name}", by, reason)
+        await self._change(lambda: (self._table.delete(kind, name, stamp, expected_revision=expected_revision),))
+
+    async def undo(
+        self, kind: str, name: str, *, expected_revision: int | None = None, by: str = "", reason: str = ""
+    ) -> EntryChange:
+        """Bring back what was before the last change, as a new revision."""
+        verify_name(kind, name)
+        stamp = self._stamp(f"{kind} {name}", by, reason)
+        rows = await self._change(lambda: (self._table.undo(kind, name, stamp, expected_revision=expected_revision),))
+        return change_of(rows[0])
+
+    async def history(self, kind: str, name: str) -> tuple[EntryChange, ...]:
+        """Return every change of an entry, oldest first."""
+        verify_name(kind, name)
+        return await self._do(lambda: tuple(map(change_of, self._table.changes(kind, name))))
+
+    async def ever(self) -> tuple[tuple[str, str], ...]:
+        """Return kind and name of every entry that ever was, sorted."""
+        return await self._do(self._table.ever)
+
+    async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
+        """Return entries with their values, sorted by kind and name."""
+        selection = Selection(kind=kind, prefix=prefix)
+        return await self._do(lambda: tuple(map(record_of, self._table.select(selection, values=True))))
+
+    async def seed(
+        self, entries: Iterable[EntryRecord], *, overwrite: bool = False, by: str = "", reason: str = ""
+    ) -> tuple[EntryKey, ...]:
+        """Write the entries that are missing (with `overwrite` also those that differ), all or none."""
+        given = tuple(entries)
+        stamp = self._stamp("seed", by, reason)
+
+        def write() -> tuple[Row, ...]:
+            drafts = [self._draft(entry.kind, entry.name, entry.value, None) for entry in given]
+            return self._table.seed(drafts, stamp, overwrite=overwrite)
+
+        return tuple(map(key_of, await self._change(write)))
+
+    async def adopt(self, histories: Iterable[Sequence[EntryChange]]) -> int:
+        """Take over entries with their whole histories; raises EntryConflict where others are here."""
+        given = tuple(histories)
+
+        def write() -> tuple[Row, ...]:
+            return self._table.adopt([[self._adopted(change) for change in history] for history in given])
+
+        return len(await self._change(write))
+
+    def watch(self, listener: ChangeListener) -> Callable[[], None]:
+        """Call `listener` on the event loop after each change committed through this store."""
+        token = object()
+        self._listeners[token] = listener
+
+        def end() -> None:
+            self._listeners.pop(token, None)
+
+        return end
+
+    async def follow(self, listener: ChangeListener) -> Callable[[], None]:
+        """Watch, and hear also what other programs commit from now on."""
+        end_watching = self.watch(listener)
+        if self._worker is None:
+            return end_watching
+        if self._following is None:
+            feed = await self._do(self._table.feed)
+            if feed is None:
+                return end_watching
+            self._following = Following(feed, writer=self._writer, loop=asyncio.get_running_loop())
+            self._following.start()
+        end_hearing = self._following.tell(listener)
+
+        def end() -> None:
+            end_watching()
+            end_hearing()
+
+        return end
+
+    async def close(self) -> None:
+        """Finish what is under way and release the database; may be called again."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._following is not None:
+            await asyncio.get_running_loop().run_in_executor(None, self._following.stop)
+        if self._worker is not None:
+            await asyncio.get_running_loop().run_in_executor(self._worker, self._table.close)
+            self._worker.shutdown()
+        else:
+            self._table.close()
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self.close()
+
+    def _draft(self, kind: str, name: str, value: Value, tags: Iterable[str] | None) -> Draft:
+        verify_name(kind, name)
+        where = f"{kind} {name}"
+        encoded = encode_value(verified_value(self._kinds, kind, value, where=where), where=where)
+        return Draft(kind=kind, name=name, value=encoded, tags=None if tags is None else verify_tags(tags, where=where))
+
+    def _stamp(self, where: str, by: str, reason: str) -> Stamp:
+        verify_note(by, reason, where=where)
+        return Stamp(by=by, reason=reason, changed_unix_ms=time.time_ns() // 1_000_000, writer=self._writer)
+
+    def _adopted(self, change: EntryChange) -> Row:
+        verify_name(change.kind, change.name)
+        where = f"{change.kind} {change.name}"
+        verify_tags(change.tags, where=where)
+        verify_note(change.by, change.reason, where=where)
+        # Values of the past are taken as they are: a kind may have been stricter, or unknown, then.
+        value = None if change.value is None else encode_value(change.value, where=where)
+        return row_from(change, value, writer=self._writer)
+
+    async def _do(self, work: Callable[[], T]) -> T:
+        if self._closed:
+            raise StoreError("the store is closed", where=self.address, hint="open it again")
+        if self._worker is None:
+            return work()
+        return await asyncio.get_running_loop().run_in_executor(self._worker, work)
+
+    async def _change(self, work: Callable[[], tuple[Row, ...]]) -> tuple[Row, ...]:
+        loop = asyncio.get_running_loop()
+
+        def work_and_tell() -> tuple[Row, ...]:
+            rows = work()
+            # Told from here, so that a caller cancelled in the meantime does not hide the change.
+            loop.call_soon_threadsafe(self._tell, rows)
+            return rows
+
+        if self._worker is not None:
+            return await self._do(work_and_tell)
+        rows = await self._do(work)
+        self._tell(rows)
+        return rows
+
+    def _tell(self, rows: tuple[Row, ...]) -> None:
+        for row in rows:
+            for listener in tuple(self._listeners.values()):
+                listener(change_of(row))

@@ -1,0 +1,75 @@
+"""The guarded move: straight on until the environment pushes back."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import GoalRejected
+from engine.skills.contact import ContactResult, MoveUntilContact
+from engine.skills.motion import CartMotionFeedback
+from robots.arm.followed import tell_pose
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.tool_frames import WORLD
+from robots.arm.wrench import to_wrench
+from robots.model.rigid import Rigid
+from robots.motion.min_jerk import PEAK_SPEED
+from robots.port import Array, Contact, JointTrajectory, Motion
+
+_NO_DIRECTION = 1e-6
+
+
+class ContactMotions:
+    """Answers MoveUntilContact."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skill under the arm's name."""
+        name = self._runner.name
+        bus.advertise_action(MoveUntilContact, self._until_contact, namespace=name, exclusive=name)
+
+    async def _until_contact(self, goal: MoveUntilContact, handle: ActiveGoal[CartMotionFeedback]) -> ContactResult:
+        runner = self._runner
+        runner.require_ready(handle)
+        start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
+        way = self._way(goal, start, handle)
+        end = Rigid(xyz=start.xyz + goal.distance_m * way, xyzw=start.xyzw)
+        duration_s = PEAK_SPEED * goal.distance_m / goal.speed_m_s
+        trajectory = await runner.planned(
+            handle, lambda joints: runner.planner.along_line(joints, end, duration_s=duration_s)
+        )
+        began = runner.measured_tool()
+        ended = await runner.carry_out(
+            lambda: self._follow(trajectory, goal.force_n, way),
+            handle,
+            lambda motion: tell_pose(runner, handle, motion),
+        )
+        there, wrench = runner.measured_tool(), runner.port.sample().wrench
+        return ContactResult(
+            contact=ended.report.contact,
+            pose=there.to_pose(WORLD),
+            travelled_m=float((there.xyz - began.xyz) @ way),
+            force_n=float(-wrench[:3] @ way),
+            wrench=to_wrench(wrench),
+            duration_s=ended.duration_s,
+        )
+
+    def _way(self, goal: MoveUntilContact, tool: Rigid, handle: ActiveGoal[CartMotionFeedback]) -> Array:
+        """Return the unit vector of the way in the world, (3,)."""
+        direction = np.array(goal.direction)
+        length = math.hypot(*goal.direction)
+        if not math.isfinite(length) or length < _NO_DIRECTION:
+            raise GoalRejected(
+                f"{goal.direction} is no direction", where=handle.address, hint="[0, 0, -1] goes down in the world"
+            )
+        return self._runner.frames.axes(goal.frame, tool=tool) @ (direction / length)
+
+    def _follow(self, trajectory: JointTrajectory, force_n: float, way: Array) -> Motion:
+        runner = self._runner
+        x, y, z = (-way).tolist()
+        until = Contact(force_n=force_n, direction=(x, y, z))
+        return runner.port.follow(trajectory, tolerance=runner.tolerance, until=until)

@@ -1,0 +1,87 @@
+"""Samples where an arm is led: joints, tool poses and wrenches over time, as an entry of kind `trajectory`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from engine.bus import ActiveGoal, GoalStatus
+from engine.demonstration import Trajectory
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.tool_frames import WORLD
+
+MOST_SAMPLES = 30_000
+"""What still fits into one entry of the store."""
+# Digits kept: a microradian, a micrometre, a micronewton.
+_DIGITS = 6
+
+
+class Demonstration:
+    """Records while its goal is not held; `run` until cancelled, then `trajectory`.
+
+    Args:
+        runner: The arm.
+        handle: The goal that leads it.
+        sample_s: Time between two samples.
+    """
+
+    def __init__(self, runner: MotionRunner, handle: ActiveGoal[Any], *, sample_s: float) -> None:
+        self._runner = runner
+        self._handle = handle
+        self._sample_s = sample_s
+        self._times: list[float] = []
+        self._joints: list[tuple[float, ...]] = []
+        self._poses: list[tuple[float, ...]] = []
+        self._wrenches: list[tuple[float, ...]] = []
+        self._device_s: float | None = None
+        self._passed_s = 0.0
+
+    @property
+    def count(self) -> int:
+        """Samples so far."""
+        return len(self._times)
+
+    @property
+    def full(self) -> bool:
+        """True when no more samples are taken."""
+        return self.count >= MOST_SAMPLES
+
+    async def run(self) -> None:
+        """Take samples until cancelled."""
+        clock = self._runner.clock
+        due_s = clock.now_s()
+        while True:
+            self.take()
+            due_s = max(due_s + self._sample_s, clock.now_s())
+            await clock.sleep(due_s - clock.now_s())
+
+    def take(self) -> None:
+        """Take a sample, unless the goal is held or the device has measured nothing since the last one."""
+        sample = self._runner.port.sample()
+        last_s, self._device_s = self._device_s, sample.time_s
+        if self._handle.status is GoalStatus.HELD or self.full:
+            return
+        if last_s is not None:
+            if sample.time_s <= last_s:
+                return
+            self._passed_s += sample.time_s - last_s
+        tool = self._runner.kinematics.tool_pose(sample.position_rad)
+        self._times.append(round(self._passed_s, _DIGITS))
+        self._joints.append(_rounded(sample.position_rad.tolist()))
+        self._poses.append(_rounded((*tool.xyz.tolist(), *tool.xyzw.tolist())))
+        self._wrenches.append(_rounded(sample.wrench.tolist()))
+
+    def trajectory(self) -> Trajectory:
+        """Return what was recorded; there are at least two samples."""
+        return Trajectory(
+            times_s=tuple(self._times),
+            joints=tuple(self._joints),
+            names=self._runner.model.arm_joints,
+            poses=tuple(self._poses),
+            frame=WORLD,
+            wrenches=tuple(self._wrenches),
+            wrench_frame=WORLD,
+        )
+
+
+def _rounded(values: list[float] | tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(round(value, _DIGITS) for value in values)

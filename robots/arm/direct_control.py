@@ -1,0 +1,84 @@
+"""Direct joint control: set points from a topic, while every other goal is rejected (RCL 4.3.8, table 9)."""
+
+from __future__ import annotations
+
+import logging
+
+from engine.bus import SkillBus
+from engine.errors import RobotError
+from engine.skills.direct import JointCommand, SwitchDirectControl
+from engine.skills.switched import Switched
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.numbers import are_numbers
+from robots.port import MotionEnd, Stream
+
+_log = logging.getLogger("flexcell.arm")
+_WORDS = "direct joint control"
+
+
+class DirectControl:
+    """Answers SwitchDirectControl and listens to `<arm>/direct_joints`."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+        self._bus: SkillBus | None = None
+        self._stream: Stream | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the service under the arm's name; refused to others while a run holds the arm."""
+        name = self._runner.name
+        self._bus = bus
+        bus.advertise_service(SwitchDirectControl, self._switch, namespace=name, commands=name)
+        bus.topic(f"{name}/direct_joints", JointCommand).obey(self._take)
+
+    @property
+    def on(self) -> bool:
+        """True while set points are taken."""
+        return self._stream is not None and self._runner.reserved_for == _WORDS
+
+    async def _switch(self, request: SwitchDirectControl) -> Switched:
+        if request.on:
+            return self._turn_on(request.watchdog_s)
+        return await self._turn_off()
+
+    def _turn_on(self, watchdog_s: float) -> Switched:
+        runner = self._runner
+        if self.on:
+            return Switched(success=True, message=f"{_WORDS} is on already")
+        reason, hint = runner.obstacle()
+        if runner.busy:
+            reason, hint = f"the arm is busy with {runner.activity or 'a goal'}", "wait for its end or cancel it"
+        if reason:
+            return Switched(success=False, message=f"{reason} ({hint})")
+        try:
+            stream = runner.port.stream("joint_position", watchdog_s=watchdog_s)
+        except RobotError as error:
+            return Switched(success=False, message=str(error))
+        self._stream = stream
+        runner.occupy(stream, mode="direct", activity=SwitchDirectControl.skill_name(), reserved_for=_WORDS)
+        if self._bus is not None:
+            # Whoever holds the arm turned it on; what he leaves behind must not lead the arm.
+            self._bus.leases.when_freed(runner.name, stream.cancel)
+        return Switched(success=True, message=f"{_WORDS} is on")
+
+    async def _turn_off(self) -> Switched:
+        stream = self._stream
+        if stream is None or not self.on:
+            return Switched(success=True, message=f"{_WORDS} is off")
+        stream.finish()
+        report = await stream.report()
+        await self._runner.freed()
+        if report.end is MotionEnd.FAILED:
+            return Switched(success=True, message=f"{_WORDS} is off: {report.reason}")
+        return Switched(success=True, message=f"{_WORDS} is off")
+
+    def _take(self, command: JointCommand) -> None:
+        if self._stream is None or not self.on:
+            return
+        try:
+            if not are_numbers(command.position_rad):
+                raise RobotError(f"{command.position_rad!r} are no joint angles", where=self._runner.name)
+            self._stream.send(command.position_rad)
+        except RobotError as error:
+            # The publisher cannot be told; the arm comes to rest when nothing better follows.
+            _log.warning("%s/direct_joints: %s; it is left out", self._runner.name, error)

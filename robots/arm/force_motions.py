@@ -1,0 +1,133 @@
+"""CartAdmitDMP: a Cartesian primitive followed while pressing as wanted, and what a pass has learned (RCL 4.3.7)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.primitive import CartOffsets
+from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult, Compliance
+from robots.arm.dmp_motions import frame_of
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.wrench import to_wrench
+from robots.model.kinematics import ArmKinematics
+from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, plan_cart_dmp, wrench_at
+from robots.motion.dmp.turns import of_matrix
+from robots.port import Admittance, Array, ForceRecord, ForceTask, Motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Errors:
+    rms_n: float
+    max_n: float
+
+
+class ForceMotions:
+    """Answers CartAdmitDMP."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skill under the arm's name."""
+        name = self._runner.name
+        bus.advertise_action(CartAdmitDMP, self._cart_admit_dmp, namespace=name, exclusive=name)
+
+    async def _cart_admit_dmp(self, goal: CartAdmitDMP, handle: ActiveGoal[CartAdmitFeedback]) -> CartAdmitResult:
+        runner = self._runner
+        frame = frame_of(runner, goal.dmp, handle)
+
+        def plan(kinematics: ArmKinematics, start: Array) -> ForceTask:
+            trajectory = plan_cart_dmp(
+                kinematics,
+                goal.dmp,
+                start,
+                frame=frame,
+                start_reach_m=goal.start_reach_m,
+                start_reach_rad=goal.start_reach_rad,
+            )
+            axes = runner.frames.axes(goal.compliance.frame, tool=kinematics.tool_pose(start))
+            x, y, z, w = of_matrix(axes).tolist()
+            duration_s = trajectory.duration_s
+            phase = phase_at(np.linspace(0.0, duration_s / goal.dmp.tau, len(trajectory.position_rad)), goal.dmp.a_x)
+            reach = np.array([goal.compliance.reach_m] * 3 + [goal.compliance.turn_rad] * 3)
+            return ForceTask(
+                trajectory=trajectory,
+                offset=np.clip(offsets_at(_given(goal), phase), -reach, reach),
+                wrench=wrench_at(goal.force, phase),
+                task_xyzw=(x, y, z, w),
+                admittance=_admittance(goal.compliance),
+                slow_per_n=goal.slow_per_n,
+            )
+
+        task = await runner.planned(
+            handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
+        )
+
+        def tell(motion: Motion) -> None:
+            wrench = to_wrench(runner.port.sample().wrench)
+            handle.feedback(CartAdmitFeedback(wrench=wrench, pose=runner.measured_pose(), progress=motion.progress))
+
+        def left(duration_s: float) -> CartAdmitResult:
+            pose = runner.measured_pose()
+            return CartAdmitResult(
+                offsets=None, pose=pose, force_error_rms_n=0.0, force_error_max_n=0.0, duration_s=duration_s
+            )
+
+        ended = await runner.carry_out(
+            lambda: runner.port.track_force(task, tolerance=runner.tolerance), handle, tell, left=left
+        )
+        record = ForceRecord.from_bytes(ended.report.data) if ended.report.data else None
+        passed = record is not None and len(record.shares()) > 0 and not handle.cancel_requested
+        errors = _Errors(rms_n=0.0, max_n=0.0) if record is None else force_errors(task, record)
+        return CartAdmitResult(
+            offsets=learned_offsets(goal, task, record) if record is not None and passed else None,
+            pose=runner.measured_pose(),
+            force_error_rms_n=errors.rms_n,
+            force_error_max_n=errors.max_n,
+            duration_s=ended.duration_s,
+        )
+
+
+def learned_offsets(goal: CartAdmitDMP, task: ForceTask, record: ForceRecord) -> CartOffsets:
+    """Return what the next pass adds: the whole offset of this one over the phase, in the kernels that are wanted."""
+    duration_s = task.trajectory.duration_s
+    phase = phase_at(record.shares() * duration_s / goal.dmp.tau, goal.dmp.a_x)
+    given = _given(goal)
+    if goal.N not in (0, len(given.c_o)):
+        given = no_offsets(goal.N, a_x=goal.dmp.a_x)
+    return offsets_from_samples(phase, record.offsets() - offsets_at(given, phase), given=given)
+
+
+def force_errors(task: ForceTask, record: ForceRecord) -> _Errors:
+    """Return how far the force was from the wanted one along the active axes, over the record."""
+    axes = [axis for axis in range(3) if task.admittance.active[axis] > 0.0]
+    if not axes or len(record.shares()) == 0:
+        return _Errors(rms_n=0.0, max_n=0.0)
+    known = np.linspace(0.0, 1.0, len(task.wrench))
+    error = np.zeros((len(record.shares()), len(axes)))
+    for column, axis in enumerate(axes):
+        error[:, column] = record.wrenches()[:, axis] - np.interp(record.shares(), known, task.wrench[:, axis])
+    sizes = np.linalg.norm(error, axis=1)
+    return _Errors(rms_n=float(np.sqrt((sizes**2).mean())), max_n=float(sizes.max()))
+
+
+def _given(goal: CartAdmitDMP) -> CartOffsets:
+    if goal.offsets is not None:
+        return goal.offsets
+    return no_offsets(goal.N, a_x=goal.dmp.a_x) if goal.N else no_offsets(a_x=goal.dmp.a_x)
+
+
+def _admittance(compliance: Compliance) -> Admittance:
+    return Admittance(
+        active=compliance.active,
+        mass=compliance.mass,
+        damping=compliance.damping,
+        stiffness=compliance.stiffness,
+        reach_m=compliance.reach_m,
+        turn_rad=compliance.turn_rad,
+        speed_m_s=compliance.speed_m_s,
+        turn_rad_s=compliance.turn_rad_s,
+    )

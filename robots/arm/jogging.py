@@ -1,0 +1,141 @@
+"""Jogging: joints or tool at a velocity, for a time or as long as `<arm>/jog` tells; and step by step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import GoalRejected
+from engine.skills.jogging import JogCommand, JogJoints, JogTool, StepJoints, StepTool
+from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
+from robots.arm.followed import follow_joints, follow_tool
+from robots.arm.jog_run import JogRun, Row
+from robots.arm.motion_runner import Ended, MotionRunner
+from robots.model.rigid import Rigid, product, quaternion_of
+from robots.motion.min_jerk import PEAK_ACCELERATION, PEAK_SPEED
+from robots.port import StreamKind
+
+_TWIST = 6
+# A step of the tool is at most this fast in turning, and at most this hard in starting.
+_STEP_TURN_RAD_S, _STEP_M_S2, _STEP_RAD_S2 = 0.5, 0.5, 2.0
+_SHORTEST_STEP_S = 0.1
+_MOST_TURN_RAD = 3.1
+
+
+class Jogging:
+    """Answers JogJoints, JogTool, StepJoints and StepTool, and listens to `<arm>/jog`."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+        self._run: JogRun | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skills under the arm's name."""
+        name = self._runner.name
+        bus.advertise_action(JogJoints, self._jog_joints, namespace=name, exclusive=name)
+        bus.advertise_action(JogTool, self._jog_tool, namespace=name, exclusive=name)
+        bus.advertise_action(StepJoints, self._step_joints, namespace=name, exclusive=name)
+        bus.advertise_action(StepTool, self._step_tool, namespace=name, exclusive=name)
+        bus.topic(f"{name}/jog", JogCommand).obey(self._take)
+
+    def _take(self, command: JogCommand) -> None:
+        if self._run is not None:
+            self._run.take(command)
+
+    async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
+        runner = self._runner
+
+        def tell() -> None:
+            handle.feedback(JointMotionFeedback(joints=runner.measured(), progress=0.0))
+
+        run = JogRun(goal, goal.velocity_rad_s, handle, clock=runner.clock, width=runner.model.dof, mean=_as_told)
+        ended = await self._jog("joint_velocity", run, handle, tell)
+        return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
+
+    async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+        runner = self._runner
+
+        def tell() -> None:
+            handle.feedback(CartMotionFeedback(pose=runner.measured_pose(), progress=0.0))
+
+        def mean(velocity: Row) -> Row:
+            axes = runner.frames.axes(goal.frame, tool=runner.measured_tool())
+            return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
+
+        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, mean=mean)
+        ended = await self._jog("tool_twist", run, handle, tell)
+        return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
+
+    async def _jog(self, kind: StreamKind, run: JogRun, handle: ActiveGoal[Any], tell: Callable[[], None]) -> Ended:
+        runner = self._runner
+        runner.accept(handle)
+
+        def look(_stream: object) -> None:
+            run.look()
+            tell()
+
+        self._run = run
+        try:
+            return await runner.carry_out(
+                lambda: run.start(runner.port.stream(kind, watchdog_s=run.watchdog_s)), handle, look, mode="jogging"
+            )
+        finally:
+            self._run = None
+            run.close()
+
+    async def _step_joints(self, goal: StepJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
+        runner = self._runner
+        if len(goal.step_rad) != runner.model.dof:
+            raise GoalRejected(
+                f"a step of {len(goal.step_rad)} joints was given",
+                where=handle.address,
+                hint=f"this arm has {runner.model.dof}",
+            )
+        trajectory = await runner.planned(
+            handle, lambda start: runner.planner.to_joints(start, start + np.array(goal.step_rad), speed=goal.speed)
+        )
+        return await follow_joints(runner, trajectory, handle, mode="jogging")
+
+    async def _step_tool(self, goal: StepTool, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+        runner = self._runner
+        runner.require_ready(handle)
+        start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
+        end = self._stepped(goal, start, handle)
+        trajectory = await runner.planned(
+            handle, lambda joints: runner.planner.along_line(joints, end, duration_s=_step_time_s(goal))
+        )
+        return await follow_tool(runner, trajectory, handle, mode="jogging")
+
+    def _stepped(self, goal: StepTool, tool: Rigid, handle: ActiveGoal[CartMotionFeedback]) -> Rigid:
+        step = np.array((*goal.step_m, *goal.turn_rad))
+        if not np.isfinite(step).all() or not step.any():
+            raise GoalRejected("the step is none", where=handle.address, hint="give `step_m`, `turn_rad` or both")
+        turn = math.hypot(*goal.turn_rad)
+        if turn > _MOST_TURN_RAD:
+            # Half a turn and more would be made the other, shorter way round.
+            raise GoalRejected(
+                f"a step cannot turn the tool by {turn:.3g} rad",
+                where=handle.address,
+                hint="turn by less than half a turn",
+            )
+        axes = self._runner.frames.axes(goal.frame, tool=tool)
+        return Rigid(xyz=tool.xyz + axes @ step[:3], xyzw=product(quaternion_of(axes @ step[3:]), tool.xyzw))
+
+
+def _as_told(velocity: Row) -> Row:
+    return velocity
+
+
+def _step_time_s(goal: StepTool) -> float:
+    way, turn = math.hypot(*goal.step_m), math.hypot(*goal.turn_rad)
+    return max(
+        _SHORTEST_STEP_S,
+        PEAK_SPEED * way / goal.speed_m_s,
+        PEAK_SPEED * turn / _STEP_TURN_RAD_S,
+        float(np.sqrt(PEAK_ACCELERATION * way / _STEP_M_S2)),
+        float(np.sqrt(PEAK_ACCELERATION * turn / _STEP_RAD_S2)),
+    )

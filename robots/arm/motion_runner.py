@@ -1,0 +1,320 @@
+"""Carries out the motions of one arm, one at a time: accepts or rejects a goal, attends its motion, comes to rest."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from engine.bus import ActiveGoal
+from engine.cause import cause_of, describe
+from engine.clock import Clock
+from engine.errors import GoalRejected, RobotError, SkillFailed
+from engine.messages import Pose, Quaternion, Vector3
+from engine.robot import DeviceStatus
+from engine.skills.arm_control import ArmMode
+from robots.arm.loading import Loading
+from robots.arm.planner import ArmPlanner
+from robots.arm.tool_frames import WORLD, ToolFrames
+from robots.attend import attend
+from robots.model.kinematics import ArmKinematics
+from robots.model.rigid import Rigid
+from robots.model.robot_model import RobotModel
+from robots.port import ArmPort, Array, Motion, MotionEnd, MotionReport, Stream, Tolerance
+from robots.port.settings import NO_FRAME
+
+T = TypeVar("T")
+M = TypeVar("M", bound=Motion)
+
+_REST_RAD_S = 0.02
+# How long a moving arm may take to come to rest, and how often that is looked at.
+_BRAKING_S, _LOOK_S = 2.0, 0.01
+_LOADS = "waiting until inverse kinematics is loaded"
+
+_log = logging.getLogger("flexcell.arm")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ended:
+    """A motion that came to its end without a failure: how, and after how long."""
+
+    report: MotionReport
+    duration_s: float
+
+
+class MotionRunner:
+    """What the groups of motion skills of one arm share; see `ArmServer` for who makes it.
+
+    Attributes:
+        name: Bus namespace and resource of the arm.
+        status: READY between entering and leaving the robot.
+        reserved_for: Why no other goal is taken for now, in words; empty when one is.
+        activity: The skill that is carried out, or what a goal waits for; empty when there is none.
+        error: Why the last motion failed; empty after one that did not.
+        changed: Called when any of these has changed.
+    """
+
+    def __init__(
+        self, *, name: str, model: RobotModel, base: Rigid, port: ArmPort, clock: Clock, tolerance: Tolerance
+    ) -> None:
+        self.name = name
+        self.model = model
+        self.port = port
+        self.clock = clock
+        self.tolerance = tolerance
+        self._at_link = self._kinematics = ArmKinematics(model, base=base)
+        self._tool: tuple[Vector3, Quaternion] = NO_FRAME
+        self._planner = self._new_planner()
+        self.loading = Loading(name, self._planner.prepare)
+        self.frames = ToolFrames(arm=name, base_link=model.base_link, base=base)
+        self.status = DeviceStatus.DISCONNECTED
+        self.reserved_for = ""
+        self.activity = ""
+        self.error = ""
+        self.changed: Callable[[], None] = _nothing
+        self._mode: ArmMode = "moving"
+        self._motion: Motion | None = None
+        port.when_reflex(self._reflexed)
+        self._occupied: asyncio.Task[None] | None = None
+        self._planning = 0
+        self._stops = 0
+
+    @property
+    def moving(self) -> bool:
+        """True while a goal is carried out, or a stream leads the arm."""
+        return self._motion is not None
+
+    @property
+    def busy(self) -> bool:
+        """True also while a motion is planned."""
+        return self.moving or self._planning > 0
+
+    @property
+    def mode(self) -> ArmMode:
+        """What the arm does now."""
+        if self.status is DeviceStatus.DISCONNECTED:
+            return "disconnected"
+        if self._motion is not None:
+            return self._mode
+        if self.port.sample().reflex:
+            return "reflex"
+        return "fault" if self.status is DeviceStatus.FAULT else "idle"
+
+    @property
+    def kinematics(self) -> ArmKinematics:
+        """Of the arm with the tool centre point that is in force."""
+        self._take_tool()
+        return self._kinematics
+
+    @property
+    def planner(self) -> ArmPlanner:
+        """Plans for the tool centre point that is in force."""
+        self._take_tool()
+        return self._planner
+
+    def measured(self) -> tuple[float, ...]:
+        """Return the measured joints."""
+        return tuple(self.port.sample().position_rad.tolist())
+
+    def measured_pose(self) -> Pose:
+        """Return the measured pose of the tool centre point in the world."""
+        return self.measured_tool().to_pose(WORLD)
+
+    def measured_tool(self) -> Rigid:
+        """Return the measured tool centre point in the world, as numbers."""
+        return self.kinematics.tool_pose(self.port.sample().position_rad)
+
+    def target(self, pose: Pose, handle: ActiveGoal[Any]) -> Rigid:
+        """Return the pose of a goal in the world; GoalRejected where its frame is not known."""
+        try:
+            return self.frames.to_world(pose)
+        except RobotError as error:
+            raise GoalRejected(error.message, where=handle.address, hint=error.hint) from None
+
+    async def planned(self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[T]]) -> T:
+        """Plan from the set point and accept the goal, or reject it with the reason."""
+        self.require_ready(handle)
+        stops = self._stops
+        self._planning += 1
+        try:
+            planned = await plan(self.port.sample().desired_rad)
+        except RobotError as error:
+            # The refusal says it all: a second link with the same words would explain nothing.
+            raise GoalRejected(error.message, where=handle.address, hint=error.hint) from None
+        except (ArithmeticError, ValueError) as error:
+            # Numbers far beyond all sense, such as gains of 1e300, overflow in the midst of a plan.
+            raise GoalRejected(
+                f"no motion can be worked out from these numbers: {error}",
+                where=handle.address,
+                hint="look for a value that is far too great or too small",
+            ) from error
+        finally:
+            self._planning -= 1
+        if self._stops != stops:
+            raise GoalRejected("the arm was stopped while the motion was planned", where=handle.address)
+        self.accept(handle)
+        return planned
+
+    async def loaded(self) -> None:
+        """Return when inverse kinematics can be asked without a delay; who reads the status learns of the wait."""
+        if not self.loading.under_way:
+            return
+        _log.info("%s: %s", self.name, _LOADS)
+        if not self.moving:
+            self.activity = _LOADS
+            self.changed()
+        try:
+            await self.loading.finished()
+        finally:
+            if self.activity == _LOADS:
+                self.activity = ""
+                self.changed()
+
+    def accept(self, handle: ActiveGoal[Any]) -> None:
+        """Accept a goal that needs no plan (any more), or reject it with the reason."""
+        self.require_ready(handle)
+        handle.accept()
+
+    def require_ready(self, handle: ActiveGoal[Any]) -> None:
+        """Raise GoalRejected while the arm takes no goals."""
+        reason, hint = self.obstacle()
+        if reason:
+            raise GoalRejected(reason, where=handle.address, hint=hint)
+
+    def obstacle(self) -> tuple[str, str]:
+        """Return why the arm takes no goals for now and what to do about it; empty where it takes them."""
+        if self.status is not DeviceStatus.READY:
+            return f"the arm is {self.status.value}", "connect it first"
+        if self.reserved_for:
+            return f"the arm is in {self.reserved_for}", "end that first"
+        if self.port.sample().reflex:
+            why = self.port.reflex_reason
+            return (
+                "the arm has stopped by itself" + (f": {why}" if why else ""),
+                "clear what is in its way, then call recover_from_error",
+            )
+        return "", ""
+
+    async def carry_out(
+        self,
+        start: Callable[[], M],
+        handle: ActiveGoal[Any],
+        tell: Callable[[M], None],
+        *,
+        words: str = "the arm",
+        mode: ArmMode = "moving",
+        left: Callable[[float], object] | None = None,
+    ) -> Ended:
+        """Start a motion and return how it ended; a cancelled goal returns as well, at rest.
+
+        `left` makes the result of a motion that failed after so many seconds: where it has left the arm.
+
+        Raises:
+            SkillFailed: it could not be started, failed, or was stopped by somebody else.
+        """
+        started_s = self.clock.now_s()
+        try:
+            motion = start()
+        except RobotError as error:
+            raise SkillFailed("the motion was not started", where=handle.address) from error
+        self.error = ""
+        self._begin(motion, mode, handle.address.rpartition("/")[2])
+        try:
+            await attend(motion, handle, tell=lambda: tell(motion), device=self.name, words=words)
+        except (SkillFailed, RobotError) as error:
+            self.error = describe(cause_of(error))
+            if left is not None and isinstance(error, SkillFailed):
+                error.result = left(self.clock.now_s() - started_s)
+            raise
+        finally:
+            self._end()
+        return Ended(report=await motion.report(), duration_s=self.clock.now_s() - started_s)
+
+    def occupy(self, stream: Stream, *, mode: ArmMode, activity: str, reserved_for: str) -> None:
+        """Take no goals until `stream`, which no goal began, has ended."""
+        self.reserved_for = reserved_for
+        self._begin(stream, mode, activity)
+        self._occupied = asyncio.create_task(self._until_free(stream), name=f"{activity} of {self.name}")
+
+    async def freed(self) -> None:
+        """Return when nothing occupies the arm."""
+        if self._occupied is not None:
+            await asyncio.wait((self._occupied,))
+
+    async def stop(self) -> None:
+        """Cancel what is carried out and return at its end."""
+        self._stops += 1
+        if self._motion is not None:
+            self._motion.cancel()
+            await self._motion.report()
+        await self.freed()
+
+    def brake(self) -> None:
+        """Cancel what is carried out; `stop` waits for it."""
+        self._stops += 1
+        if self._motion is not None:
+            self._motion.cancel()
+
+    async def confirm_rest(self) -> None:
+        """Return when the arm is measured at rest; whoever else moved it is being stopped as well.
+
+        Raises:
+            RobotError: it still moves; the status is then FAULT.
+        """
+        patience_s = self.clock.now_s() + _BRAKING_S
+        while True:
+            speed = np.abs(self.port.sample().velocity_rad_s)
+            fastest = int(np.argmax(speed))
+            if speed[fastest] <= _REST_RAD_S:
+                return
+            if self.clock.now_s() >= patience_s:
+                self.status = DeviceStatus.FAULT
+                self.changed()
+                raise RobotError(
+                    f"{self.model.arm_joints[fastest]} still moves at {speed[fastest]:.3f} rad/s after the stop",
+                    where=self.name,
+                    hint="use the emergency stop",
+                )
+            await self.clock.sleep(_LOOK_S)
+
+    def _reflexed(self, reason: str) -> None:
+        """Tell at once; a motion under way fails and tells the reason itself."""
+        if self._motion is None:
+            self.error = f"the arm has stopped by itself: {reason}"
+        self.changed()
+
+    def _begin(self, motion: Motion, mode: ArmMode, activity: str) -> None:
+        self._motion, self._mode, self.activity = motion, mode, activity
+        self.changed()
+
+    def _end(self) -> None:
+        self._motion, self.activity = None, ""
+        self.changed()
+
+    async def _until_free(self, stream: Stream) -> None:
+        report = await stream.report()
+        self.error = report.reason if report.end is MotionEnd.FAILED else ""
+        self.reserved_for = ""
+        self._occupied = None
+        self._end()
+
+    def _take_tool(self) -> None:
+        """Let kinematics and planner mean the tool centre point of the settings, which a restore may change."""
+        settings = self.port.settings
+        tool = (settings.tool_xyz_m, settings.tool_xyzw)
+        if tool == self._tool:
+            return
+        self._tool = tool
+        self._kinematics = self._at_link if tool == NO_FRAME else self._at_link.with_tool(Rigid.of(*tool))
+        self._planner = self._new_planner()
+
+    def _new_planner(self) -> ArmPlanner:
+        return ArmPlanner(self._kinematics.twin(), clock=self.clock, loaded=self.loaded)
+
+
+def _nothing() -> None:
+    """Tell nobody."""

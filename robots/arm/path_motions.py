@@ -1,0 +1,84 @@
+"""The motion skills whose way is known beforehand: joint profiles and the straight line (RCL tables 3 to 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+
+import numpy as np
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import SkillFailed
+from engine.messages import Pose
+from engine.skills.motion import (
+    CartLinTask,
+    CartMotionFeedback,
+    CartMotionResult,
+    CartTrapVel,
+    ForwardKinematics,
+    JointMotionFeedback,
+    JointMotionResult,
+    JointTrapVel,
+)
+from robots.arm.followed import follow_joints, follow_tool
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.tool_frames import WORLD
+from robots.model.inverse_kinematics import Match
+from robots.model.rigid import Rigid
+from robots.port import Array, JointTrajectory
+
+
+class PathMotions:
+    """Answers JointTrapVel, CartTrapVel and CartLinTask, and where the tool is."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skills under the arm's name."""
+        name = self._runner.name
+        bus.advertise_action(JointTrapVel, self._joint_trap_vel, namespace=name, exclusive=name)
+        bus.advertise_action(CartTrapVel, self._cart_trap_vel, namespace=name, exclusive=name)
+        bus.advertise_action(CartLinTask, self._cart_lin_task, namespace=name, exclusive=name)
+        bus.advertise_service(ForwardKinematics, self._forward_kinematics, namespace=name)
+
+    async def _joint_trap_vel(self, goal: JointTrapVel, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
+        runner = self._runner
+        trajectory = await runner.planned(
+            handle, lambda start: runner.planner.to_joints(start, np.array(goal.joints), speed=goal.speed)
+        )
+        return await follow_joints(runner, trajectory, handle)
+
+    async def _cart_trap_vel(self, goal: CartTrapVel, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+        planner, match = self._runner.planner, Match.of(goal.match)
+        return await self._cartesian(
+            goal.pose, handle, lambda start, pose: planner.to_pose(start, pose, speed=goal.speed, match=match)
+        )
+
+    async def _cart_lin_task(self, goal: CartLinTask, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+        planner = self._runner.planner
+        return await self._cartesian(
+            goal.pose, handle, lambda start, pose: planner.along_line(start, pose, duration_s=goal.duration_s)
+        )
+
+    async def _forward_kinematics(self, request: ForwardKinematics) -> Pose:
+        runner = self._runner
+        if not request.joints:
+            return runner.measured_pose()
+        if len(request.joints) != runner.model.dof:
+            raise SkillFailed(
+                f"{len(request.joints)} joints were given", where=runner.name, hint=f"this arm has {runner.model.dof}"
+            )
+        if not np.isfinite(request.joints).all():
+            raise SkillFailed(f"the joints {request.joints} are not finite", where=runner.name)
+        return runner.kinematics.tool_pose(np.array(request.joints)).to_pose(WORLD)
+
+    async def _cartesian(
+        self,
+        pose: Pose,
+        handle: ActiveGoal[CartMotionFeedback],
+        plan: Callable[[Array, Rigid], Awaitable[JointTrajectory]],
+    ) -> CartMotionResult:
+        runner = self._runner
+        target = runner.target(pose, handle)
+        trajectory = await runner.planned(handle, lambda start: plan(start, target))
+        return await follow_tool(runner, trajectory, handle)

@@ -1,0 +1,64 @@
+"""Admittance: forces that are not as wanted deviate the tool, M ẍ + D ẋ + K x = F − F_wanted (RCL 4.3.7)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.port import Admittance, Array
+
+# While it only gives way, forces that are this much stronger than wanted are borne.
+_BORNE = (1.0, 1.0, 1.0, 0.1, 0.1, 0.1)
+_AXES = 6
+
+
+class AdmittanceLoop:
+    """The offset that forces have led to, per axis of the task frame (m, then rad), one period after the other.
+
+    The whole offset, feed-forward and admittance together, keeps the reach and the speed of the
+    parameters. What is cut off is forgotten, so nothing winds up.
+    """
+
+    def __init__(self, admittance: Admittance) -> None:
+        self._law = admittance
+        self._axes = tuple(axis for axis in range(_AXES) if admittance.active[axis] > 0.0)
+        self._reach = (admittance.reach_m,) * 3 + (admittance.turn_rad,) * 3
+        self._speed = (admittance.speed_m_s,) * 3 + (admittance.turn_rad_s,) * 3
+        self._offset = [0.0] * _AXES
+        self._rate = [0.0] * _AXES
+        self.total = np.zeros(_AXES)
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """The axes that are deviated."""
+        return self._axes
+
+    def press(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
+        """Move on so that the measured wrench becomes the wanted one, (6,); `total` is the whole offset then."""
+        for axis in self._axes:
+            self._move(axis, step_s, float(measured[axis] - wanted[axis]), float(feed_forward[axis]))
+        self._add_up(feed_forward)
+
+    def give_way(self, step_s: float, *, measured: Array, wanted: Array, feed_forward: Array) -> None:
+        """Come to rest; move only away from forces that are clearly stronger than wanted, never towards."""
+        for axis in self._axes:
+            excess = float(measured[axis] - wanted[axis])
+            towards = excess * float(wanted[axis]) < 0.0
+            excess = 0.0 if towards else np.copysign(max(0.0, abs(excess) - _BORNE[axis]), excess)
+            self._move(axis, step_s, float(excess), float(feed_forward[axis]))
+        self._add_up(feed_forward)
+
+    def _move(self, axis: int, step_s: float, error: float, feed_forward: float) -> None:
+        law, offset = self._law, self._offset[axis]
+        mass, damping, stiffness = law.mass[axis], law.damping[axis], law.stiffness[axis]
+        push = step_s * (law.active[axis] * error - stiffness * offset)
+        rate = (mass * self._rate[axis] + push) / (mass + step_s * (damping + step_s * stiffness))
+        whole = self.total[axis]
+        step = min(
+            max(offset + rate * step_s + feed_forward - whole, -self._speed[axis] * step_s), self._speed[axis] * step_s
+        )
+        moved = min(max(whole + step, -self._reach[axis]), self._reach[axis]) - feed_forward
+        self._offset[axis], self._rate[axis] = moved, (moved - offset) / step_s
+
+    def _add_up(self, feed_forward: Array) -> None:
+        self.total[:] = self._offset
+        self.total += feed_forward

@@ -1,0 +1,69 @@
+"""What a control loop knows of one arm at one instant: joints, tool, and what the environment does to it."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from robots.model.rigid import Rigid
+from robots.port import Array
+
+
+class ToolKinematics(Protocol):
+    """What a control loop needs of kinematics; `robots.model.kinematics.ArmKinematics` has it."""
+
+    @property
+    def dof(self) -> int:
+        """Number of joints n."""
+        ...
+
+    def tool_pose(self, joints: Array) -> Rigid:
+        """Pose of the tool centre point in the world for joints of shape (n,)."""
+        ...
+
+    def tool_pose_and_jacobian(self, joints: Array) -> tuple[Rigid, Array]:
+        """The tool pose and the Jacobian, shape (6, n): m/s, then rad/s, in world axes."""
+        ...
+
+
+class ArmState:
+    """The measured arm; one instance is kept and refilled at every control period by the loop that owns it.
+
+    Attributes:
+        position: Measured joints, (n,), rad.
+        velocity: Measured joint velocities, (n,), rad/s.
+        external_nm: Estimated joint torque of the environment, (n,).
+        wrench: Force and torque of the environment on the tool at the tool centre point, (6,), world axes.
+        kinematics: For this loop only.
+    """
+
+    def __init__(self, kinematics: ToolKinematics) -> None:
+        n = kinematics.dof
+        self.kinematics = kinematics
+        self.position = np.zeros(n)
+        self.velocity = np.zeros(n)
+        self.external_nm = np.zeros(n)
+        self.wrench = np.zeros(6)
+        self._tool: tuple[Rigid, Array] | None = None
+
+    def refill(self, position: Array, velocity: Array) -> None:
+        """Take the joints of a new control period."""
+        self.position[:] = position
+        self.velocity[:] = velocity
+        self._tool = None
+
+    @property
+    def tool(self) -> Rigid:
+        """Measured pose of the tool centre point in the world."""
+        return self._at_tool()[0]
+
+    @property
+    def jacobian(self) -> Array:
+        """Jacobian at the tool centre point, (6, n), world axes."""
+        return self._at_tool()[1]
+
+    def _at_tool(self) -> tuple[Rigid, Array]:
+        if self._tool is None:
+            self._tool = self.kinematics.tool_pose_and_jacobian(self.position)
+        return self._tool

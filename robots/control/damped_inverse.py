@@ -1,0 +1,24 @@
+"""Joint velocities for a tool velocity, damped only where the arm is near a singularity and only in that direction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.port import Array
+
+# Below this singular value (metres and radians weighed alike) a Panda turns some joint more than
+# sixteen times as fast as its tool moves.
+_NEAR = 0.06
+_DAMPING = 0.06
+
+
+def joint_velocity(jacobian: Array, twist: Array) -> Array:
+    """Return joint velocities, (n,), for a tool velocity, (m,); the Jacobian has shape (m, n).
+
+    Exact far from singularities; near one, the part of the tool's velocity that would need fast joints
+    fades out (numerical filtering, Maciejewski and Klein 1988). Of several solutions, the slowest.
+    """
+    squares, directions = np.linalg.eigh(jacobian @ jacobian.T)
+    squares = np.maximum(squares, 0.0)
+    damping = _DAMPING**2 * np.maximum(1.0 - squares / _NEAR**2, 0.0)
+    return jacobian.T @ (directions @ ((directions.T @ twist) / (squares + damping)))

@@ -1,0 +1,126 @@
+"""The motion that a gripper's drive carries out: holding, resuming, cancelling it, and telling how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.port import MotionEnd
+
+REST_S = 0.06
+"""How long a drive must stand still to be at rest."""
+
+
+@dataclass(kw_only=True)
+class _Task:
+    """The motion under way."""
+
+    number: int
+    patience_s: float
+    hold: bool = False
+    request: int = 0
+    told_held: bool = False
+    tell_resumed: bool = False
+    cancel: bool = False
+    waited_s: float = 0.0
+
+
+class GripTask:
+    """At most one motion at a time; a drive asks it whether to go on, and lets it judge every step."""
+
+    def __init__(self) -> None:
+        self._task: _Task | None = None
+        self._rest_s = 0.0
+
+    @property
+    def number(self) -> int:
+        """The motion under way, 0 when there is none."""
+        return self._task.number if self._task else 0
+
+    @property
+    def halted(self) -> bool:
+        """True while a motion is held or being cancelled."""
+        return self._task is not None and (self._task.hold or self._task.cancel)
+
+    def start(self, number: int, *, patience_s: float) -> None:
+        """Begin a motion; it fails after `patience_s` of not being held."""
+        self._task = _Task(number=number, patience_s=patience_s)
+        self._rest_s = 0.0
+
+    def forget(self) -> None:
+        """Drop what is under way without telling."""
+        self._task, self._rest_s = None, 0.0
+
+    def hold(self, number: int, *, request: int = 0) -> None:
+        """Stop on the way."""
+        task = self._task
+        if task and task.number == number:
+            task.hold, task.told_held, task.tell_resumed = True, False, False
+            task.request = request
+
+    def resume(self, number: int, *, request: int = 0) -> None:
+        """Go on."""
+        task = self._task
+        if task and task.number == number:
+            task.hold, task.tell_resumed, task.request = False, True, request
+
+    def cancel(self, number: int) -> None:
+        """Stop and end as canceled."""
+        if self._task and self._task.number == number:
+            self._task.cancel = True
+
+    def judge(
+        self,
+        step_s: float,
+        *,
+        still: bool,
+        reached: bool,
+        progress: Callable[[], float],
+        late: Callable[[float], str],
+    ) -> tuple[AnyMotionEvent, ...]:
+        """Return what happened in this step.
+
+        Args:
+            step_s: The control period.
+            still: Nothing moves in this step; for `REST_S` on end it is at rest.
+            reached: What was wanted is so.
+            progress: Share of the way passed.
+            late: Says in words why it failed after that many seconds.
+        """
+        self._rest_s = self._rest_s + step_s if still else 0.0
+        task = self._task
+        if task is None:
+            return ()
+        at_rest = self._rest_s >= REST_S
+        if task.tell_resumed:
+            task.tell_resumed = False
+            self._rest_s = 0.0
+            return (MotionResumed(motion=task.number, request=task.request),)
+        if task.cancel:
+            return self._finish(task, MotionEnd.CANCELED, progress) if at_rest else self._wait(step_s, progress, late)
+        if task.hold:
+            if not at_rest or task.told_held:
+                return ()
+            task.told_held = True
+            return (MotionHeld(motion=task.number, request=task.request),)
+        if at_rest and reached:
+            return self._finish(task, MotionEnd.REACHED, progress)
+        return self._wait(step_s, progress, late)
+
+    def _wait(
+        self, step_s: float, progress: Callable[[], float], late: Callable[[float], str]
+    ) -> tuple[AnyMotionEvent, ...]:
+        task = self._task
+        assert task is not None
+        task.waited_s += step_s
+        if task.waited_s < task.patience_s:
+            return ()
+        return self._finish(task, MotionEnd.FAILED, progress, late(task.waited_s))
+
+    def _finish(
+        self, task: _Task, end: MotionEnd, progress: Callable[[], float], reason: str = ""
+    ) -> tuple[AnyMotionEvent, ...]:
+        share = progress()
+        self._task = None
+        return (MotionFinished(motion=task.number, end=end.value, progress=share, reason=reason),)

@@ -1,0 +1,77 @@
+"""The tool moved at a velocity that is sent, with the joints following as well as they can."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_state import ArmState
+from robots.control.damped_inverse import joint_velocity
+from robots.control.joint_shaper import JointShaper
+from robots.control.listening import Listening
+from robots.model.robot_model import JointLimits
+from robots.port import Array
+
+_GOING_SHARE = 0.5
+_VELOCITY_SHARE = 0.98
+# A joint runs into its limit decelerating with this share of its acceleration.
+_APPROACH_SHARE = 0.5
+_SLOW = 1e-9
+_FULL = 6
+# Faster twists (m/s, rad/s) are taken as this fast in the same direction: no arm goes there, and no product overflows.
+_FASTEST = 100.0
+
+
+class ToolJogging(Listening):
+    """A stream of velocities of the tool centre point in world axes: m/s, then rad/s, (6,).
+
+    Where a joint's speed or position limit is in the way, all joints slow down alike, so that the
+    tool goes on in the direction it was told, and stops in the end. An arm of fewer than six joints
+    moves its tool as told and lets it turn; it turns it as told when nothing is to move. The
+    kinematics are those of the `ArmState` of each step.
+
+    Args:
+        limits: Of the joints.
+        start: The arm's set point, at rest, (n,), rad.
+        watchdog_s: Longest silence before it comes to rest.
+    """
+
+    def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:
+        shaper = JointShaper(limits=limits, start=start, share=_GOING_SHARE)
+        super().__init__(shaper=shaper, values=6, watchdog_s=watchdog_s)
+        # The twist of the last period and the joint velocities that it needed.
+        self._twist = np.zeros(0)
+        self._whole = np.zeros(len(start))
+
+    def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
+        _, jacobian = state.kinematics.tool_pose_and_jacobian(self.position)
+        rows = self._rows()
+        twist = self._bounded(self._told[rows]) * pace
+        velocity = joint_velocity(jacobian[rows], twist)
+        share = self._share(velocity)
+        same = np.array_equal(twist, self._twist)
+        turning = (velocity - self._whole) * (share / step_s) if same else np.zeros_like(velocity)
+        self._twist, self._whole = twist, velocity
+        self._shaper.run_together(step_s, velocity=velocity * share, turning=turning)
+
+    def _rest(self, step_s: float) -> None:
+        super()._rest(step_s)
+        self._twist = np.zeros(0)
+
+    @staticmethod
+    def _bounded(twist: Array) -> Array:
+        fastest = float(np.abs(twist).max())
+        return twist if fastest <= _FASTEST else twist / fastest * _FASTEST
+
+    def _rows(self) -> slice:
+        """Return which of the six numbers count: a small arm cannot keep its orientation while it moves."""
+        if len(self.position) >= _FULL:
+            return slice(0, 6)
+        return slice(0, 3) if self._told[:3].any() else slice(3, 6)
+
+    def _share(self, velocity: Array) -> float:
+        """Return the share of these velocities that keeps every joint below its own."""
+        shaper = self._shaper
+        room = np.where(velocity > 0.0, shaper.upper_rad - self.position, self.position - shaper.lower_rad)
+        stoppable = np.sqrt(2.0 * _APPROACH_SHARE * shaper.acceleration_rad_s2 * np.maximum(room, 0.0))
+        allowed = np.minimum(_VELOCITY_SHARE * shaper.velocity_rad_s, stoppable)
+        return min(1.0, float((allowed / np.maximum(np.abs(velocity), _SLOW)).min()))

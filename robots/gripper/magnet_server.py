@@ -1,0 +1,82 @@
+"""One switchable magnet on the bus: answers the magnet skills over a `MagnetPort`, simulated or real."""
+
+from __future__ import annotations
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.messages import MagnetState
+from engine.skills.magnet import MagnetFeedback, MagnetResult, MagnetSwitch, ReadMagnet
+from robots.gripper.grip_judgement import Grip
+from robots.gripper.tool_motion import ToolMotion
+from robots.port import MagnetPort, MagnetSample
+
+# What is pulled with less than this share of the magnet's force hangs by an edge or is not ferrous.
+_HOLDS_SHARE = 0.05
+
+
+def judge_magnet(sample: MagnetSample, *, max_force_n: float) -> str:
+    """Return why nothing is held, empty when something is."""
+    if not sample.on:
+        return "the magnet is switched off"
+    if not sample.contact:
+        return "the magnet is on and touches nothing"
+    if sample.pull_n < _HOLDS_SHARE * max_force_n:
+        touched = "something" if sample.contact == "?" else sample.contact
+        return f"the magnet touches {touched} and pulls at it with {sample.pull_n:.1f} N of {max_force_n:.0f} N"
+    return ""
+
+
+class MagnetServer:
+    """Serves a magnet under `name`, usually `<arm>/magnet`; it belongs to its arm's `ArmServer`."""
+
+    def __init__(self, *, name: str, port: MagnetPort) -> None:
+        self.name = name
+        self.grip: Grip | None = None
+        """Nothing: whether it is on and what it pulls at tells whether something is held."""
+        self._port = port
+        self._motion = ToolMotion(device=name, words="the magnet")
+
+    @property
+    def moving(self) -> bool:
+        """True while a goal is carried out."""
+        return self._motion.moving
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the magnet skills."""
+        bus.advertise_action(MagnetSwitch, self._switch, namespace=self.name, exclusive=self.name)
+        bus.advertise_service(ReadMagnet, self._read, namespace=self.name)
+
+    async def stop(self) -> None:
+        """End what is under way; the field stays as it was told, and what is held stays held."""
+        await self._motion.stop()
+
+    async def _switch(self, goal: MagnetSwitch, handle: ActiveGoal[MagnetFeedback]) -> MagnetResult:
+        handle.accept()
+
+        def tell() -> None:
+            handle.feedback(MagnetFeedback(pull_n=self._port.sample().pull_n))
+
+        await self._motion.carry_out(lambda: self._port.switch(on=goal.on), handle, tell)
+        sample = self._port.sample()
+        reason = judge_magnet(sample, max_force_n=self._port.max_force_n)
+        return MagnetResult(
+            on=sample.on,
+            held=not reason,
+            pull_n=sample.pull_n,
+            part=sample.contact if not reason else "",
+            reason=reason,
+        )
+
+    async def _read(self, request: ReadMagnet) -> MagnetState:
+        return magnet_state(self._port.sample(), max_force_n=self._port.max_force_n)
+
+
+def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
+    """Return the state of a magnet in a measurement, what it holds judged anew."""
+    held = not judge_magnet(sample, max_force_n=max_force_n)
+    return MagnetState(
+        time_s=sample.time_s,
+        on=sample.on,
+        pull_n=sample.pull_n,
+        held=held,
+        part=sample.contact if held else "",
+    )

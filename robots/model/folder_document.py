@@ -1,0 +1,232 @@
+"""What `robot.yaml` and `tool.yaml` of a model folder may say, as strict frozen models.
+
+Lengths are metres, angles radians, masses kilograms, forces newtons. `file` paths are relative to
+the folder, or to an installed `package` when one is named.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict
+from robots.model.tool_model import Triple
+
+Text = Annotated[str, Meta(min_length=1)]
+Positive = Annotated[float, Meta(gt=0.0, description="A number above 0")]
+Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
+
+
+class FileIn(Strict, frozen=True, kw_only=True):
+    """A file in the model's folder, or in an installed Python package."""
+
+    file: Text
+    package: Text | None = None
+
+
+class UrdfSource(FileIn, frozen=True, kw_only=True):
+    """The URDF. `collision_file` is another URDF with the same links whose collision shapes are used.
+
+    `root` is the link the model begins at (its own root by default); the links in `without` are cut
+    off with everything that hangs on them.
+    """
+
+    collision_file: Text | None = None
+    root: Text | None = None
+    without: tuple[Text, ...] = ()
+
+
+class Licence(FileIn, frozen=True, kw_only=True):
+    """The licence of the description: its name (SPDX where there is one) and the file with its text."""
+
+    name: Text
+
+
+class ArmJoint(Strict, frozen=True, kw_only=True):
+    """One arm joint: name in the URDF, range, limits, home, inertia of the motor seen at the joint."""
+
+    name: Text
+    lower_rad: float
+    upper_rad: float
+    velocity_rad_s: Positive
+    acceleration_rad_s2: Positive
+    jerk_rad_s3: Positive
+    effort_nm: Positive
+    home_rad: float
+    armature_kg_m2: Annotated[float, Meta(ge=0.0)] = 0.1
+
+
+class DeviceJoint(Strict, frozen=True, kw_only=True):
+    """How the controller's angle of a joint differs: plus factors of other joints, plus an offset.
+
+    `lower_rad` and `upper_rad` are the range that the controller keeps for its own angle, where that is
+    another one than follows from the joints' ranges. With `optional: true` all of it counts only for robots
+    whose cell entry says `coupled_joints: true`.
+    """
+
+    joint: Text
+    plus: dict[str, float] = {}
+    offset_rad: float = 0.0
+    lower_rad: float | None = None
+    upper_rad: float | None = None
+    optional: bool = False
+
+
+class CalibrationFormat(Strict, frozen=True, kw_only=True):
+    """That factory calibration files can be applied, and how their segments are named here.
+
+    `joints` has the joint at the beginning of each segment, in order; `nominal` is the calibration
+    file whose numbers describe the URDF as it is; `base_rpy` turns the file's base to `base_link`.
+    """
+
+    format: Literal["universal_robots"]
+    nominal: Text
+    joints: dict[str, str]
+    base_rpy: Triple = (0.0, 0.0, 0.0)
+
+
+class Collisions(Strict, frozen=True, kw_only=True):
+    """Pairs of links that may touch or never meet: from an SRDF, and listed."""
+
+    srdf: FileIn | None = None
+    allowed: tuple[tuple[str, str], ...] = ()
+
+
+class RobotDocument(Strict, frozen=True, kw_only=True):
+    """A `robot.yaml`: one arm."""
+
+    flexcell: Literal[1]
+    robot: Name
+    title: Text
+    sources: str = ""
+    urdf: UrdfSource
+    flange: Text
+    tool: Text | None = None
+    """The tool it is delivered with, by name."""
+    joints: Annotated[tuple[ArmJoint, ...], Meta(min_length=1)]
+    device_joints: tuple[DeviceJoint, ...] = ()
+    calibration: CalibrationFormat | None = None
+    digital_outputs: Annotated[int, Meta(ge=0, description="General purpose outputs of the controller")] = 0
+    collisions: Collisions = Collisions()
+    licence: Licence
+
+
+class Mount(Strict, frozen=True, kw_only=True):
+    """A pose: position, and rotation about fixed x, y, z axes in turn."""
+
+    xyz: Triple = (0.0, 0.0, 0.0)
+    rpy: Triple = (0.0, 0.0, 0.0)
+
+
+class ToolCentre(Mount, frozen=True, kw_only=True):
+    """The tool centre point, in the frame of `link` (the tool's root by default)."""
+
+    link: Text | None = None
+
+
+class Pad(Strict, frozen=True, kw_only=True):
+    """A finger's pad as a box: centre in the link's frame, full edge lengths."""
+
+    link: Text
+    xyz: Triple = (0.0, 0.0, 0.0)
+    size_m: tuple[Positive, Positive, Positive]
+
+
+class Parallel(Strict, frozen=True, kw_only=True, tag_field="kind", tag="parallel"):
+    """Two sliding fingers; each moves half of the opening, the second mimics the first."""
+
+    hand_link: Text
+    finger_joints: tuple[Text, Text]
+    finger_links: tuple[Text, Text]
+    pads: tuple[Pad, Pad]
+    max_width_m: Positive
+    max_speed_m_s: Positive
+    max_force_n: Positive
+    armature_kg: Positive = 0.2
+
+
+class Linkage(Strict, frozen=True, kw_only=True, tag_field="kind", tag="linkage"):
+    """Two fingers on a linkage turned by `driver`; `followers` turn by a factor of it."""
+
+    driver: Text
+    followers: dict[str, float]
+    finger_links: tuple[Text, Text]
+    pads: tuple[Pad, Pad]
+    open_rad: float
+    closed_rad: float
+    max_width_m: Positive
+    max_speed_m_s: Positive
+    min_force_n: Positive
+    max_force_n: Positive
+    armature_kg_m2: Positive
+
+
+class Magnet(Strict, frozen=True, kw_only=True, tag_field="kind", tag="magnet"):
+    """A switchable magnet with a flat pole face."""
+
+    face: Pad
+    max_force_n: Positive
+    reach_m: Positive
+    max_payload_kg: Positive
+    switch_s: Positive = 0.2
+
+
+class TendonJoint(Strict, frozen=True, kw_only=True):
+    """Pulley radius, spring and damper of one joint of a soft hand."""
+
+    name: Text
+    radius_m: float = 0.0
+    stiffness_nm_rad: Positive
+    damping_nms_rad: Positive
+
+
+class Synergy(Strict, frozen=True, kw_only=True, tag_field="kind", tag="synergy"):
+    """One tendon over all flexion joints; `passive` joints have springs only."""
+
+    palm_link: Text
+    fingers: tuple[tuple[str, ...], ...]
+    flexion: tuple[TendonJoint, ...]
+    passive: tuple[TendonJoint, ...] = ()
+    travel_m: Positive
+    travel_speed_m_s: Positive
+    max_force_n: Positive
+
+
+class Claw(Strict, frozen=True, kw_only=True, tag_field="kind", tag="claw"):
+    """Two fingers coupled by gears and turned by a hobby servo."""
+
+    driver: Text
+    followers: dict[str, float]
+    finger_links: tuple[Text, Text]
+    pads: tuple[Pad, Pad]
+    open_rad: float
+    closed_rad: float
+    servo_open_rad: float
+    servo_closed_rad: float
+    max_width_m: Positive
+    max_speed_rad_s: Positive
+    max_effort_nm: Positive
+    armature_kg_m2: Positive
+
+
+class ToolDocument(Strict, frozen=True, kw_only=True):
+    """A `tool.yaml`: one tool.
+
+    `mount` is the pose of its root link in the flange (z out of the flange). Its links and joints get
+    `prefix` before their names on the arm, by default the tool's name and `_`; the names in this
+    file are those of its own URDF. What the links of the URDF lack to `mass_kg` is added to the root.
+    """
+
+    flexcell: Literal[1]
+    tool: Name
+    title: Text
+    sources: str = ""
+    urdf: UrdfSource
+    prefix: str | None = None
+    mount: Mount = Mount()
+    tcp: ToolCentre = ToolCentre()
+    mass_kg: Positive | None = None
+    mechanism: Parallel | Linkage | Magnet | Synergy | Claw
+    collisions: Collisions = Collisions()
+    licence: Licence

@@ -1,0 +1,225 @@
+"""Inverse kinematics of any arm within its joint limits: nearest solution, all solutions, following, reason why not."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.errors import RobotError
+from robots.model.inverse_kinematics.chain import jacobian_of, matrix_of
+from robots.model.inverse_kinematics.fast_arm import FastArm, fast_arm, is_solved
+from robots.model.inverse_kinematics.match import Match
+from robots.model.inverse_kinematics.posture import Posture, judge, kind_of_singularity
+from robots.model.inverse_kinematics.solutions import Solutions, distinct, soonest_first, with_turns
+from robots.model.inverse_kinematics.unreachable import Attempt, unreachable
+from robots.model.kinematics import ArmKinematics
+from robots.model.rigid import Rigid
+from robots.port import Array
+
+# A solution this near to the seed is taken without looking for a nearer one.
+_NEAR_RAD = 0.3
+# Descents from other starts until a first solution, and after it in search of a nearer one; when there is
+# none, patient descents from the rest of the starts.
+_RESTARTS, _ALTERNATIVES, _PATIENT = 40, 6, 100
+_STARTS = _RESTARTS + _ALTERNATIVES + _PATIENT
+# Starts of the sample of all solutions, values of a locked joint.
+_SAMPLES, _LOCKED_VALUES = 200, 64
+# A position so near to the surface on which the tool of an arm with fewer joints moves is taken for one on it.
+_POSITION_CONDITIONS, _OFF_ITS_SURFACE_M = 3, 1e-3
+# Below this pivot (a singular value of 0.03 squared) an arm has solutions that the closed form does not list.
+_IRREGULAR = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Solution:
+    """The joints (n,) for a goal, within the limits, and how well the arm can move there."""
+
+    joints: Array
+    posture: Posture
+
+
+class InverseKinematics:
+    """Finds joints for a tool pose; deterministic: the same request gives the same answer.
+
+    Six-axis arms are solved in closed form where their geometry allows it (also next to it, refined on
+    the true arm), all others by Levenberg-Marquardt descents from the seed and from other starts. Once
+    prepared it may be used by several threads at once.
+    """
+
+    def __init__(self, kinematics: ArmKinematics) -> None:
+        self._kinematics = kinematics
+
+    def prepare(self) -> None:
+        """Load what the first request would otherwise wait for: the compiled loops and the arm's closed form."""
+        self._arm().lines(np.array(self._kinematics.model.home_rad))
+
+    def nearest(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Array:
+        """Return the configuration for `target` (world) that is soonest reached from `seed`, shape (n,).
+
+        Soonest by the slowest joint at its speed limit. Exact where the closed form lists all solutions;
+        of other arms the best that a bounded search finds.
+
+        Raises:
+            RobotError: none within the joint limits was found; says by how much and which joint is in the way.
+        """
+        arm, goal, seed = self._arm(), matrix_of(target), self._checked(seed)
+        if match is Match.POSE and arm.analytic is not None and arm.analytic.locked < 0:
+            found = self._nearest_listed(arm, goal, seed)
+            if found is not None:
+                return found
+        first = arm.descend(goal, match, seed, near=seed)
+        if is_solved(first) and float(np.abs(first.joints - seed).max()) < _NEAR_RAD:
+            return first.joints
+        best = self._searched(arm, target, goal, match, seed, first)
+        if is_solved(best):
+            return best.joints
+        listed = self._listed(arm, goal, match, seed)
+        if len(listed.joints):
+            return soonest_first(arm.chain, listed.joints, seed)[0]
+        if match is Match.POSITION and arm.chain.dof < _POSITION_CONDITIONS:
+            nearest = arm.descend_patiently(goal, match, best.joints)
+            if nearest.distance_m <= _OFF_ITS_SURFACE_M:
+                return nearest.joints
+        raise self._unreachable(arm, target, match, best)
+
+    def solve(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Solution:
+        """Return the nearest solution and how well the arm can move there; raises as `nearest` does."""
+        joints = self.nearest(target, seed=seed, match=match)
+        return Solution(joints=joints, posture=self.posture(joints))
+
+    def all_solutions(self, target: Rigid, *, seed: Array | None = None, match: Match = Match.POSE) -> Solutions:
+        """Return the solutions for `target` (world), soonest reached from `seed` (the home configuration) first.
+
+        Every turn of a joint that its limits allow is a solution of its own.
+
+        Raises:
+            RobotError: none within the joint limits was found.
+        """
+        arm, goal = self._arm(), matrix_of(target)
+        seed = self._checked(np.array(self._kinematics.model.home_rad) if seed is None else seed)
+        found = self._listed(arm, goal, match, seed)
+        joints = with_turns(arm.chain, found.joints)
+        if not len(joints):
+            # The search is more patient than the list, and knows the reason when it fails too.
+            joints = self.nearest(target, seed=seed, match=match)[None]
+            found = Solutions(joints=joints, complete=False, how="one solution by a search")
+        return Solutions(joints=soonest_first(arm.chain, joints, seed), complete=found.complete, how=found.how)
+
+    def track(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Array | None:
+        """Return the configuration for `target` next to `seed`, which is almost there; None if there is none.
+
+        Joint limits are left to the caller.
+        """
+        attempt = self._arm().follow(matrix_of(target), match, self._checked(seed))
+        return attempt.joints if is_solved(attempt) else None
+
+    def posture(self, joints: Array) -> Posture:
+        """Return how well the arm can move in a configuration of shape (n,)."""
+        arm = self._arm()
+        axes, points, tool = arm.lines(self._checked(joints))
+        kind = kind_of_singularity(arm.chain, arm.ideal, axes, points)
+        return judge(jacobian_of(arm.chain, axes, points, tool), kind)
+
+    def _nearest_listed(self, arm: FastArm, goal: Array, seed: Array) -> Array | None:
+        """Return the nearest of the closed form's solutions, None if it lists none."""
+        if arm.analytic is None:
+            return None
+        refined = arm.refine(goal, arm.analytic.candidates(goal), seed=seed)
+        if not len(refined.joints):
+            return None
+        nearest = refined.joints[refined.nearest]
+        if refined.pivot < _IRREGULAR:
+            near = arm.descend(goal, Match.POSE, seed, near=seed)
+            if is_solved(near):
+                return soonest_first(arm.chain, np.vstack((nearest, near.joints)), seed)[0]
+        return nearest
+
+    def _searched(self, arm: FastArm, target: Rigid, goal: Array, match: Match, seed: Array, first: Attempt) -> Attempt:
+        """Return the solution soonest reached from `seed`, or the attempt that came closest.
+
+        `first` is the descent from the seed.
+        """
+        lower, upper, speed = arm.chain.bounds
+        # All starts at once: drawing them one by one would take longer than a descent.
+        starts = np.random.default_rng(_request_seed(target, seed)).uniform(lower, upper, size=(_STARTS, len(seed)))
+        unused = iter(starts)
+        solutions = [first] if is_solved(first) else []
+        closest = first
+        tries = 0
+        while tries < (_ALTERNATIVES if solutions else _RESTARTS):
+            tries += 1
+            # Every other start stays on the seed's side of the workspace, where the nearest solutions are.
+            share = 1.0 if tries % 2 else 0.35
+            attempt = arm.descend(goal, match, seed + share * (next(unused) - seed), near=seed)
+            if is_solved(attempt):
+                if not solutions:
+                    tries = 0
+                solutions.append(attempt)
+            else:
+                closest = min(closest, attempt, key=_shortfall)
+        if solutions:
+            return min(solutions, key=lambda found: float(np.max(np.abs(found.joints - seed) / speed)))
+        for start in unused:
+            attempt = arm.descend_patiently(goal, match, start)
+            if is_solved(attempt):
+                return attempt
+            closest = min(closest, attempt, key=_shortfall)
+        return closest
+
+    def _listed(self, arm: FastArm, goal: Array, match: Match, seed: Array) -> Solutions:
+        """Return the distinct solutions, whole turns aside; there may be none."""
+        closed = arm.analytic
+        if match is not Match.POSE or closed is None:
+            random = np.random.default_rng(0)
+            starts = random.uniform(arm.chain.bounds[0], arm.chain.bounds[1], size=(_SAMPLES, arm.chain.dof))
+            ends = [arm.descend_patiently(goal, match, start) for start in starts]
+            joints = np.array([end.joints for end in ends if is_solved(end)]).reshape(-1, arm.chain.dof)
+            complete, how = False, f"sampled by {_SAMPLES} descents"
+        elif closed.locked < 0:
+            refined = arm.refine(goal, closed.candidates(goal), seed=seed)
+            joints, complete = refined.joints, closed.exact and refined.pivot >= _IRREGULAR
+            how = "closed form" if closed.exact else "closed form of the nearest ideal arm, refined"
+        else:
+            lower, upper = arm.chain.bounds[:2, closed.locked]
+            values: list[float] = np.linspace(float(lower), float(upper), _LOCKED_VALUES).tolist()
+            candidates = np.vstack([closed.candidates_with(goal, value) for value in values])
+            joints, complete = arm.refine(goal, candidates, seed=seed).joints, False
+            name = self._kinematics.model.arm_joints[closed.locked]
+            how = f"sampled: closed form for {_LOCKED_VALUES} values of {name}"
+        return Solutions(joints=distinct(arm.chain, joints), complete=complete, how=how)
+
+    def _unreachable(self, arm: FastArm, target: Rigid, match: Match, best: Attempt) -> RobotError:
+        goal, model = matrix_of(target), self._kinematics.model
+        return unreachable(
+            target,
+            match,
+            # To the end, so that what is told to be missing is what is missing.
+            arm.descend_patiently(goal, match, best.joints),
+            chain=arm.chain,
+            names=model.arm_joints,
+            starts=(np.array(model.home_rad), (arm.chain.bounds[0] + arm.chain.bounds[1]) / 2.0),
+            to_position=lambda start: arm.descend_patiently(goal, Match.POSITION, start),
+        )
+
+    def _arm(self) -> FastArm:
+        return fast_arm(self._kinematics)
+
+    def _checked(self, joints: Array) -> Array:
+        """Return `joints` as the compiled loops take them, which check nothing."""
+        array = np.ascontiguousarray(joints, dtype=np.float64)
+        if array.shape != (self._kinematics.dof,) or not np.isfinite(array).all():
+            raise RobotError(
+                f"{array.tolist()} is not a configuration of {self._kinematics.model.name}",
+                hint=f"give {self._kinematics.dof} finite numbers, radians",
+            )
+        return array
+
+
+def _request_seed(target: Rigid, seed: Array) -> int:
+    return zlib.crc32(np.concatenate((target.xyz, target.xyzw, seed)).round(9).tobytes())
+
+
+def _shortfall(attempt: Attempt) -> float:
+    return attempt.distance_m + 0.1 * attempt.angle_rad

@@ -1,0 +1,150 @@
+"""Model folders: `robot.yaml` or `tool.yaml` read and checked, their URDFs found and cut to size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from engine.document.conversion import convert
+from engine.document.yaml_source import DataPath, Source, load_source
+from engine.errors import CellError, DocumentError
+from engine.nearness import near_names
+from robots.model.description import disabled_collisions, installed_share_dir
+from robots.model.folder_document import (
+    Claw,
+    Collisions,
+    FileIn,
+    Linkage,
+    Magnet,
+    Parallel,
+    RobotDocument,
+    Synergy,
+    ToolDocument,
+    UrdfSource,
+)
+from robots.model.urdf_tree import Element, below, joints_of, keep_links, links_of, read_urdf, root_of, take_collisions
+
+Document = TypeVar("Document", RobotDocument, ToolDocument)
+
+ROBOT_FILE, TOOL_FILE = "robot.yaml", "tool.yaml"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModelFolder(Generic[Document]):
+    """A model folder with its document."""
+
+    folder: Path
+    document: Document
+    source: Source = field(repr=False)
+
+    def locate(self, file: FileIn) -> Path:
+        """Return a file that the document names; raises CellError when its package is not installed."""
+        if file.package is None:
+            return self.folder / file.file
+        return installed_share_dir(package=file.package, marker=file.file) / file.file
+
+    def package_dir(self, file: FileIn) -> Path:
+        """Return the folder below which the meshes of a description lie."""
+        if file.package is None:
+            return self.folder.parent
+        return installed_share_dir(package=file.package, marker=file.file)
+
+    def urdf(self) -> Element:
+        """Return a fresh tree of the document's URDF: cut, with the wanted collision shapes.
+
+        Raises:
+            CellError: it cannot be read or a mesh is missing.
+            DocumentError: it has no such root or link to leave out.
+        """
+        wanted: UrdfSource = self.document.urdf
+        directory = self.package_dir(wanted)
+        robot = read_urdf(self.locate(wanted), package_dir=directory)
+        root = self._known(wanted.root, links_of(robot), ("urdf", "root"), "link") if wanted.root else root_of(robot)
+        kept = below(robot, root)
+        for index, link in enumerate(wanted.without):
+            kept -= below(robot, self._known(link, links_of(robot), ("urdf", "without", index), "link"))
+        keep_links(robot, kept)
+        if wanted.collision_file is not None:
+            other = self.locate(FileIn(file=wanted.collision_file, package=wanted.package))
+            take_collisions(robot, read_urdf(other, package_dir=directory))
+        return robot
+
+    def allowed_collisions(self) -> tuple[tuple[str, str], ...]:
+        """Return the pairs of the document and of its SRDF, the latter first."""
+        collisions: Collisions = self.document.collisions
+        listed = disabled_collisions(self.locate(collisions.srdf)) if collisions.srdf is not None else ()
+        return (*listed, *collisions.allowed)
+
+    def _known(self, name: str, known: dict[str, Element], path: DataPath, what: str) -> str:
+        if name not in known:
+            raise DocumentError(
+                f"the URDF has no {what} {name}", where=self.source.position(path), hint=near_names(name, known)
+            )
+        return name
+
+    def require_joints(self, robot: Element, named: list[tuple[DataPath, str]]) -> None:
+        """Raise DocumentError at the first name that is no joint of `robot`."""
+        for path, name in named:
+            self._known(name, joints_of(robot), path, "joint")
+
+    def require_links(self, robot: Element, named: list[tuple[DataPath, str]]) -> None:
+        """Raise DocumentError at the first name that is no link of `robot`."""
+        for path, name in named:
+            self._known(name, links_of(robot), path, "link")
+
+
+def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
+    """Read the `robot.yaml` of a folder; raises DocumentError with its position when it is not valid."""
+    source = _read(folder, ROBOT_FILE)
+    arm = ModelFolder(folder=folder, document=convert(source, RobotDocument), source=source)
+    names = [joint.name for joint in arm.document.joints]
+    for index, joint in enumerate(arm.document.joints):
+        if not joint.lower_rad <= joint.home_rad <= joint.upper_rad:
+            where = source.position(("joints", index, "home_rad"))
+            raise DocumentError(f"home of {joint.name} is outside its limits", where=where)
+    for index, device in enumerate(arm.document.device_joints):
+        for name in (device.joint, *device.plus):
+            if name not in names:
+                where = source.position(("device_joints", index))
+                raise DocumentError(f"there is no joint {name}", where=where, hint=near_names(name, names))
+    return arm
+
+
+def load_tool(folder: Path) -> ModelFolder[ToolDocument]:
+    """Read the `tool.yaml` of a folder; raises DocumentError with its position when it is not valid."""
+    source = _read(folder, TOOL_FILE)
+    return ModelFolder(folder=folder, document=convert(source, ToolDocument), source=source)
+
+
+def _read(folder: Path, name: str) -> Source:
+    if not (folder / name).is_file():
+        other = TOOL_FILE if name == ROBOT_FILE else ROBOT_FILE
+        hint = (
+            f"it has a {other}: it belongs elsewhere"
+            if (folder / other).is_file()
+            else "see docs/how-to/add-a-robot.md"
+        )
+        raise CellError(f"there is no {name} in {folder}", where=folder.name, hint=hint)
+    return load_source(folder / name)
+
+
+def names_in(mechanism: Parallel | Linkage | Magnet | Synergy | Claw) -> tuple[list[str], list[str]]:
+    """Return the joints and the links that a mechanism speaks of."""
+    match mechanism:
+        case Parallel():
+            return list(mechanism.finger_joints), [
+                mechanism.hand_link,
+                *mechanism.finger_links,
+                *(pad.link for pad in mechanism.pads),
+            ]
+        case Linkage() | Claw():
+            return [mechanism.driver, *mechanism.followers], [
+                *mechanism.finger_links,
+                *(pad.link for pad in mechanism.pads),
+            ]
+        case Magnet():
+            return [], [mechanism.face.link]
+        case Synergy():
+            joints = [joint.name for joint in (*mechanism.flexion, *mechanism.passive)]
+            return joints, [mechanism.palm_link, *(link for finger in mechanism.fingers for link in finger)]

@@ -1,0 +1,171 @@
+"""URDF text as a tree: read, cut, renamed, joined; mesh paths made independent of where the file lies."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from engine.errors import CellError
+from robots.model.description import PACKAGE_SCHEME, resolve_uri
+
+Element = ET.Element
+
+_PREFIX_USED = re.compile(r"<(\w+):")
+
+
+def read_urdf(path: Path, *, package_dir: Path) -> Element:
+    """Return the `robot` element of a file, meshes as `package://` URIs below `package_dir`, links and joints only.
+
+    Raises:
+        CellError: it cannot be read, is not XML, or a mesh is missing.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        robot = ET.fromstring(_with_prefixes_declared(text))
+    except (OSError, ET.ParseError) as error:
+        raise CellError(f"the URDF cannot be read: {error}", where=str(path), hint="correct the model folder") from None
+    _write_colours_out(robot)
+    for element in list(robot):
+        if element.tag not in ("link", "joint"):
+            robot.remove(element)
+    for mesh in robot.iter("mesh"):
+        file = resolve_uri(mesh.attrib["filename"], package_dirs=(package_dir,), relative_to=path.parent).resolve()
+        if not file.is_relative_to(package_dir.resolve()):
+            raise CellError(f"the mesh {file} lies outside {package_dir}", where=str(path), hint="move it in there")
+        mesh.attrib["filename"] = PACKAGE_SCHEME + file.relative_to(package_dir.resolve()).as_posix()
+    return robot
+
+
+def _write_colours_out(robot: Element) -> None:
+    """Give every visual the colour that its material has elsewhere in the file."""
+    colours = {
+        m.attrib["name"]: c for m in robot.iter("material") if m.get("name") and (c := m.find("color")) is not None
+    }
+    for material in robot.iterfind("link/visual/material"):
+        if material.find("color") is None and (colour := colours.get(material.get("name", ""))) is not None:
+            material.append(colour)
+
+
+def _with_prefixes_declared(text: str) -> str:
+    """Declare name-space prefixes that are used and not declared; xacro leaves such files behind."""
+    missing = sorted(p for p in set(_PREFIX_USED.findall(text)) if f"xmlns:{p}=" not in text)
+    return re.sub(r"<robot\b", " ".join(["<robot", *(f'xmlns:{p}="{p}"' for p in missing)]), text, count=1)
+
+
+def links_of(robot: Element) -> dict[str, Element]:
+    """Return the links by name, in file order."""
+    return {link.attrib["name"]: link for link in robot.findall("link")}
+
+
+def joints_of(robot: Element) -> dict[str, Element]:
+    """Return the joints by name, in file order."""
+    return {joint.attrib["name"]: joint for joint in robot.findall("joint")}
+
+
+def ends_of(joint: Element) -> tuple[str, str]:
+    """Return the names of a joint's parent and child link."""
+    parent, child = joint.find("parent"), joint.find("child")
+    assert parent is not None
+    assert child is not None
+    return parent.attrib["link"], child.attrib["link"]
+
+
+def root_of(robot: Element) -> str:
+    """Return the link that is no joint's child."""
+    children = {ends_of(joint)[1] for joint in robot.findall("joint")}
+    return next(name for name in links_of(robot) if name not in children)
+
+
+def below(robot: Element, link: str) -> set[str]:
+    """Return `link` and all links that hang on it."""
+    found, edges = {link}, [ends_of(joint) for joint in robot.findall("joint")]
+    while True:
+        more = {child for parent, child in edges if parent in found} - found
+        if not more:
+            return found
+        found |= more
+
+
+def keep_links(robot: Element, names: set[str]) -> None:
+    """Remove all other links, and the joints that touch one of them."""
+    for link in robot.findall("link"):
+        if link.attrib["name"] not in names:
+            robot.remove(link)
+    for joint in robot.findall("joint"):
+        if not set(ends_of(joint)) <= names:
+            robot.remove(joint)
+
+
+def add_prefix(robot: Element, prefix: str) -> None:
+    """Put `prefix` before the names of all links, joints and named materials, and where they are referred to."""
+    for element in (*robot.findall("link"), *robot.findall("joint"), *robot.iter("material")):
+        if element.get("name"):
+            element.attrib["name"] = prefix + element.attrib["name"]
+    for joint in robot.findall("joint"):
+        for end in (*joint.findall("parent"), *joint.findall("child")):
+            end.attrib["link"] = prefix + end.attrib["link"]
+        for mimic in joint.findall("mimic"):
+            mimic.attrib["joint"] = prefix + mimic.attrib["joint"]
+
+
+def take_collisions(robot: Element, other: Element) -> None:
+    """Replace the collision shapes of every link that `other` has as well by those of `other`."""
+    theirs = links_of(other)
+    for name, link in links_of(robot).items():
+        if name in theirs:
+            for shape in link.findall("collision"):
+                link.remove(shape)
+            link.extend(theirs[name].findall("collision"))
+
+
+def add_fixed_joint(
+    robot: Element, name: str, *, parent: str, child: str, xyz: tuple[float, ...], rpy: tuple[float, ...]
+) -> None:
+    """Bolt link `child` to link `parent`."""
+    joint = ET.SubElement(robot, "joint", name=name, type="fixed")
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=child)
+    set_origin(joint, xyz=xyz, rpy=rpy)
+
+
+def set_origin(element: Element, *, xyz: tuple[float, ...], rpy: tuple[float, ...]) -> None:
+    """Write the origin of a joint; numbers keep all their digits."""
+    origin = element.find("origin")
+    if origin is None:
+        origin = ET.SubElement(element, "origin")
+    origin.attrib.update(xyz=" ".join(map(repr, map(float, xyz))), rpy=" ".join(map(repr, map(float, rpy))))
+
+
+def set_limits(joint: Element, *, lower: float, upper: float, velocity: float, effort: float) -> None:
+    """Write a joint's limits; a continuous joint becomes one with these limits."""
+    joint.attrib["type"] = "revolute" if joint.attrib["type"] == "continuous" else joint.attrib["type"]
+    limit = joint.find("limit")
+    if limit is None:
+        limit = ET.SubElement(joint, "limit")
+    limit.attrib.update(lower=repr(lower), upper=repr(upper), velocity=repr(velocity), effort=repr(effort))
+
+
+def fill_mass(robot: Element, mass_kg: float) -> None:
+    """Scale the root link's mass and inertia so that all links together weigh `mass_kg`.
+
+    Raises:
+        CellError: the other links weigh as much already, or the root has no mass.
+    """
+    root = links_of(robot)[root_of(robot)]
+    mass, inertia = root.find("inertial/mass"), root.find("inertial/inertia")
+    missing = mass_kg - mass_of(robot)
+    if mass is None or inertia is None or float(mass.attrib["value"]) + missing <= 0.0:
+        raise CellError(
+            f"{root.attrib['name']} cannot be given the mass that makes {mass_kg:g} kg in all",
+            hint="correct `mass_kg` or the inertial of the root link",
+        )
+    share = 1.0 + missing / float(mass.attrib["value"])
+    mass.attrib["value"] = repr(float(mass.attrib["value"]) * share)
+    for key, value in inertia.attrib.items():
+        inertia.attrib[key] = repr(float(value) * share)
+
+
+def mass_of(robot: Element) -> float:
+    """Return the sum of the masses of all links, in kg."""
+    return sum(float(mass.attrib["value"]) for mass in robot.iterfind("link/inertial/mass"))

@@ -1,0 +1,273 @@
+"""Learns movement primitives from recorded motions, and measures how far they are from them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import msgspec
+import numpy as np
+
+from engine.demonstration import Trajectory
+from engine.errors import RobotError
+from engine.primitive import CartDmp, JointDmp
+from engine.skills.dmp import CartFit, Cut, JointFit, LearnedCartDmp, LearnedJointDmp
+from robots.motion.dmp.kernels import Kernels, phase_at
+from robots.motion.dmp.roll_out import roll_out_joints, roll_out_pose
+from robots.motion.dmp.smoothing import Rests, smooth
+from robots.motion.dmp.trimming import Channel, moving_part
+from robots.motion.dmp.turns import conjugate, continuous, log, product, toward
+from robots.port import Array
+
+L = TypeVar("L")
+
+CANDIDATES = (10, 15, 25, 40, 60, 90, 130, 184)
+"""Numbers of kernels that are tried when none is asked for; RCL allows 184."""
+
+GOOD_RAD, GOOD_M, GOOD_TURN_RAD = 1e-3, 5e-4, 2e-3
+"""With errors below these no more kernels are tried."""
+
+# Below these speeds a recorded arm stands still.
+_REST_RAD_S, _REST_M_S, _REST_TURN_RAD_S = 2e-3, 5e-4, 2e-3
+# Fewer kernels are preferred unless more of them lessen the error by more than this factor.
+_WORTHWHILE = 1.15
+_SAMPLES_PER_KERNEL = 10
+_FEWEST_POINTS = 400
+# Until which share of the duration an arm that rests at the end is held to rest.
+_REST_AFTER = 1.4
+_MOST_TURN_RAD = 6.0
+# Keeps the regression solvable where kernels overlap nearly wholly; too small to be seen in the motion.
+_RIDGE = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Part:
+    """The part of a recording that is learned: shares of its duration (T,), where it rests, and what was cut."""
+
+    shares: Array
+    duration_s: float
+    taken: slice
+    rests: Rests
+    cut: Cut
+
+
+def learn_joint_dmp(
+    recorded: Trajectory, *, kernels: int = 0, a_z: float = 48.0, a_x: float = 2.0, trim: bool = True
+) -> LearnedJointDmp:
+    """Return the joint DMP of a recording and how well it fits; `kernels` 0 chooses their number.
+
+    Raises:
+        RobotError: the recording has no joints, too few samples, or nothing moves in it.
+    """
+    if not recorded.joints:
+        raise RobotError("the recording has no joints", hint="record `joints`, or learn a Cartesian primitive")
+    joints = np.array(recorded.joints)
+    part = _part(recorded, [Channel(values=joints, rest=_REST_RAD_S)], trim=trim)
+    wanted = joints[part.taken]
+
+    def learned(number: int) -> LearnedJointDmp:
+        dmp = _joint_dmp(part, wanted, number, a_z=a_z, a_x=a_x)
+        return LearnedJointDmp(dmp=dmp, fit=_joint_fit(dmp, part, wanted))
+
+    def error(one: LearnedJointDmp) -> tuple[float, bool]:
+        return one.fit.rms_rad, one.fit.max_rad <= GOOD_RAD
+
+    return _best(learned, error, _numbers(kernels, part))
+
+
+def learn_cart_dmp(
+    recorded: Trajectory, *, kernels: int = 0, a_z: float = 48.0, a_x: float = 2.0, trim: bool = True
+) -> LearnedCartDmp:
+    """Return the Cartesian DMP of a recording's tool poses and how well it fits; `kernels` 0 chooses their number.
+
+    Raises:
+        RobotError: the recording has no tool poses, too few samples, nothing moves in it, or it turns all around.
+    """
+    if not recorded.poses:
+        raise RobotError("the recording has no tool poses", hint="record `poses`")
+    poses = np.array(recorded.poses)
+    turns = continuous(poses[:, 3:])
+    moving = [
+        Channel(values=poses[:, :3], rest=_REST_M_S),
+        # Half the speed of turning is that of the quaternion's components.
+        Channel(values=turns, rest=_REST_TURN_RAD_S / 2.0),
+    ]
+    part = _part(recorded, moving, trim=trim)
+    xyz, xyzw = poses[part.taken, :3], _positive_goal(turns[part.taken])
+    _check_turn(xyzw)
+
+    def learned(number: int) -> LearnedCartDmp:
+        dmp = _cart_dmp(part, xyz, xyzw, number, a_z=a_z, a_x=a_x)
+        dmp = msgspec.structs.replace(dmp, frame=recorded.frame)
+        return LearnedCartDmp(dmp=dmp, fit=_cart_fit(dmp, part, xyz, xyzw))
+
+    def error(one: LearnedCartDmp) -> tuple[float, bool]:
+        fit = one.fit
+        return fit.rms_m / GOOD_M + fit.rms_rad / GOOD_TURN_RAD, fit.max_m <= GOOD_M and fit.max_rad <= GOOD_TURN_RAD
+
+    return _best(learned, error, _numbers(kernels, part))
+
+
+def _positive_goal(xyzw: Array) -> Array:
+    """Return a continuous row of quaternions with the sign that makes the last one's w positive."""
+    return -xyzw if xyzw[-1, 3] < 0.0 else xyzw
+
+
+def _check_turn(xyzw: Array) -> None:
+    """Refuse a motion that comes near a whole turn from its end, where the way to the goal is not defined."""
+    farthest = float(np.linalg.norm(log(product(xyzw[-1], conjugate(xyzw))), axis=1).max())
+    if farthest > _MOST_TURN_RAD:
+        raise RobotError(
+            f"the tool turns by {np.degrees(farthest):.0f}° in the recording, which one primitive cannot say",
+            hint="learn it in two parts, each less than a whole turn",
+        )
+
+
+def _part(recorded: Trajectory, channels: Sequence[Channel], *, trim: bool) -> _Part:
+    times = np.array(recorded.times_s)
+    moving = moving_part(times, channels)
+    taken = moving.taken if trim else slice(0, len(times))
+    used = times[taken]
+    duration_s = float(used[-1] - used[0])
+    cut = Cut(start_s=float(used[0] - times[0]), end_s=float(used[-1] - times[0]))
+    return _Part(shares=(used - used[0]) / duration_s, duration_s=duration_s, taken=taken, rests=moving.rests, cut=cut)
+
+
+def _numbers(kernels: int, part: _Part) -> tuple[int, ...]:
+    if kernels:
+        return (kernels,)
+    most = max(CANDIDATES[0], len(part.shares) // 3)
+    return tuple(number for number in CANDIDATES if number <= most)
+
+
+def _best(learn: Callable[[int], L], error: Callable[[L], tuple[float, bool]], numbers: tuple[int, ...]) -> L:
+    """Return the first that is good enough, else the one with fewest kernels among those about as good as the best."""
+    tried: list[tuple[float, L]] = []
+    for number in numbers:
+        learned = learn(number)
+        size, good = error(learned)
+        if good:
+            return learned
+        if math.isfinite(size):
+            tried.append((size, learned))
+    if not tried:
+        raise RobotError("the numbers overflow while it is learned", hint="choose smaller gains a_z and a_x")
+    least = min(size for size, _ in tried)
+    return next(learned for size, learned in tried if size <= _WORTHWHILE * least)
+
+
+def _fit_shares(number: int) -> Array:
+    """Return the shares at which `number` kernels are fitted."""
+    return np.linspace(0.0, 1.0, max(_FEWEST_POINTS, _SAMPLES_PER_KERNEL * number) + 1)
+
+
+def _weights(
+    kernels: Kernels, shares: Array, force: Array, *, a_x: float, rests: Rests
+) -> tuple[tuple[float, ...], ...]:
+    """Return the weights, one row for each column of the forcing term (T, n), by least squares.
+
+    An arm that rests at the end needs no force afterwards either: without that the last kernel, which
+    goes on as long as the phase falls, would hold the arm beside its goal.
+    """
+    if rests.end:
+        after = np.linspace(1.0, _REST_AFTER, max(2, len(shares) // 5))[1:]
+        shares, force = np.append(shares, after), np.vstack((force, np.zeros((len(after), force.shape[1]))))
+    phase = phase_at(shares, a_x)
+    basis = phase[:, None] * kernels.at(phase)
+    normal = basis.T @ basis
+    normal[np.diag_indices_from(normal)] += _RIDGE * float(normal.max())
+    return tuple(tuple(row) for row in np.linalg.solve(normal, basis.T @ force).T.tolist())
+
+
+def _joint_dmp(part: _Part, joints: Array, number: int, *, a_z: float, a_x: float) -> JointDmp:
+    kernels, shares = Kernels.evenly(number, a_x=a_x), _fit_shares(number)
+    value, rate, push = smooth(part.shares, joints, intervals=2 * number, rests=part.rests).at(shares)
+    force = push + a_z * rate - a_z * a_z / 4.0 * (value[-1] - value)
+    return JointDmp(
+        N=number,
+        a_z=a_z,
+        a_x=a_x,
+        tau=part.duration_s,
+        goal=_row(value[-1]),
+        y0=_row(value[0]),
+        dy0=_row(rate[0] / part.duration_s),
+        c=_row(kernels.c),
+        sigma=_row(kernels.sigma),
+        w=_weights(kernels, shares, force, a_x=a_x, rests=part.rests),
+    )
+
+
+def _cart_dmp(part: _Part, xyz: Array, xyzw: Array, number: int, *, a_z: float, a_x: float) -> CartDmp:
+    kernels, shares = Kernels.evenly(number, a_x=a_x), _fit_shares(number)
+    motion = smooth(part.shares, np.hstack((xyz, xyzw)), intervals=2 * number, rests=part.rests)
+    value, rate, push = motion.at(shares)
+    turn, spin, spin_push = _spin(value[:, 3:], rate[:, 3:], push[:, 3:])
+    missing = np.hstack((value[-1, :3] - value[:, :3], log(product(turn[-1], conjugate(turn)))))
+    speed = np.hstack((rate[:, :3], spin))
+    force = np.hstack((push[:, :3], spin_push)) + a_z * speed - a_z * a_z / 4.0 * missing
+    w1, w2, w3, w4, w5, w6 = _weights(kernels, shares, force, a_x=a_x, rests=part.rests)
+    return CartDmp(
+        N=number,
+        a_z=a_z,
+        a_x=a_x,
+        tau=part.duration_s,
+        goal=_row(np.concatenate((value[-1, :3], turn[-1]))),
+        y0=_row(np.concatenate((value[0, :3], turn[0]))),
+        dy0=_row(speed[0] / part.duration_s),
+        c=_row(kernels.c),
+        sigma=_row(kernels.sigma),
+        w1=w1, w2=w2, w3=w3, w4=w4, w5=w5, w6=w6,
+    )  # fmt: skip
+
+
+def _spin(raw: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
+    """Return orientations (T, 4), angular velocity and acceleration (T, 3) of quaternions that need not be of length 1.
+
+    A component along the quaternion changes only its length, which drops out of ω = 2 vec(q̇ conj(q)) / |q|².
+    """
+    square = (raw * raw).sum(axis=1, keepdims=True)
+    spin = 2.0 * product(rate, conjugate(raw))[:, :3] / square
+    growth = 2.0 * (raw * rate).sum(axis=1, keepdims=True) / square
+    return raw / np.sqrt(square), spin, 2.0 * product(push, conjugate(raw))[:, :3] / square - spin * growth
+
+
+def _joint_fit(dmp: JointDmp, part: _Part, wanted: Array) -> JointFit:
+    path = roll_out_joints(dmp)
+    error = _at(part.shares, path.shares, path.position) - wanted
+    return JointFit(
+        kernels=dmp.N,
+        rms_rad=float(np.sqrt((error**2).mean())),
+        max_rad=float(np.abs(error).max()),
+        end_rad=float(np.abs(path.position[-1] - np.array(dmp.goal)).max()),
+        joint=int(np.argmax(np.abs(error).max(axis=0))),
+        cut=part.cut,
+    )
+
+
+def _cart_fit(dmp: CartDmp, part: _Part, xyz: Array, xyzw: Array) -> CartFit:
+    path = roll_out_pose(dmp)
+    turn = _at(part.shares, path.shares, path.xyzw)
+    away = np.linalg.norm(_at(part.shares, path.shares, path.xyz) - xyz, axis=1)
+    angle = np.linalg.norm(log(product(turn / np.linalg.norm(turn, axis=1, keepdims=True), conjugate(xyzw))), axis=1)
+    goal = toward(np.array(dmp.goal[3:]), path.xyzw[-1])
+    return CartFit(
+        kernels=dmp.N,
+        rms_m=float(np.sqrt((away**2).mean())),
+        max_m=float(away.max()),
+        end_m=float(np.linalg.norm(path.xyz[-1] - np.array(dmp.goal[:3]))),
+        rms_rad=float(np.sqrt((angle**2).mean())),
+        max_rad=float(angle.max()),
+        end_rad=float(np.linalg.norm(log(product(goal, conjugate(path.xyzw[-1]))))),
+        cut=part.cut,
+    )
+
+
+def _at(shares: Array, known: Array, values: Array) -> Array:
+    columns: list[Array] = [np.interp(shares, known, column) for column in values.T]
+    return np.column_stack(columns)
+
+
+def _row(values: Array) -> tuple[float, ...]:
+    return tuple(values.tolist())

@@ -1,0 +1,156 @@
+"""Plans a Cartesian DMP: the tool follows it from where it stands, or it is refused with the reason."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from engine.errors import RobotError
+from engine.primitive import CartDmp
+from robots.model.inverse_kinematics import pose_error
+from robots.model.kinematics import ArmKinematics
+from robots.model.rigid import Rigid
+from robots.motion.cart_line import splined
+from robots.motion.dmp.plan_joint import never_there, slower
+from robots.motion.dmp.rest import END_SHARE, ENDS, START_SHARE, fade, fade_in, hardly_missing
+from robots.motion.dmp.roll_out import GoalChange, PosePath, roll_out_pose
+from robots.motion.dmp.task_frame import moved, poses_in_task_frame
+from robots.motion.dmp.turns import conjugate, exp, log, product, toward
+from robots.motion.joint_checks import check_duration, check_speed
+from robots.motion.tool_path import (
+    FEWEST_KNOTS,
+    KNOT_M,
+    KNOT_RAD,
+    KNOT_S,
+    MOST_KNOTS,
+    SHYNESS,
+    ToolPath,
+    follow_tool_path,
+)
+from robots.port import Array, JointTrajectory
+
+START_REACH_M, START_REACH_RAD = 0.03, 0.2
+"""How far the tool may be from where the primitive starts."""
+
+_NEAR = 0.01
+WORLD = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def plan_cart_dmp(
+    kinematics: ArmKinematics,
+    dmp: CartDmp,
+    start: Array,
+    *,
+    frame: Rigid = WORLD,
+    goal: Rigid | None = None,
+    start_reach_m: float = START_REACH_M,
+    start_reach_rad: float = START_REACH_RAD,
+) -> JointTrajectory:
+    """Return the joints that carry the tool along the primitive, from `start` (radians, (n,)) to its goal or to `goal`.
+
+    `frame` is the pose in the world of the frame that the primitive is given in; `goal` is in the world. A
+    start beside the primitive's own is carried along and fades out; `goal` replaces the goal smoothly.
+
+    Raises:
+        RobotError: the tool stands too far from the start, the path is out of reach or passes a singularity, or a
+            joint would leave its range, its speed or its acceleration; the message names joint, time and amount.
+    """
+    own = moved(poses_in_task_frame(dmp), frame, frame="world")
+    here = kinematics.tool_pose(start)
+    _check_start(own, here, start_reach_m, start_reach_rad)
+    path = resting_pose(own, here, goal)
+    duration_s = float(path.shares[-1]) * own.tau
+    check_duration(duration_s, "movement")
+    knots = follow_tool_path(kinematics, start, _tool_path(path, duration_s))
+    trajectory = splined(knots, duration_s=duration_s)
+    check_speed(
+        kinematics.limits,
+        kinematics.model.arm_joints,
+        trajectory,
+        advice=lambda least_s: slower(own.tau, least_s / duration_s),
+    )
+    return trajectory
+
+
+def resting_pose(dmp: CartDmp, start: Rigid, goal: Rigid | None = None) -> PosePath:
+    """Return the path of a primitive without `tasktrans` from `start` at rest to its goal, or to `goal`, at rest.
+
+    Raises:
+        RobotError: it does not come to its goal.
+    """
+    target = np.array(dmp.goal) if goal is None else np.concatenate((goal.xyz, goal.xyzw))
+    changes = () if goal is None else (GoalChange(share=0.0, goal=target),)
+    for end in ENDS:
+        path = roll_out_pose(dmp, end=end, changes=changes)
+        missing = _missing(path, -1, target)
+        if hardly_missing(missing, path.rate[-1], path.push[-1], a_z=dmp.a_z, least=_NEAR):
+            break
+    else:
+        raise never_there()
+    before = _missing(path, 0, np.concatenate((start.xyz, start.xyzw)))
+    first, first_rate = fade(path.shares, START_SHARE, value=before, rate=-path.rate[0])
+    last, last_rate = fade_in(path.shares, END_SHARE, value=missing, rate=-path.rate[-1], push=-path.push[-1])
+    added = first + last
+    return PosePath(
+        shares=path.shares,
+        xyz=path.xyz + added[:, :3],
+        xyzw=product(exp(added[:, 3:]), path.xyzw),
+        rate=path.rate + first_rate + last_rate,
+        push=path.push,
+    )
+
+
+def _missing(path: PosePath, at: int, pose: Array) -> Array:
+    """Return what leads from the path at a sample to a pose: metres and a rotation vector, (6,)."""
+    turn = product(toward(pose[3:], path.xyzw[at]), conjugate(path.xyzw[at]))
+    return np.concatenate((pose[:3] - path.xyz[at], log(turn / np.linalg.norm(turn))))
+
+
+def _check_start(dmp: CartDmp, here: Rigid, reach_m: float, reach_rad: float) -> None:
+    start = Rigid.of(dmp.y0[:3], dmp.y0[3:])
+    away_m, away_rad = start.distance_m(here), start.angle_rad(here)
+    if away_m > reach_m or away_rad > reach_rad:
+        place = "({:.3f}, {:.3f}, {:.3f})".format(*start.xyz)
+        raise RobotError(
+            f"the movement primitive starts with the tool at {place}, it stands {away_m:.3f} m and {away_rad:.2f} rad"
+            f" away (at most {reach_m:g} m and {reach_rad:g} rad)",
+            hint="move the tool to its start y0 first",
+        )
+
+
+def _tool_path(path: PosePath, duration_s: float) -> ToolPath:
+    """Return the poses of the path at knots that are near enough to each other."""
+    speed = np.linalg.norm(path.rate[:, :3], axis=1).max(), np.linalg.norm(path.rate[:, 3:], axis=1).max()
+    span = float(path.shares[-1])
+    wanted = max(duration_s / KNOT_S, speed[0] * span / KNOT_M, speed[1] * span / KNOT_RAD, FEWEST_KNOTS)
+    at = np.linspace(0.0, span, min(MOST_KNOTS, math.ceil(wanted)) + 1)
+    poses = _poses_at(path, at)
+    steps = np.array([pose_error(*pair) for pair in pairwise(poses)])
+    lengths = np.linalg.norm(steps[:, :3], axis=1) + np.linalg.norm(steps[:, 3:], axis=1)
+    done = np.concatenate(([0.0], np.cumsum(lengths)))
+    return ToolPath(
+        poses=poses,
+        steps=steps,
+        drifts=SHYNESS * lengths,
+        shares=done / max(float(done[-1]), 1e-12),
+        duration_s=duration_s,
+        word="movement",
+    )
+
+
+def _poses_at(path: PosePath, shares: Array) -> list[Rigid]:
+    """Return the poses at shares between the samples: cubic in place, and turning on from the sample before."""
+    step = float(path.shares[1])
+    below = np.minimum((shares / step).astype(int), len(path.shares) - 2)
+    u = (shares / step - below)[:, None]
+    p0, p1, v0, v1 = path.xyz[below], path.xyz[below + 1], path.rate[below, :3], path.rate[below + 1, :3]
+    xyz = (
+        (1 - 3 * u**2 + 2 * u**3) * p0
+        + (3 * u**2 - 2 * u**3) * p1
+        + step * ((u - 2 * u**2 + u**3) * v0 + (u**3 - u**2) * v1)
+    )
+    turn = log(product(path.xyzw[below + 1], conjugate(path.xyzw[below])))
+    xyzw = product(exp(u * turn), path.xyzw[below])
+    return [Rigid.of(place, quaternion) for place, quaternion in zip(xyz, xyzw, strict=True)]

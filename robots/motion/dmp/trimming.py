@@ -1,0 +1,74 @@
+"""Finds where a recorded motion begins and ends, between the rest before and after it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.errors import RobotError
+from robots.motion.dmp.smoothing import FEWEST_SAMPLES, Rests, smooth
+from robots.port import Array
+
+# Speeds are judged after smoothing over about this time; this much rest is left at either end.
+_SMOOTHING_S, _KEPT_REST_S = 0.1, 0.1
+_SHARE_OF_PEAK = 0.01
+# The speed that noise feigns after smoothing is about this many times its size over time and root of samples.
+_NOISE_GAIN = 8.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """Values that move together, (T, n), and the speed below which they rest whatever their peak."""
+
+    values: Array
+    rest: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moving:
+    """The samples from the beginning to the end of a motion with a little rest, and whether it was at rest there."""
+
+    taken: slice
+    rests: Rests
+
+
+def moving_part(times_s: Array, channels: Sequence[Channel]) -> Moving:
+    """Return where the motion is in a recording.
+
+    Raises:
+        RobotError: there are too few samples, or nothing moves.
+    """
+    if len(times_s) < FEWEST_SAMPLES:
+        raise RobotError(
+            f"the recording has {len(times_s)} samples", hint=f"record at least {FEWEST_SAMPLES} of the motion"
+        )
+    moves = np.zeros(len(times_s), dtype=bool)
+    for channel in channels:
+        moves |= _moves(times_s, channel)
+    if not moves.any():
+        raise RobotError("nothing moves in the recording", hint="record while the arm is led")
+    first, last = (float(times_s[at]) for at in np.flatnonzero(moves)[[0, -1]])
+    begin = int(np.searchsorted(times_s, first - _KEPT_REST_S))
+    end = int(np.searchsorted(times_s, last + _KEPT_REST_S, side="right"))
+    return Moving(
+        taken=slice(begin, end),
+        rests=Rests(
+            start=first - float(times_s[0]) >= _KEPT_REST_S / 2.0, end=float(times_s[-1]) - last >= _KEPT_REST_S / 2.0
+        ),
+    )
+
+
+def _moves(times_s: Array, channel: Channel) -> Array:
+    """Tell at which samples a channel moves faster than its rest, its noise and a small share of its peak."""
+    duration_s = float(times_s[-1] - times_s[0])
+    shares = (times_s - times_s[0]) / duration_s
+    wanted = max(8, round(duration_s / _SMOOTHING_S))
+    smoothed = smooth(shares, channel.values, intervals=wanted, rests=Rests(start=True, end=True))
+    values, rates, _ = smoothed.at(shares)
+    speed = np.linalg.norm(rates, axis=1) / duration_s
+    scatter = float(np.linalg.norm((channel.values - values).std(axis=0)))
+    piece_s, piece_samples = duration_s / smoothed.pieces, len(times_s) / smoothed.pieces
+    noise = _NOISE_GAIN * scatter / (piece_s * float(np.sqrt(piece_samples)))
+    return speed > max(_SHARE_OF_PEAK * float(speed.max()), channel.rest, noise)

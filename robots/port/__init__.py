@@ -1,0 +1,43 @@
+"""What servers of skills need of devices, simulated or real: measure, move, hold, resume, cancel.
+
+Arrays are float64, joints in the model's order, radians. All members are called from the event
+loop thread; an implementation may run its control elsewhere and completes futures on that loop.
+"""
+
+from robots.port.arm import ArmPort, ArmSample, StreamKind
+from robots.port.arrays import Array
+from robots.port.force_task import Admittance, ForceRecord, ForceTask
+from robots.port.gripper import GripperPort, GripperSample
+from robots.port.hand import HandPort, HandSample
+from robots.port.magnet import MagnetPort, MagnetSample
+from robots.port.motion import Motion, MotionEnd, MotionReport, Stream
+from robots.port.outputs import OutputPort
+from robots.port.settings import ArmSettings, ControllerName, Six
+from robots.port.trajectory import Contact, JointTrajectory, Tolerance
+
+__all__ = [
+    "Admittance",
+    "ArmPort",
+    "ArmSample",
+    "ArmSettings",
+    "Array",
+    "Contact",
+    "ControllerName",
+    "ForceRecord",
+    "ForceTask",
+    "GripperPort",
+    "GripperSample",
+    "HandPort",
+    "HandSample",
+    "JointTrajectory",
+    "MagnetPort",
+    "MagnetSample",
+    "Motion",
+    "MotionEnd",
+    "MotionReport",
+    "OutputPort",
+    "Six",
+    "Stream",
+    "StreamKind",
+    "Tolerance",
+]

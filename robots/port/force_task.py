@@ -1,0 +1,97 @@
+"""What a force-tracking motion is asked to do, and what it records."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import msgspec
+import numpy as np
+
+from engine.messages import Quaternion
+from robots.port.arrays import Array
+from robots.port.settings import Six
+from robots.port.trajectory import JointTrajectory
+
+
+class Admittance(msgspec.Struct, frozen=True, kw_only=True):
+    """M ẍ + D ẋ + K x = F_measured − F_wanted for the offset x, per axis of the task frame (x y z, then rotations).
+
+    An axis with `active` 0 is not deviated. Masses are kg and kg m², damping N s/m and N m s/rad,
+    stiffness N/m and N m/rad (0: pure force control). Offsets never exceed `reach_m` and
+    `turn_rad`, nor change faster than `speed_m_s` and `turn_rad_s`.
+    """
+
+    active: Six = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    mass: Six = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
+    damping: Six = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
+    stiffness: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    reach_m: float = 0.05
+    turn_rad: float = 0.3
+    speed_m_s: float = 0.1
+    turn_rad_s: float = 0.5
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceTask:
+    """A tool path with wanted forces, followed with the admittance added on top.
+
+    Attributes:
+        trajectory: The nominal joints over time; starts at the set point at rest and ends at rest.
+        offset: Feed-forward offset of the tool from the nominal path, (samples, 6), metres and rotation
+            vector, in the task frame; what an earlier pass has learned.
+        wrench: Wanted force and torque of the environment on the tool, (samples, 6), in the task frame.
+        task_xyzw: The axes of the task frame in the world.
+        admittance: How measured forces deviate the path.
+        slow_per_n: Phase stopping: the passage slows to 1 / (1 + slow_per_n · |force error|); 0 for never.
+        record_s: Period of the record.
+    """
+
+    trajectory: JointTrajectory
+    offset: Array
+    wrench: Array
+    task_xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    admittance: Admittance = field(default_factory=Admittance)
+    slow_per_n: float = 0.0
+    record_s: float = 0.01
+
+
+class ForceRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What a force-tracking motion did: `MotionReport.data`, encoded by `to_bytes`.
+
+    `share` (k,) is the share of the trajectory's time passed; `offset` (k, 6) the whole offset from
+    the nominal path and `wrench` (k, 6) the measured one, both in the task frame; float64 row-major bytes.
+    """
+
+    share: bytes
+    offset: bytes
+    wrench: bytes
+
+    @classmethod
+    def of(cls, *, share: Array, offset: Array, wrench: Array) -> ForceRecord:
+        """Return the record of these samples."""
+        return cls(share=_bytes(share), offset=_bytes(offset), wrench=_bytes(wrench))
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> ForceRecord:
+        """Return the record that `to_bytes` made."""
+        return msgspec.msgpack.decode(data, type=cls)
+
+    def to_bytes(self) -> bytes:
+        """Return the record as bytes."""
+        return msgspec.msgpack.encode(self)
+
+    def shares(self) -> Array:
+        """Share of the trajectory's time at each sample, (k,)."""
+        return np.frombuffer(self.share)
+
+    def offsets(self) -> Array:
+        """Offsets, (k, 6)."""
+        return np.frombuffer(self.offset).reshape(-1, 6)
+
+    def wrenches(self) -> Array:
+        """Measured wrenches, (k, 6)."""
+        return np.frombuffer(self.wrench).reshape(-1, 6)
+
+
+def _bytes(values: Array) -> bytes:
+    return np.ascontiguousarray(values, dtype=np.float64).tobytes()

@@ -1,0 +1,1 @@
+"""States of a hand that closes with one motor."""

@@ -1,0 +1,37 @@
+"""hand.CheckHeld: asks whether a hand still holds a part."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.hand import ReadHand
+from engine.state import Context, Outcome, State
+from states.hand.naming import HandName, hand_address
+from states.part_label import PartLabel, part_label
+
+
+class CheckHeld(State, frozen=True, kw_only=True):
+    """Ask a hand whether it still holds something."""
+
+    state_name: ClassVar[str] = "hand.CheckHeld"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+
+    hand: HandName
+    part: PartLabel = ""
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Read the measured state of the hand."""
+        address = hand_address(self.hand)
+        request = ReadHand()
+        measured = await ctx.call(request, to=address)
+        if measured.held:
+            return Outcome("held")
+        because = Cause(
+            message=f"the hand is closed to {measured.closed_percent:.0f} % and presses with {measured.force_n:.1f} N",
+            where=f"{address}/{request.skill_name()}",
+        )
+        message = f"the hand of {self.hand} lost {part_label(self.part)}"
+        return Outcome("lost", cause=under(message, because, where=ctx.path, kind=self.state_name))

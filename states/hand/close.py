@@ -1,0 +1,57 @@
+"""hand.Close: closes a hand by a percentage and tells whether it holds something."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.hand import HandClose, HandResult
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.hand.naming import ClosingTime, HandName, Percent, hand_address
+from states.part_label import PartLabel, part_label
+
+
+class Close(State, frozen=True, kw_only=True):
+    """Close a hand to `percent` within `time_s`: `held` when thumb or palm and fingers press on a part, else `missed`.
+
+    Writes `held` always, and how far the motor closed where the hand measured it.
+    """
+
+    state_name: ClassVar[str] = "hand.Close"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+    outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "closed_percent": float}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("closed_percent",)}
+
+    hand: HandName
+    percent: Percent
+    time_s: ClosingTime = 1.0
+    part: PartLabel = ""
+
+    def resources(self) -> tuple[str, ...]:
+        """The hand."""
+        return (hand_address(self.hand),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge what the hand holds."""
+        address = hand_address(self.hand)
+        goal = HandClose(percent=self.percent, time_s=self.time_s)
+        end = await ctx.perform(goal, to=address)
+        if end.status != "succeeded" or end.result is None:
+            cause = goal_cause(self._missed(), goal, end, to=address, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", {"held": False}, cause)
+        outputs = {"held": end.result.held, "closed_percent": end.result.closed_percent}
+        if end.result.held:
+            return Outcome("held", outputs)
+        because = _closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
+        return Outcome("missed", outputs, under(self._missed(), because, where=ctx.path, kind=self.state_name))
+
+    def _missed(self) -> str:
+        return f"the hand of {self.hand} does not hold {part_label(self.part)}"
+
+
+def _closed_on_nothing(result: HandResult, address: str) -> Cause:
+    return Cause(message=result.reason or "nothing is held and the hand gave no reason", where=address)

@@ -1,0 +1,1 @@
+"""States that switch inputs and outputs."""

@@ -1,0 +1,53 @@
+"""io.SetOutput: turns a digital output of a robot's controller on or off."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from msgspec import Meta
+
+from engine.skill import Service
+from engine.skills import outputs
+from engine.skills.outputs import On, OutputNumber, SetGripper, SetLinearAxis, SetToolExchange
+from engine.state import Context, Outcome, State
+from states.asked import asked
+
+Use = Literal["tool_exchange", "gripper", "linear_axis"]
+
+
+class SetOutput(State, frozen=True, kw_only=True):
+    """Turn an output on or off, by its number (`output`) or by what hangs on it (`device`)."""
+
+    state_name: ClassVar[str] = "io.SetOutput"
+    outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
+    success: ClassVar[tuple[str, ...]] = ("set",)
+
+    robot: Annotated[str, Meta(min_length=1, description="The robot whose controller has the output")]
+    value: On
+    output: OutputNumber | None = None
+    device: Annotated[Use | None, Meta(description="What the cell says hangs on one of its outputs")] = None
+
+    def __post_init__(self) -> None:
+        if (self.output is None) == (self.device is None):
+            raise ValueError("give either `output` or `device`")
+
+    def resources(self) -> tuple[str, ...]:
+        """The robot."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the robot."""
+        name = self.device or f"output {self.output}"
+        what = f"{name} of {self.robot} was not turned {'on' if self.value else 'off'}"
+        return await asked(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
+
+    def _request(self) -> Service[Any]:
+        match self.device:
+            case "tool_exchange":
+                return SetToolExchange(value=self.value)
+            case "gripper":
+                return SetGripper(value=self.value)
+            case "linear_axis":
+                return SetLinearAxis(value=self.value)
+            case None:
+                return outputs.SetOutput(output=self.output or 0, value=self.value)

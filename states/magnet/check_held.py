@@ -1,0 +1,35 @@
+"""magnet.CheckHeld: asks whether a magnet still holds a part."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.magnet import ReadMagnet
+from engine.state import Context, Outcome, State
+from states.magnet.naming import MagnetName, magnet_address
+from states.part_label import PartLabel, part_label
+
+
+class CheckHeld(State, frozen=True, kw_only=True):
+    """Ask a magnet whether it still holds something."""
+
+    state_name: ClassVar[str] = "magnet.CheckHeld"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+
+    magnet: MagnetName
+    part: PartLabel = ""
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Read the measured state of the magnet."""
+        address = magnet_address(self.magnet)
+        request = ReadMagnet()
+        measured = await ctx.call(request, to=address)
+        if measured.held:
+            return Outcome("held")
+        state = f"pulls with {measured.pull_n:.1f} N" if measured.on else "is switched off"
+        because = Cause(message=f"the magnet {state}", where=f"{address}/{request.skill_name()}")
+        message = f"the magnet of {self.magnet} lost {part_label(self.part)}"
+        return Outcome("lost", cause=under(message, because, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,14 @@
+"""How states name a magnet: by the arm that carries it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+MagnetName = Annotated[str, Meta(min_length=1, description="The arm that carries the magnet")]
+
+
+def magnet_address(arm: str) -> str:
+    """Return the bus namespace, and resource, of the magnet on an arm."""
+    return f"{arm}/magnet"

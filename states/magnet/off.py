@@ -1,0 +1,44 @@
+"""magnet.Off: switches a magnet off."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.magnet import MagnetSwitch
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.magnet.naming import MagnetName, magnet_address
+from states.part_label import PartLabel
+
+
+class Off(State, frozen=True, kw_only=True):
+    """Switch a magnet off; `failed` when it says that it still holds something."""
+
+    state_name: ClassVar[str] = "magnet.Off"
+    outcomes: ClassVar[tuple[str, ...]] = ("released", "failed")
+    success: ClassVar[tuple[str, ...]] = ("released",)
+
+    magnet: MagnetName
+    part: PartLabel = ""
+
+    def resources(self) -> tuple[str, ...]:
+        """The magnet."""
+        return (magnet_address(self.magnet),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        address = magnet_address(self.magnet)
+        goal = MagnetSwitch(on=False)
+        what = f"the magnet of {self.magnet} did not release " + (f"part {self.part}" if self.part else "its part")
+        end = await ctx.perform(goal, to=address)
+        if end.status != "succeeded" or end.result is None:
+            cause = goal_cause(what, goal, end, to=address, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", cause=cause)
+        if not end.result.held:
+            return Outcome("released")
+        because = Cause(
+            message=f"it still pulls with {end.result.pull_n:.1f} N", where=f"{address}/{goal.skill_name()}"
+        )
+        return Outcome("failed", cause=under(what, because, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,52 @@
+"""magnet.On: switches a magnet on and tells whether it holds something."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from engine.cause import under
+from engine.event import Cause
+from engine.skills.magnet import MagnetSwitch
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.magnet.naming import MagnetName, magnet_address
+from states.part_label import PartLabel, part_label
+
+
+class On(State, frozen=True, kw_only=True):
+    """Switch a magnet on: `held` when it pulls at a part that touches its face, `missed` when not.
+
+    It stays on after `missed` too. Writes `held` always and the pull `pull_n` where the magnet measured it.
+    """
+
+    state_name: ClassVar[str] = "magnet.On"
+    outcomes: ClassVar[tuple[str, ...]] = ("held", "missed", "failed")
+    success: ClassVar[tuple[str, ...]] = ("held",)
+    outputs: ClassVar[Mapping[str, Any]] = {"held": bool, "pull_n": float}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("pull_n",)}
+
+    magnet: MagnetName
+    part: PartLabel = ""
+
+    def resources(self) -> tuple[str, ...]:
+        """The magnet."""
+        return (magnet_address(self.magnet),)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge what the magnet holds."""
+        address = magnet_address(self.magnet)
+        goal = MagnetSwitch(on=True)
+        missed = f"the magnet of {self.magnet} does not hold {part_label(self.part)}"
+        end = await ctx.perform(goal, to=address)
+        if end.status != "succeeded" or end.result is None:
+            cause = goal_cause(missed, goal, end, to=address, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", {"held": False}, cause)
+        outputs = {"held": end.result.held, "pull_n": end.result.pull_n}
+        if end.result.held:
+            return Outcome("held", outputs)
+        because = Cause(
+            message=end.result.reason or "nothing is held and the magnet gave no reason",
+            where=f"{address}/{goal.skill_name()}",
+        )
+        return Outcome("missed", outputs, under(missed, because, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,47 @@
+"""motion.Guide: lets an arm be led by hand, and records where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.skills.guiding import GuideArm, LongestGuide, Looseness, Period
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.target import RobotName
+
+
+class Guide(State, frozen=True, kw_only=True):
+    """Let the arm float until somebody calls `<robot>/finish_guiding`, or for `duration_s`.
+
+    With `record` the way is written to the store as a `trajectory` entry of that name. Writes how
+    many samples it has, 0 without a record.
+    """
+
+    state_name: ClassVar[str] = "motion.Guide"
+    outcomes: ClassVar[tuple[str, ...]] = ("finished", "failed")
+    success: ClassVar[tuple[str, ...]] = ("finished",)
+    outputs: ClassVar[Mapping[str, Any]] = {"samples": int}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("samples",)}
+
+    robot: RobotName
+    duration_s: LongestGuide | None = None
+    record: Annotated[str, Meta(description="Name of the entry that is written; nothing is recorded without")] = ""
+    sample_s: Period = 0.01
+    damping: Looseness = 0.1
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and wait until the arm holds itself again."""
+        goal = GuideArm(damping=self.damping, duration_s=self.duration_s, record=self.record, sample_s=self.sample_s)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded" and end.result is not None:
+            return Outcome("finished", {"samples": end.result.samples})
+        what = f"{self.robot} was not guided to an end"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        return Outcome("failed", cause=cause)

@@ -1,0 +1,65 @@
+"""motion.MoveUntilContact: moves the tool straight on until it touches something."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.cause import under
+from engine.event import Cause
+from engine.messages import Vector3
+from engine.skills import contact
+from engine.skills.contact import Approach, ContactForce, Way
+from engine.skills.direction import Axes
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.target import RobotName
+
+
+class MoveUntilContact(State, frozen=True, kw_only=True):
+    """Move the tool along `direction` until the environment pushes back with `force_n`.
+
+    `no_contact` when nothing was met on the whole way. Writes the way made and the force at its end.
+    """
+
+    state_name: ClassVar[str] = "motion.MoveUntilContact"
+    outcomes: ClassVar[tuple[str, ...]] = ("contact", "no_contact", "failed")
+    success: ClassVar[tuple[str, ...]] = ("contact",)
+    outputs: ClassVar[Mapping[str, Any]] = {"travelled_m": float, "force_n": float}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("travelled_m", "force_n")}
+
+    robot: RobotName
+    direction: Annotated[Vector3, Meta(description="Which way; `[0, 0, -1]` is down in the world")]
+    distance_m: Way
+    frame: Axes = "world"
+    speed_m_s: Approach = 0.02
+    force_n: ContactForce = 10.0
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        goal = contact.MoveUntilContact(
+            direction=self.direction,
+            distance_m=self.distance_m,
+            frame=self.frame,
+            speed_m_s=self.speed_m_s,
+            force_n=self.force_n,
+        )
+        end = await ctx.perform(goal, to=self.robot)
+        what = f"{self.robot} met nothing within {self.distance_m:.3f} m"
+        if end.status != "succeeded" or end.result is None:
+            cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", cause=cause)
+        outputs = {"travelled_m": end.result.travelled_m, "force_n": end.result.force_n}
+        if end.result.contact:
+            return Outcome("contact", outputs)
+        because = Cause(
+            message=f"the force against the way was {end.result.force_n:.1f} N at its end, {self.force_n:.1f} N count",
+            where=f"{self.robot}/{goal.skill_name()}",
+        )
+        return Outcome("no_contact", outputs, under(what, because, where=ctx.path, kind=self.state_name))

@@ -1,0 +1,97 @@
+"""motion.PressAlongDmp: moves the tool along a Cartesian movement primitive while it presses as wanted, and learns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+import msgspec
+from msgspec import Meta
+
+from engine.errors import EntryNotFound
+from engine.messages import Vector3
+from engine.primitive import CartOffsets, ForceReference
+from engine.skills.dmp import CartAdmitDMP, Compliance
+from engine.skills.entries import ReadEntry, WriteEntry
+from engine.skills.motion import CartTrapVel
+from engine.state import Context, Outcome, State
+from engine.store.kinds import read_as
+from states.failed_goal import goal_cause
+from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
+from states.motion.target import RobotName
+
+_KIND = "cart_offsets"
+
+
+class PressAlongDmp(State, frozen=True, kw_only=True):
+    """Move the tool along a Cartesian movement primitive and control the force on it by admittance.
+
+    What a pass learns is kept as the entry `learned` of kind `cart_offsets`, and used by the next one.
+    """
+
+    state_name: ClassVar[str] = "motion.PressAlongDmp"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+    outputs: ClassVar[Mapping[str, Any]] = {"force_error_rms_n": float, "force_error_max_n": float}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("force_error_rms_n", "force_error_max_n")}
+
+    robot: RobotName
+    dmp: Annotated[CartDmpEntry, Meta(description="`{entry: name}` of kind `cart_dmp`")]
+    force_n: Annotated[
+        Vector3,
+        Meta(description="Wanted force of the environment on the tool, task frame", extra_json_schema={"unit": "N"}),
+    ]
+    torque_nm: Annotated[Vector3, Meta(description="Wanted torque", extra_json_schema={"unit": "N*m"})] = (0, 0, 0)
+    compliance: Annotated[Compliance, Meta(description="How forces deviate the path, and along which axes")] = (
+        Compliance()
+    )
+    slow_per_n: Annotated[float, Meta(ge=0, description="How much a newton of force error slows the motion")] = 0.0
+    learned: Annotated[str, Meta(description="Entry of kind `cart_offsets` to read and write; empty for none")] = ""
+    time_scale: TimeScale = 1.0
+    approach_speed: ApproachSpeed = None
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Go to the start if asked to, press along the primitive, keep what was learned, and judge the end."""
+        goal = await self._goal(ctx)
+        if self.approach_speed is not None:
+            approach = CartTrapVel(pose=goal.dmp.start, speed=self.approach_speed)
+            end = await ctx.perform(approach, to=self.robot)
+            if end.status != "succeeded":
+                what = f"{self.robot} did not reach the start of cart_dmp entry {self.dmp.entry}"
+                cause = goal_cause(what, approach, end, to=self.robot, where=ctx.path, kind=self.state_name)
+                return Outcome("failed", cause=cause)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status != "succeeded" or end.result is None:
+            what = f"{self.robot} did not press along cart_dmp entry {self.dmp.entry} to its end"
+            cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+            return Outcome("failed", cause=cause)
+        if self.learned and end.result.offsets is not None:
+            value = msgspec.to_builtins(end.result.offsets)
+            await ctx.call(WriteEntry(kind=_KIND, name=self.learned, value=value), to="store")
+        errors = {
+            "force_error_rms_n": end.result.force_error_rms_n,
+            "force_error_max_n": end.result.force_error_max_n,
+        }
+        return Outcome("reached", errors)
+
+    async def _goal(self, ctx: Context) -> CartAdmitDMP:
+        return CartAdmitDMP(
+            dmp=await resolve_cart_dmp(ctx, self.dmp, time_scale=self.time_scale),
+            offsets=await self._offsets(ctx),
+            force=ForceReference.constant(force_n=self.force_n, torque_nm=self.torque_nm),
+            compliance=self.compliance,
+            slow_per_n=self.slow_per_n,
+        )
+
+    async def _offsets(self, ctx: Context) -> CartOffsets | None:
+        if not self.learned:
+            return None
+        try:
+            return read_as(await ctx.call(ReadEntry(kind=_KIND, name=self.learned), to="store"), CartOffsets)
+        except EntryNotFound:
+            # Nothing is learned before the first pass.
+            return None

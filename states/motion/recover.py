@@ -1,0 +1,29 @@
+"""motion.Recover: lets an arm that has stopped by itself go on."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.skills.arm_control import RecoverFromError
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.motion.target import RobotName
+
+
+class Recover(State, frozen=True, kw_only=True):
+    """End the reflex of an arm: it holds itself where it stands and takes goals again. Without one nothing happens."""
+
+    state_name: ClassVar[str] = "motion.Recover"
+    outcomes: ClassVar[tuple[str, ...]] = ("recovered", "failed")
+    success: ClassVar[tuple[str, ...]] = ("recovered",)
+
+    robot: RobotName
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the arm."""
+        what = f"{self.robot} did not recover"
+        return await asked(ctx, RecoverFromError(), to=self.robot, done="recovered", what=what, kind=self.state_name)

@@ -1,0 +1,36 @@
+"""motion.SetCollision: says what an arm takes for a collision."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.skills.arm_control import JointRow, SetCollisionBehavior
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.motion.target import RobotName
+
+Force = Annotated[float, Meta(gt=0, description="External force at the tool", extra_json_schema={"unit": "N"})]
+
+
+class SetCollision(State, frozen=True, kw_only=True):
+    """Let the arm stop by itself at more external torque or force than this; without either it never does."""
+
+    state_name: ClassVar[str] = "motion.SetCollision"
+    outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
+    success: ClassVar[tuple[str, ...]] = ("set",)
+
+    robot: RobotName
+    torque_nm: Annotated[JointRow, Meta(description="External torque in N m, one a joint; `[]` for never")] = ()
+    force_n: Force | None = None
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the arm."""
+        request = SetCollisionBehavior(torque_nm=self.torque_nm, force_n=self.force_n)
+        what = f"{self.robot} did not take other collision thresholds"
+        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

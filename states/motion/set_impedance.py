@@ -1,0 +1,54 @@
+"""motion.SetImpedance: makes an arm stiffer or softer, its joints or its tool."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.skill import Service
+from engine.skills.arm_control import (
+    ControlSettings,
+    Damping,
+    JointRow,
+    SetCartesianImpedance,
+    SetJointImpedance,
+    Six,
+)
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.motion.target import RobotName
+
+
+class SetImpedance(State, frozen=True, kw_only=True):
+    """Set the stiffness of the joints (`joints`), or of the tool (`tool`); damping follows from it.
+
+    It takes effect while the controller of its kind is chosen, see `motion.SetController`.
+    """
+
+    state_name: ClassVar[str] = "motion.SetImpedance"
+    outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
+    success: ClassVar[tuple[str, ...]] = ("set",)
+
+    robot: RobotName
+    joints: Annotated[JointRow | None, Meta(description="N m/rad, one a joint; `[]` for the nominal ones")] = None
+    tool: Annotated[Six | None, Meta(description="N/m along x, y, z of the base, then N m/rad about them")] = None
+    damping_ratio: Damping = 1.0
+
+    def __post_init__(self) -> None:
+        if (self.joints is None) == (self.tool is None):
+            raise ValueError("give either `joints` or `tool`")
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the arm."""
+        what = f"{self.robot} did not take another stiffness"
+        return await asked(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
+
+    def _request(self) -> Service[ControlSettings]:
+        if self.tool is not None:
+            return SetCartesianImpedance(stiffness=self.tool, damping_ratio=self.damping_ratio)
+        return SetJointImpedance(stiffness_nm_rad=self.joints or (), damping_ratio=self.damping_ratio)

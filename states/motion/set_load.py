@@ -1,0 +1,38 @@
+"""motion.SetLoad: tells an arm what it carries."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.messages import Vector3
+from engine.skills import arm_control
+from engine.skills.arm_control import Mass
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.motion.target import RobotName
+
+
+class SetLoad(State, frozen=True, kw_only=True):
+    """Let the arm compensate the weight of what its tool carries; 0 kg when it carries nothing any more."""
+
+    state_name: ClassVar[str] = "motion.SetLoad"
+    outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
+    success: ClassVar[tuple[str, ...]] = ("set",)
+
+    robot: RobotName
+    mass_kg: Mass
+    com_m: Annotated[
+        Vector3, Meta(description="Centre of its mass in the tool link", extra_json_schema={"unit": "m"})
+    ] = (0.0, 0.0, 0.0)
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the arm."""
+        request = arm_control.SetLoad(mass_kg=self.mass_kg, com_m=self.com_m)
+        what = f"{self.robot} does not compensate a load of {self.mass_kg:.2f} kg"
+        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

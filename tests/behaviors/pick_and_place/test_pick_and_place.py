@@ -1,0 +1,85 @@
+"""The UR10 moves its payload across the table in physics, retries and gives up honestly, and rests when stopped."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from tests.behaviors.application import Application, causes, changed_cell, shipped_cell, without_parts
+from tests.behaviors.stopping import stop_in
+
+BEHAVIOR = "pick_and_place/pick_and_place.yaml"
+PLACE_M = (-0.2, 0.98, 0.05)
+REST_RAD_S = 0.02
+
+
+@pytest.mark.parametrize("seed", [None, 0, 1, 2, 3, 4])
+def test_the_payload_stands_at_the_place_pose_wherever_it_stood_within_its_jitter(
+    tmp_path: Path, seed: int | None
+) -> None:
+    """Across the fingers it is centred by them; along them it stays up to 10 mm off, as it was."""
+    done = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), seed=seed)
+    result = done.run(tmp_path)
+    assert (result.outcome, causes(result)) == ("finished", "")
+    x, y, z = done.last("payload").xyz
+    assert math.hypot(x - PLACE_M[0], y - PLACE_M[1]) < 0.015
+    assert z == pytest.approx(PLACE_M[2], abs=0.001)
+    assert done.greatest_last_speed_rad_s < REST_RAD_S
+
+
+def test_a_missing_payload_is_tried_for_again_and_then_given_up_with_the_gripper_as_the_cause(tmp_path: Path) -> None:
+    """The gripper is open again and the arm is at home."""
+    cell = changed_cell("ur10", tmp_path, cell=without_parts)
+    tried = Application(behavior=BEHAVIOR, cell=cell, parameters={"attempts": 3})
+    result = tried.run(tmp_path)
+    assert result.outcome == "missed"
+    assert "arm did not grasp part payload" in causes(result)
+    assert "fingers closed to" in causes(result)
+    assert tried.left.count("root/pick/grasp missed") == 3
+    assert tried.left[-4:] == ["root/pick/enough true", "root/pick missed", "root/home_empty reached", "root missed"]
+
+
+def test_a_payload_too_heavy_for_the_fingers_is_not_carried(tmp_path: Path) -> None:
+    """60 kg: it stays where it is, which is noticed above."""
+    cell = changed_cell("ur10", tmp_path, cell=lambda text: text.replace("mass_kg: 0.5", "mass_kg: 60.0"))
+    tried = Application(behavior=BEHAVIOR, cell=cell, parameters={"attempts": 1})
+    result = tried.run(tmp_path)
+    assert result.outcome == "missed"
+    assert "arm lost part payload" in causes(result)
+    assert math.dist(tried.last("payload").xyz, (0.2, 0.7, 0.05)) < 0.05
+
+
+def test_five_kilograms_are_carried_when_the_arm_knows_of_them(tmp_path: Path) -> None:
+    """Told of half a kilogram it sags until it gives up, with the gripper named."""
+    cell = changed_cell("ur10", tmp_path, cell=lambda text: text.replace("mass_kg: 0.5", "mass_kg: 5.0"))
+    result = Application(behavior=BEHAVIOR, cell=cell, parameters={"payload_kg": 5.0}).run(tmp_path)
+    assert (result.outcome, causes(result)) == ("finished", "")
+    result = Application(behavior=BEHAVIOR, cell=cell).run(tmp_path)
+    assert result.outcome == "failed"
+    assert "arm did not reach pose entry approach_pick" in causes(result)
+
+
+def test_a_place_pose_that_is_taught_anew_moves_the_payload_there(tmp_path: Path) -> None:
+    """The behavior is the same, and its own check of the place says what it finds instead."""
+
+    def teach(text: str) -> str:
+        return text.replace("[-0.2, 0.98, 0.3]", "[-0.1, 0.85, 0.3]").replace(
+            "[-0.2, 0.98, 0.05]", "[-0.1, 0.85, 0.05]"
+        )
+
+    done = Application(behavior=BEHAVIOR, cell=changed_cell("ur10", tmp_path, entries=teach))
+    result = done.run(tmp_path)
+    assert math.dist(done.last("payload").xyz, (-0.1, 0.85, 0.05)) < 0.003
+    assert result.outcome == "failed"
+    assert "part payload does not lie at its region" in causes(result)
+
+
+@pytest.mark.parametrize("path", ["root/approach_place", "root/place/down"])
+def test_stopped_in_mid_motion_the_arm_rests_and_keeps_the_payload(tmp_path: Path, path: str) -> None:
+    stopped = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), meanwhile=stop_in(path))
+    result = stopped.run(tmp_path)
+    assert result.status == "stopped"
+    assert stopped.greatest_last_speed_rad_s < REST_RAD_S
+    assert stopped.last("payload").xyz[2] > 0.055

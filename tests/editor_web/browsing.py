@@ -1,0 +1,68 @@
+"""Driving a real browser: which one, a logged-in page that must stay silent, and axe."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import Any, Literal
+
+from playwright.sync_api import Browser, ConsoleMessage, Page
+
+import hatch_build
+from editor_web.server import Dashboard
+
+AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+Scheme = Literal["light", "dark"]
+Size = tuple[int, int]
+DESK: Size = (1366, 768)
+PHONE: Size = (390, 844)
+
+
+def browser_program() -> str:
+    """The browser to drive: FLEXCELL_CHROMIUM, else the first one installed."""
+    named = os.environ.get("FLEXCELL_CHROMIUM")
+    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    assert found, "no Chromium: install the package `chromium`, or set FLEXCELL_CHROMIUM to its program"
+    return found
+
+
+@contextmanager
+def opened_page(
+    browser: Browser,
+    running: Dashboard,
+    path: str = "/",
+    *,
+    quiet: bool = True,
+    size: Size = DESK,
+    scheme: Scheme = "light",
+    login: str = "",
+) -> Generator[Page]:
+    """Log in, as the operator unless `login` says otherwise, and open an address; console errors fail a quiet page."""
+    context = browser.new_context(locale="en-US", viewport={"width": size[0], "height": size[1]}, color_scheme=scheme)
+    page = context.new_page()
+    said: list[str] = []
+
+    def listen(message: ConsoleMessage) -> None:
+        if message.type == "error":
+            said.append(message.text)
+
+    page.on("console", listen)
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(login or running.login_url)
+    page.goto(running.url.rstrip("/") + path)
+    yield page
+    context.close()
+    assert not (said and quiet), said
+
+
+def require_accessible(page: Page, what: str) -> None:
+    """axe-core finds nothing on the page as it is."""
+    # Colours fade for a moment when something changes.
+    page.evaluate("() => Promise.all(document.getAnimations().map((a) => a.finished.catch(() => null)))")
+    page.evaluate(f"() => {{ {AXE.read_text(encoding='utf-8')} }}")
+    result: dict[str, Any] = page.evaluate("() => axe.run(document)")
+    found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
+    assert found == [], f"{what}: {found}"

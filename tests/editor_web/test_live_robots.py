@@ -1,0 +1,63 @@
+"""The strip of arms in the live stream: every arm of the bus, its newest line, and only what has changed."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+from editor_web.live import LiveClient, LiveHub
+from editor_web.live_frames import Delta, Snapshot
+from engine.bus import SkillBus
+from engine.cell import OpenCell
+from engine.journal import Journal
+from engine.messages import JointState
+from engine.session import Session
+from engine.skills.arm_control import SetSpeedOverride
+from tests.editor_web.fake_arm import FakeArm
+
+
+@asynccontextmanager
+async def followed(folder: Path) -> AsyncGenerator[tuple[SkillBus, LiveHub, FakeArm]]:
+    """A hub that follows a bus with two arms and a topic of another kind."""
+    with Journal.open(folder) as journal:
+        async with OpenCell(None) as cell, Session(cell, project=folder, catalogue={}, journal=journal) as session:
+            arm = FakeArm(cell.bus, "left")
+            FakeArm(cell.bus, "right")
+            cell.bus.topic("left/joints", JointState)
+            hub = LiveHub(session)
+            await hub.robots.open()
+            yield cell.bus, hub, arm
+            hub.robots.close()
+
+
+def delta(client: LiveClient) -> Delta:
+    """The next frame, which must be a delta."""
+    frame = client.frame()
+    assert isinstance(frame, Delta)
+    return frame
+
+
+async def test_a_page_gets_all_arms_first_and_then_those_that_changed(tmp_path: Path) -> None:
+    async with followed(tmp_path) as (bus, hub, arm):
+        client = hub.join()
+        first = client.frame()
+        assert isinstance(first, Snapshot)
+        assert {name: line.mode for name, line in first.robots.items()} == {"left": "idle", "right": "idle"}
+        arm.become("moving", activity="move_joints")
+        arm.become("reflex", error="pushed")
+        await bus.call(SetSpeedOverride(share=0.25), to="left")
+        line = delta(client).robots["left"]
+        assert (line.mode, line.activity, line.error, line.speed_override) == ("reflex", "", "pushed", 0.25)
+        assert client.frame() is None
+
+
+async def test_what_says_the_same_again_wakes_nobody(tmp_path: Path) -> None:
+    async with followed(tmp_path) as (_, hub, arm):
+        client = hub.join()
+        client.frame()
+        arm.become("idle")
+        assert not client.dirty.is_set()
+        hub.robots.close()
+        arm.become("guiding")
+        assert not client.dirty.is_set()

@@ -1,0 +1,287 @@
+"""The bar of a run in a real browser, against a real session: pause, steps, autonomy, hot change, refusals, keys."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from contextlib import contextmanager
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from editor_web.access import VIEWER
+from engine.event import Commanded, GateReached, OperatorChanged
+from engine.supervision import Supervision
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
+
+LAPTOP: Size = (1280, 800)
+
+
+@contextmanager
+def at_shift(
+    browser: Browser,
+    shop: Workshop,
+    *,
+    size: Size = LAPTOP,
+    scheme: Scheme = "light",
+    quiet: bool = True,
+    login: str = "",
+) -> Generator[Page]:
+    """The page of the behavior `shift`."""
+    path = f"/behaviors/{SHIFT_ID}"
+    with opened_page(browser, shop.running, path, size=size, scheme=scheme, quiet=quiet, login=login) as page:
+        expect(node(page, "root/first")).to_be_visible()
+        yield page
+
+
+def node(page: Page, path: str) -> Locator:
+    """A node of the graph."""
+    return page.locator(f".react-flow__node[data-id='{path}'] .step")
+
+
+def command(page: Page, name: str) -> Locator:
+    """A button by its whole name."""
+    return page.get_by_role("button", name=name, exact=True)
+
+
+def standing(page: Page) -> Locator:
+    """How the run stands, in words."""
+    return page.get_by_role("status", name="State of the run")
+
+
+def commands_of(shop: Workshop, run: str) -> list[str]:
+    """What was commanded, in order."""
+    return [event.command for event in shop.events(run) if isinstance(event, Commanded)]
+
+
+def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Workshop) -> None:
+    """Also to those who press it."""
+    with at_shift(browser, shop) as page:
+        for name in ("Pause", "Step into", "Step over", "Step out", "Operate", "Take file"):
+            expect(command(page, name)).to_be_disabled()
+            expect(command(page, name)).to_have_attribute("title", "Not possible: no run is under way")
+        expect(page.get_by_label("Autonomy", exact=True)).to_be_disabled()
+        command(page, "Pause").click(force=True)
+        expect(page.get_by_role("alert")).to_contain_text("Pause was refused: no run is under way")
+        page.get_by_role("button", name="Put the refusal away").click()
+        expect(page.get_by_role("alert")).to_have_count(0)
+
+
+def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -> None:
+    """Begun paused from the form; where it waits is marked on the graph and said in words."""
+    with at_shift(browser, shop) as page:
+        page.get_by_role("button", name="Operation").click()
+        page.get_by_label("Begin paused").check()
+        page.get_by_role("button", name="Start").click()
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        expect(command(page, "Resume")).to_be_enabled()
+        waits = page.get_by_role("list", name="Nodes that wait")
+        expect(waits).to_have_text("root before its entry: paused")
+        command(page, "Step into").click()
+        expect(waits).to_have_text("root/first before its entry: paused")
+        expect(node(page, "root/first").locator(".waiting-ring")).to_be_visible()
+        expect(node(page, "root/first")).to_contain_text("paused")
+        command(page, "Step over").click()
+        expect(waits).to_have_text("root/set before its entry: paused")
+        command(page, "Step over").click()
+        expect(waits).to_have_text("root/both before its entry: paused")
+        command(page, "Step into").click()
+        expect(waits).to_contain_text("root/both/left before its entry: paused")
+        command(page, "Step out").click()
+        expect(waits).to_have_text("root/both/right before its entry: paused")
+        command(page, "Step out").click()
+        expect(waits).to_have_text("root/both with finished: paused")
+        command(page, "Resume").click()
+        expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
+        expect(standing(page)).to_have_text("Running")
+        command(page, "Pause").click()
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        page.get_by_role("button", name="Stop", exact=True).click()
+        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(command(page, "Pause")).to_be_disabled()
+    (run,) = shop.session.runs()
+    expected = ["step", "step", "step", "step", "step", "step", "resume", "pause"]
+    assert commands_of(shop, run.id)[-len(expected) :] == expected
+
+
+def test_what_the_engine_refuses_is_said_in_its_words(browser: Browser, shop: Workshop) -> None:
+    """A page that is behind by a moment asks for what is not possible any more."""
+    run = shop.start(supervision=Supervision(start_paused=True))
+    with at_shift(browser, shop, quiet=False) as page:
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        # The answer is made by hand: the command reaches a run that has just gone on.
+        page.route(
+            "**/control/step",
+            lambda route: (shop.on_loop(lambda: shop.session.control(run).resume()), route.continue_()),
+        )
+        command(page, "Step over").click()
+        expect(page.get_by_role("alert")).to_contain_text("Step over was refused: the run is not paused")
+        expect(page.get_by_role("alert")).to_contain_text("pause it first, or set a breakpoint")
+
+
+def test_autonomy_is_a_slider_that_says_what_it_means(browser: Browser, shop: Workshop) -> None:
+    """By key, by pointer, and from another console."""
+    run = shop.start(supervision=Supervision(start_paused=True))
+    with at_shift(browser, shop) as page:
+        slider = page.get_by_label("Autonomy", exact=True)
+        expect(slider).to_have_attribute("aria-valuetext", "full")
+        slider.focus()
+        page.keyboard.press("ArrowLeft")
+        expect(page.get_by_text("Autonomy high: outcomes that require high or full ask.")).to_be_visible()
+        assert shop.on_loop(lambda: shop.session.control(run).view().autonomy) == "high"
+        box = slider.bounding_box()
+        assert box is not None
+        page.mouse.click(box["x"] + 3, box["y"] + box["height"] / 2)
+        expect(page.get_by_text("Autonomy off: every outcome asks.")).to_be_visible()
+        shop.on_loop(lambda: shop.session.control(run).set_autonomy("low"))
+        expect(slider).to_have_attribute("aria-valuetext", "low")
+        expect(slider).to_have_value("1")
+
+
+def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: Workshop) -> None:
+    """And where that is impossible, the reasons; the graph shows the new version."""
+    shop.start(supervision=Supervision(start_paused=True))
+    file = shop.project / SHIFT_ID
+    with at_shift(browser, shop, quiet=False) as page:
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        file.write_text(
+            SHIFT.replace("value: 1}", "value: 2}").replace("set: {", "put: {").replace("a: set", "a: put"),
+            encoding="utf-8",
+        )
+        command(page, "Take file").click()
+        report = page.get_by_role("dialog")
+        expect(report).to_contain_text("root/put is new")
+        expect(report).to_contain_text("root/set is gone")
+        expect(report).to_contain_text("root/first has other transitions")
+        page.get_by_role("button", name="Understood").click()
+        expect(node(page, "root/put")).to_be_visible()
+        expect(node(page, "root/set")).to_have_count(0)
+        file.write_text(
+            SHIFT.replace("  machine:", "  priority:").replace("    initial: first\n", ""), encoding="utf-8"
+        )
+        command(page, "Take file").click()
+        expect(page.get_by_role("alert")).to_contain_text("Take the file as it is now was refused")
+
+
+def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop: Workshop) -> None:
+    """A sheet lists them; nothing happens while somebody writes."""
+    run = shop.start(supervision=Supervision(start_paused=True))
+    with at_shift(browser, shop) as page:
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        page.get_by_role("searchbox").or_(page.get_by_label("Find in the log")).first.fill("pp")
+        assert shop.on_loop(lambda: shop.session.control(run).view().paused)
+        page.locator("h1").click()
+        page.keyboard.press("i")
+        expect(page.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
+        page.keyboard.press("g")
+        expect(page.get_by_role("region", name="Node root/first")).to_be_visible()
+        page.keyboard.press("b")
+        expect(page.get_by_role("button", name="Breakpoint before root/first")).to_have_attribute(
+            "aria-pressed", "true"
+        )
+        page.keyboard.press("l")
+        expect(page.get_by_role("button", name="Unlock", exact=True)).to_be_visible()
+        page.keyboard.press("f")
+        expect(page.get_by_role("group", name="Force an outcome").get_by_role("button").first).to_be_focused()
+        page.keyboard.press("a")
+        expect(page.get_by_role("alert")).to_contain_text("Answer was refused: the run asks nothing")
+        page.keyboard.press("?")
+        sheet = page.get_by_role("dialog", name="Keyboard")
+        expect(sheet).to_contain_text("Pause, or resume a paused run")
+        sheet.get_by_label("Single keys are commands").uncheck()
+        sheet.get_by_role("button", name="Close").click()
+        expect(sheet).to_have_count(0)
+        before = len(shop.events(run))
+        page.keyboard.press("p")
+        command(page, "Keys").click()
+        page.get_by_label("Single keys are commands").check()
+        page.keyboard.press("Escape")
+        expect(page.get_by_role("dialog")).to_have_count(0)
+        assert len(shop.events(run)) == before
+        page.keyboard.press("p")
+        expect(standing(page)).not_to_have_text("Paused, everything rests")
+        page.keyboard.press("Shift+S")
+        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+
+
+def test_a_viewer_sees_the_state_and_no_command_is_open(browser: Browser, shop: Workshop) -> None:
+    """State yes, commands no, each with the reason."""
+    shop.start(supervision=Supervision(start_paused=True))
+    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    assert VIEWER == "viewer"
+    with at_shift(browser, shop, login=login) as page:
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        for name in ("Resume", "Step into", "Operate", "Take file"):
+            expect(command(page, name)).to_be_disabled()
+            expect(command(page, name)).to_have_attribute(
+                "title", "Not possible: you may look only; log in with the operator token"
+            )
+        node(page, "root/first").click()
+        expect(page.get_by_label("Pause before its entry")).to_be_disabled()
+        expect(page.get_by_label("Speed")).to_be_disabled()
+        expect(page.get_by_role("button", name="Stop the cell")).to_have_count(0)
+        page.get_by_role("button", name="Breakpoint before root/first").click(force=True)
+        expect(page.get_by_role("alert")).to_contain_text("You may look only")
+
+
+def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Workshop) -> None:
+    """What one page commands, the other shows; an operating page is one again after its reload."""
+    run = shop.start(supervision=Supervision(start_paused=True, autonomy="low"))
+    with at_shift(browser, shop) as first, at_shift(browser, shop) as second:
+        command(first, "Operate").click()
+        expect(command(first, "Operate")).to_have_attribute("aria-pressed", "true")
+        expect(
+            first.get_by_text("You operate this run. If this page is lost, 5 s later the run is paused.")
+        ).to_be_visible()
+        expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
+        command(first, "Step into").click()
+        expect(second.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
+        first.reload()
+        expect(command(first, "Operate")).to_have_attribute("aria-pressed", "true")
+        expect(first.get_by_role("list", name="Nodes that wait")).to_contain_text("root/first")
+        expect(second.get_by_text("Another page or console operates this run.")).to_be_visible()
+        command(second, "Resume").click()
+        expect(first.locator(".page-head .badge")).to_have_text("running")
+        expect(first.get_by_role("region", name="The run asks")).to_be_visible()
+        command(first, "Operate").click()
+        expect(first.get_by_text("Nobody operates this run: it asks nothing.")).to_be_visible()
+    changes = [event.status for event in shop.events(run) if isinstance(event, OperatorChanged)]
+    assert changes == ["attached", "lost", "attached", "detached"]
+
+
+def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> None:
+    """The other page reads it, and what the policy did."""
+    shop.start(supervision=Supervision(start_paused=True, loss_policy="stop", loss_timeout_s=0.2))
+    with at_shift(browser, shop) as watching:
+        with at_shift(browser, shop) as page:
+            command(page, "Operate").click()
+            expect(page.get_by_text("If this page is lost, 0.2 s later the run is stopped.")).to_be_visible()
+        expect(watching.get_by_role("log")).to_contain_text("operator lost")
+        expect(watching.locator(".page-head .badge")).to_have_text("stopped")
+        expect(watching.get_by_role("log")).to_contain_text("stop requested: the operator was lost")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+def test_an_operated_run_is_accessible_and_fits(browser: Browser, shop: Workshop, size: Size, scheme: Scheme) -> None:
+    """With everything open that can be; nothing to scroll sideways."""
+    run = shop.start(supervision=Supervision(autonomy="off", demand_operator=True))
+    shop.on_loop(lambda: shop.arm.become("reflex", error="external torque of joint 4 above 20 N m"))
+    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=size, scheme=scheme) as page:
+        expect(page.get_by_role("region", name="The run asks")).to_be_visible()
+        assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+        assert page.evaluate("() => document.documentElement.scrollHeight") <= size[1]
+        if size == PHONE:
+            page.get_by_role("tab", name="Graph").click()
+        node(page, "root/rest").click()
+        expect(page.get_by_role("region", name="Node root/rest")).to_be_visible()
+        page.get_by_label("Pause before its entry").click()
+        expect(page.get_by_label("Only if")).to_be_visible()
+        command(page, "Step into").click(force=True)
+        require_accessible(page, f"a node and a refusal, {scheme} {size}")
+        page.get_by_role("tab", name="Breakpoints").click()
+        require_accessible(page, f"breakpoints, {scheme} {size}")
+        command(page, "Keys").click()
+        expect(page.get_by_role("dialog")).to_be_visible()
+        require_accessible(page, f"keys, {scheme} {size}")
+    assert any(isinstance(event, GateReached) for event in shop.events(run))

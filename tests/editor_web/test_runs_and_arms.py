@@ -1,0 +1,142 @@
+"""Several runs, interrupted runs and the arms of the cell, in a real browser."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from playwright.sync_api import Browser, expect
+
+from engine.event import StopRequested
+from engine.skills.arm_control import ArmStatus
+from engine.supervision import Supervision
+from tests.editor_web.browsing import opened_page, require_accessible
+from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
+from tests.engine.cli.process import entered, run_id_in, started, until
+
+
+def test_several_runs_go_on_side_by_side(browser: Browser, shop: Workshop) -> None:
+    """Each with its own truth; the one behavior cannot be started twice, another one can."""
+    nap = shop.start(NAP_ID)
+    shift = shop.start(supervision=Supervision(start_paused=True))
+    with opened_page(browser, shop.running, f"/runs/{nap}") as page:
+        runs = page.get_by_role("navigation", name="Runs")
+        expect(runs.get_by_role("link")).to_have_count(2)
+        expect(runs).to_contain_text("running, paused")
+        expect(page.locator("h1")).to_have_text("nap")
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Running")
+        expect(page.get_by_role("button", name="Start")).to_be_disabled()
+        page.get_by_role("button", name="Pause", exact=True).click()
+        expect(page.get_by_role("status", name="State of the run")).to_have_text("Paused, everything rests")
+        runs.get_by_role("link", name="shift").click()
+        expect(page.get_by_role("list", name="Nodes that wait")).to_contain_text("root before its entry: paused")
+        expect(page.locator(".active-run")).to_contain_text("+ 1")
+        page.get_by_role("button", name="Stop", exact=True).click()
+        expect(page.locator(".page-head .badge")).to_have_text("stopped")
+        expect(page.get_by_text("Another run is under way")).to_be_visible()
+        page.get_by_role("button", name="Start").click()
+        expect(page.locator(".page-head .badge")).to_have_text("running")
+        expect(runs.get_by_role("link")).to_have_count(3)
+    statuses = {run.id: run.status for run in shop.session.runs()}
+    assert (statuses[nap], statuses[shift]) == ("running", "stopped")
+
+
+def test_an_interrupted_run_asks_and_goes_on(browser: Browser, tmp_path: Path, loopback: str) -> None:
+    """Why it asks, each state with its ways, and what was in mid-work is taken as the operator says."""
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / NAP_ID).write_text(NAP, encoding="utf-8")
+    with started("run", tmp_path / NAP_ID, "-q", cwd=tmp_path) as process:
+        until(process, tmp_path, entered("root/only"))
+    run = run_id_in(tmp_path)
+    with Workshop(host=loopback, project=tmp_path) as shop, opened_page(browser, shop.running, quiet=False) as page:
+        found = page.get_by_role("listitem", name="Interrupted run of nap")
+        expect(found).to_contain_text("its engine ended in the middle of it")
+        found.get_by_role("button", name="Resume").click()
+        expect(found).to_contain_text("nobody knows whether they had their effect")
+        go_on = found.get_by_role("button", name="Go on with these answers")
+        expect(go_on).to_be_disabled()
+        require_accessible(page, "an interrupted run")
+        question = found.get_by_role("radiogroup", name="root/only")
+        expect(question.get_by_role("radio")).to_have_count(2)
+        question.get_by_label("It ended with done").check()
+        go_on.click()
+        expect(page.locator(".page-head .badge")).to_have_text("finished: good")
+        expect(page.get_by_role("log")).to_contain_text("resumed after event")
+        page.get_by_role("link", name="flexcell").click()
+        expect(page.get_by_role("heading", name="Interrupted runs")).to_have_count(0)
+        assert shop.session.run(run).outcome == "good"
+
+
+def test_a_run_of_a_changed_file_says_why_it_is_not_resumed(browser: Browser, tmp_path: Path, loopback: str) -> None:
+    """The operator may go on in the new version all the same."""
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / NAP_ID).write_text(NAP.replace("3000", "2000"), encoding="utf-8")
+    with started("run", tmp_path / NAP_ID, "-q", cwd=tmp_path) as process:
+        until(process, tmp_path, entered("root/only"))
+    with Workshop(host=loopback, project=tmp_path) as shop, opened_page(browser, shop.running, quiet=False) as page:
+        found = page.get_by_role("listitem", name="Interrupted run of nap")
+        found.get_by_role("button", name="Resume").click()
+        expect(found.get_by_role("alert")).to_contain_text("the behavior nap has changed since")
+        found.get_by_label("Also if its file has changed since").check()
+        found.get_by_role("button", name="Resume").click()
+        found.get_by_label("Run it again").check()
+        found.get_by_role("button", name="Go on with these answers").click()
+        expect(page.locator(".page-head .badge")).to_have_text("running")
+        expect(page.locator(".leaf.is-active")).to_have_count(1)
+
+
+def test_the_strip_tells_what_an_arm_does_and_slows_it_down(browser: Browser, shop: Workshop) -> None:
+    """By key or pointer, from this page or elsewhere."""
+    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}") as page:
+        arm = page.get_by_role("listitem", name="Arm left")
+        state = arm.get_by_role("status", name="State of left")
+        expect(state).to_have_text("idle")
+        shop.on_loop(lambda: shop.arm.become("moving", activity="move_joints"))
+        expect(state).to_have_text("carries outmove_joints")
+        speed = arm.get_by_label("Speed")
+        expect(speed).to_have_attribute("aria-valuetext", "100 %")
+        speed.focus()
+        for _ in range(3):
+            page.keyboard.press("ArrowLeft")
+        expect(speed).to_have_attribute("aria-valuetext", "85 %")
+        page.wait_for_function("() => document.querySelector('.robot output').textContent === '85 %'")
+        page.keyboard.press("Home")
+        expect(speed).to_have_attribute("aria-valuetext", "5 %")
+        page.get_by_role("tab", name="Outline").click()
+        page.reload()
+        expect(speed).to_have_attribute("aria-valuetext", "5 %")
+    assert shop.arm.share == 0.05
+
+
+def test_an_arm_in_a_reflex_is_recovered(browser: Browser, shop: Workshop) -> None:
+    """Why it stopped, why it cannot be recovered yet, and that it could."""
+    with opened_page(browser, shop.running, quiet=False) as page:
+        arm = page.get_by_role("listitem", name="Arm left")
+        expect(arm.get_by_role("button", name="Recover")).to_have_count(0)
+        shop.arm.stuck = True
+        shop.on_loop(lambda: shop.arm.become("reflex", error="external torque of joint 4"))
+        expect(arm).to_contain_text("stopped by a reflex")
+        expect(arm).to_contain_text("external torque of joint 4")
+        arm.get_by_role("button", name="Recover").click()
+        expect(arm.get_by_role("alert")).to_contain_text("the arm has not recovered within 1 s – clear what pushes it")
+        shop.arm.stuck = False
+        arm.get_by_role("button", name="Recover").click()
+        expect(arm.get_by_role("status", name="State of left")).to_have_text("idle")
+        expect(arm.get_by_role("button", name="Recover")).to_have_count(0)
+    latest = shop.on_loop(lambda: shop.session.latest("left/status"))
+    assert isinstance(latest, ArmStatus)
+    assert latest.mode == "idle"
+
+
+def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Workshop) -> None:
+    """All runs, from the page of the cell."""
+    runs = (shop.start(), shop.start(NAP_ID))
+    with opened_page(browser, shop.running) as page:
+        stop = page.get_by_role("button", name="Stop the cell")
+        expect(stop).to_have_attribute("title", re.compile("This is no emergency stop"))
+        stop.click()
+        expect(page.get_by_text("Everything is at rest")).to_be_visible()
+        expect(page.get_by_role("table").locator(".badge", has_text="stopped")).to_have_count(2)
+    for run in runs:
+        reasons = [event.reason for event in shop.events(run) if isinstance(event, StopRequested)]
+        assert reasons == ["the cell was stopped in the dashboard"]

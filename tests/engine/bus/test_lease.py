@@ -1,0 +1,76 @@
+"""Who may command what: leases, services that command a resource, and what is told when a run gives one back."""
+
+from __future__ import annotations
+
+import pytest
+
+from engine.bus import Holder, LeaseTable, SkillBus
+from engine.clock import new_clock
+from engine.errors import LeaseRefused
+from engine.messages import Message
+from engine.skill import Service
+
+ONE, TWO = Holder("run-1", "root/a"), Holder("run-2", "root/b")
+
+
+class Number(Message, frozen=True, kw_only=True):
+    """An answer."""
+
+    value: int
+
+
+class Change(Service[Number], frozen=True, kw_only=True):
+    """A service that commands an arm."""
+
+
+async def change(request: Change) -> Number:
+    """Answer."""
+    return Number(value=1)
+
+
+async def test_a_service_that_commands_a_resource_is_refused_to_others_while_a_run_holds_it() -> None:
+    """Also between the goals of that run; the refusal names it. Nothing is leased by asking."""
+    async with SkillBus(new_clock()) as bus:
+        bus.advertise_service(Change, change, namespace="left", commands="left")
+        assert await bus.call(Change(), to="left") == Number(value=1)
+        bus.leases.acquire(("left/gripper",), ONE)
+        bus.leases.release(("left/gripper",), ONE)
+        assert await bus.call(Change(), to="left", holder=ONE) == Number(value=1)
+        for other in (TWO, Holder("nobody")):
+            with pytest.raises(LeaseRefused, match="left is commanded by run run-1"):
+                await bus.call(Change(), to="left", holder=other)
+        bus.leases.release_run("run-1")
+        assert await bus.call(Change(), to="left", holder=TWO) == Number(value=1)
+        assert bus.leases.listing() == ()
+
+
+async def test_another_branch_of_the_same_run_is_refused_while_one_commands_the_resource() -> None:
+    """As for goals."""
+    async with SkillBus(new_clock()) as bus:
+        bus.advertise_service(Change, change, namespace="left", commands="left")
+        bus.leases.acquire(("left",), ONE)
+        with pytest.raises(LeaseRefused, match="in another branch"):
+            await bus.call(Change(), to="left", holder=Holder("run-1", "root/b"))
+
+
+async def test_a_service_that_commands_nothing_is_answered_to_anybody() -> None:
+    """Reading disturbs nobody."""
+    async with SkillBus(new_clock()) as bus:
+        bus.advertise_service(Change, change, namespace="left")
+        bus.leases.acquire(("left",), ONE)
+        assert await bus.call(Change(), to="left", holder=TWO) == Number(value=1)
+
+
+def test_who_waits_for_a_resource_is_told_once_when_its_run_gives_it_back() -> None:
+    """Not at the end of a goal, not for another resource, not when nobody holds it."""
+    leases, told = LeaseTable(), list[str]()
+    leases.when_freed("left", lambda: told.append("nobody held it"))
+    leases.acquire(("left", "right/gripper"), ONE)
+    leases.acquire(("base",), TWO)
+    leases.when_freed("left", lambda: told.append("left"))
+    leases.when_freed("base", lambda: told.append("base"))
+    leases.release(("left",), ONE)
+    assert told == []
+    leases.release_run("run-1")
+    leases.release_run("run-1")
+    assert told == ["left"]

@@ -1,0 +1,129 @@
+"""Every YAML example of the guides does what it is shown for: behaviors run, other documents are taken."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+from textwrap import indent
+
+import msgspec
+import numpy as np
+import pytest
+
+from engine.cause import describe
+from engine.cell import OpenCell
+from engine.check import check_behavior
+from engine.clock import run_virtual
+from engine.control import load_breakpoints
+from engine.control.breakpoint import breakpoints_file
+from engine.demonstration import Trajectory
+from engine.document import parse_behavior
+from engine.document.cell import load_cell
+from engine.document.faults import parse_faults
+from engine.registry import load_states
+from engine.skills.entries import WriteEntry
+from engine.testing.behavior import run_behavior
+from robots.sim.cell_scene import scene_of
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = ROOT / "docs" / "how-to" / "examples"
+PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]
+CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
+BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
+PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:")
+STORES = ("store:",)
+PARTS_OF_TREES = ("condition:", "behaviour:")
+SHOWN = {
+    f"{page.relative_to(ROOT)}-{number}": text
+    for page in sorted(PAGES)
+    for number, text in enumerate(re.findall(r"^```yaml\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M), 1)
+}
+
+
+def shown(*beginnings: str, holding: str = "") -> pytest.MarkDecorator:
+    """The examples that begin so, or hold this."""
+    chosen = [
+        pytest.param(text, id=name)
+        for name, text in SHOWN.items()
+        if (beginnings and text.startswith(beginnings)) or (holding and holding in text)
+    ]
+    return pytest.mark.parametrize("text", chosen)
+
+
+@shown(holding=BEHAVIOR)
+def test_a_behavior_runs_to_its_success(tmp_path: Path, text: str) -> None:
+    """In the cell it names, else that of the two Pandas; what it was shown by hand is in the store."""
+    file, store = tmp_path / "example.yaml", tmp_path / "store.db"
+    file.write_text(text.replace("../cells", str(CELL.parent)), encoding="utf-8")
+    cell = None if "\ncell:" in text else CELL
+    if "recording: led" in text:
+        run_virtual(lead_by_hand(store))
+    ran = run_behavior(file, catalogue=load_states(), store=store, cell=cell)
+    success = parse_behavior(text, file=file).success
+    assert ran.outcome in success, describe(ran.result.cause) if ran.result.cause else ran.result
+
+
+async def lead_by_hand(store: Path) -> None:
+    """Keep the recording of a hand that turns the left arm by a quarter of a radian in two seconds."""
+    times = np.linspace(0.0, 2.0, 101)
+    joints = np.tile((0.0, -0.785398163, 0.0, -2.35619449, 0.0, 1.570796327, 0.785398163), (101, 1))
+    joints[:, 0] = 0.25 * np.sin(np.pi * np.clip(times - 0.2, 0.0, 1.6) / 3.2) ** 2
+    led = Trajectory(times_s=tuple(times.tolist()), joints=tuple(tuple(row) for row in joints.tolist()))
+    async with OpenCell(load_cell(CELL), store_path=str(store)) as cell:
+        await cell.bus.call(WriteEntry(kind="trajectory", name="led", value=msgspec.to_builtins(led)), to="store")
+
+
+@shown(*PARTS_OF_CELLS)
+def test_a_part_of_a_cell_makes_a_world(tmp_path: Path, text: str) -> None:
+    """With the robots, fixtures and parts that it names."""
+    shutil.copytree(EXAMPLES, tmp_path, dirs_exist_ok=True)
+    file = tmp_path / "cell.yaml"
+    rest = "" if text.startswith("world:") else "world: {kind: mujoco}\n"
+    file.write_text(f"flexcell: 1\ncell: shown\n{rest}{text}", encoding="utf-8")
+    cell = load_cell(file)
+    scene = scene_of(cell.document, seed=None, resolve=cell.resolve)
+    assert {arm.name for arm in scene.arms} == set(cell.document.robots)
+    assert {part.name for part in scene.parts} == set(cell.document.parts)
+
+
+@shown(*STORES)
+def test_a_store_of_a_cell_is_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setenv("CELL_PASSWORD", "secret")
+    file = tmp_path / "cell.yaml"
+    file.write_text(f"flexcell: 1\ncell: shown\n{text}", encoding="utf-8")
+    assert load_cell(file).document.store is not None
+
+
+@shown(holding=ROBOT)
+def test_a_robot_is_the_one_in_the_examples(text: str) -> None:
+    """Which a test simulates; comments aside."""
+    whole = (EXAMPLES / "lifter" / "robot.yaml").read_text(encoding="utf-8")
+    assert re.sub(r" +#.*", "", text) == re.sub(r" +#.*", "", whole)
+
+
+@shown(*PARTS_OF_TREES)
+def test_a_part_of_a_tree_is_sound(text: str) -> None:
+    head = "flexcell: 1\nname: shown\noutcomes: [success, failure]\nsuccess: [success]\nroot:\n  tree:\n"
+    behavior = parse_behavior(head + indent(text, "    "), file=ROOT / "behaviors" / "shown.yaml")
+    assert [str(each) for each in check_behavior(behavior, load_states()) if each.severity == "error"] == []
+
+
+@shown(holding=FAULTS)
+def test_faults_are_taken(text: str) -> None:
+    assert len(parse_faults(text, file="faults.yaml").document.faults) == text.count("\n  - ")
+
+
+@shown(holding=BREAKPOINTS)
+def test_breakpoints_are_taken(tmp_path: Path, text: str) -> None:
+    behavior = tmp_path / "shown.yaml"
+    breakpoints_file(behavior).write_text(text, encoding="utf-8")
+    assert len(load_breakpoints(behavior)) == text.count("path:")
+
+
+def test_every_example_is_of_a_kind_that_is_tried() -> None:
+    """A new kind of example comes with its test."""
+    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS)
+    begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
+    unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
+    assert unknown == []

@@ -1,0 +1,30 @@
+"""The recordings of the other applications are small and those of the behaviors as they are.
+
+Each recording is a test of its own, collected by the pytest plugin from this folder. When what happens
+in an application changes on purpose: `python tests/replay/make_recordings.py NAME`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from engine.document import load_behavior
+from engine.recording import load_recording
+from engine.replay import recorded_behavior
+
+FOLDER = Path(__file__).parent
+BEHAVIORS = FOLDER.parents[1] / "behaviors"
+APPLICATIONS = {"pick_and_place": "ur10", "plate_transfer": "irb4600", "test_cylinder": "servo_arm"}
+
+
+@pytest.mark.parametrize(("name", "cell"), APPLICATIONS.items())
+def test_the_recording_is_small_and_that_of_the_present_behavior(name: str, cell: str) -> None:
+    file = FOLDER / f"{name}.mcap"
+    assert file.stat().st_size < 150_000
+    recording = load_recording(file)
+    again = f"make it again: python tests/replay/make_recordings.py {name}"
+    assert recorded_behavior(recording).meaning == load_behavior(BEHAVIORS / name / f"{name}.yaml").meaning, again
+    assert (recording.description.clock, recording.description.seed) == ("virtual", 1)
+    assert {f"{name}/{name}.yaml", f"cells/{cell}.yaml", f"entries/{cell}.yaml"} <= set(recording.documents.texts)

@@ -1,0 +1,155 @@
+"""Primitives learned from demonstrations end at their goals, follow them, and say how well."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.demonstration import Trajectory
+from engine.errors import RobotError
+from robots.motion.dmp import learn_cart_dmp, learn_joint_dmp, roll_out_joints, roll_out_pose
+from robots.motion.dmp.turns import conjugate, log, product, toward
+from robots.port import Array
+from tests.robots.motion.dmp.demonstrations import interpolated, led_joints, led_tool, seeds
+
+TENTH_OF_A_DEGREE = math.radians(0.1)
+
+
+def angle_rad(first: Array, second: Array) -> float:
+    """The angle between two orientations, whichever sign the quaternions have."""
+    return float(np.linalg.norm(log(product(toward(first, second), conjugate(second)))))
+
+
+@settings(max_examples=25, deadline=None)
+@given(seeds, st.floats(0.8, 8.0), st.sampled_from([0.002, 0.01]))
+def test_a_joint_primitive_ends_where_the_demonstration_did(seed: int, duration_s: float, period_s: float) -> None:
+    """Within 0.1°, and it is never more than 3 mrad off on the way."""
+    led = led_joints(seed, duration_s=duration_s, period_s=period_s)
+    learned = learn_joint_dmp(led.recorded)
+    path = roll_out_joints(learned.dmp)
+    assert np.abs(path.position[-1] - led.truth[-1]).max() < TENTH_OF_A_DEGREE
+    assert learned.fit.max_rad < 3e-3
+    assert learned.fit.end_rad < TENTH_OF_A_DEGREE
+
+
+@settings(max_examples=25, deadline=None)
+@given(seeds, st.floats(0.8, 8.0), st.floats(0.0, 4.0))
+def test_a_cartesian_primitive_ends_where_the_demonstration_did(seed: int, duration_s: float, turn_rad: float) -> None:
+    """Within 1 mm and 0.1°, also past half a turn and with quaternions of either sign."""
+    led = led_tool(seed, duration_s=duration_s, turn_rad=turn_rad)
+    learned = learn_cart_dmp(led.recorded)
+    path = roll_out_pose(learned.dmp)
+    assert np.linalg.norm(path.xyz[-1] - led.truth[-1, :3]) < 1e-3
+    assert angle_rad(path.xyzw[-1], led.truth[-1, 3:]) < TENTH_OF_A_DEGREE
+    assert learned.fit.max_m < 2e-3
+    assert learned.fit.max_rad < 1e-2
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds, st.floats(1e-5, 1e-3))
+def test_noise_is_smoothed_and_not_learned(seed: int, noise_rad: float) -> None:
+    """The rolled out motion is nearer to the truth than the samples are, and its end much nearer."""
+    led = led_joints(seed, noise_rad=noise_rad)
+    learned = learn_joint_dmp(led.recorded)
+    path = roll_out_joints(learned.dmp)
+    times = np.array(led.recorded.times_s)
+    taken = (times >= learned.fit.cut.start_s - 1e-9) & (times <= learned.fit.cut.end_s + 1e-9)
+    shares = (times[taken] - learned.fit.cut.start_s) / learned.dmp.tau
+    rolled = interpolated(shares, path.shares, path.position)
+    error = np.sqrt(((rolled - led.truth[taken]) ** 2).mean())
+    assert error < max(0.7 * noise_rad, 3e-4)
+    assert np.abs(path.position[-1] - led.truth[-1]).max() < max(2.5 * noise_rad, 1e-3)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seeds, st.floats(0.0, 5e-4))
+def test_the_reported_error_is_that_of_the_rolled_out_motion(seed: int, noise_rad: float) -> None:
+    """Root mean square and maximum over the samples that were used, and the joint that has it."""
+    led = led_joints(seed, noise_rad=noise_rad)
+    learned = learn_joint_dmp(led.recorded, kernels=20)
+    times, cut = np.array(led.recorded.times_s), learned.fit.cut
+    taken = (times >= cut.start_s - 1e-9) & (times <= cut.end_s + 1e-9)
+    path = roll_out_joints(learned.dmp)
+    shares = (times[taken] - cut.start_s) / learned.dmp.tau
+    rolled = interpolated(shares, path.shares, path.position)
+    error = np.abs(rolled - np.array(led.recorded.joints)[taken])
+    assert learned.fit.max_rad == pytest.approx(error.max())
+    assert learned.fit.rms_rad == pytest.approx(np.sqrt((error**2).mean()))
+    assert learned.fit.joint == int(error.max(axis=0).argmax())
+
+
+@settings(max_examples=10, deadline=None)
+@given(seeds, st.floats(0.2, 2.0), st.floats(0.0, 5e-4))
+def test_rest_at_both_ends_is_cut_off(seed: int, rest_s: float, noise_rad: float) -> None:
+    """The primitive takes as long as the motion did, but for slow beginnings and a little rest."""
+    led = led_joints(seed, rest_s=rest_s, noise_rad=noise_rad)
+    learned = learn_joint_dmp(led.recorded)
+    assert led.moving_s - 0.4 < learned.dmp.tau < led.moving_s + 0.25
+    assert learned.dmp.dy0 == pytest.approx((0.0,) * 7, abs=1e-9)
+    whole = learn_joint_dmp(led.recorded, trim=False)
+    assert whole.dmp.tau == pytest.approx(led.moving_s + 2.0 * rest_s, abs=0.02)
+
+
+def test_more_kernels_follow_more_closely() -> None:
+    """The number asked for is the number taken; the error falls with it."""
+    led = led_joints(3)
+    fits = [learn_joint_dmp(led.recorded, kernels=number).fit for number in (6, 12, 24, 48)]
+    assert [fit.kernels for fit in fits] == [6, 12, 24, 48]
+    errors = [fit.rms_rad for fit in fits]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < errors[0] / 20
+
+
+def test_noise_does_not_make_the_fit_take_many_kernels() -> None:
+    """Kernels that only follow the noise are not worth their while."""
+    assert learn_joint_dmp(led_joints(5, noise_rad=1e-3).recorded).fit.kernels <= 40
+
+
+def test_a_recording_that_begins_in_motion_is_learned_with_its_speed() -> None:
+    """`dy0` is what the arm did at the first sample."""
+    times = np.linspace(0.0, 2.0, 201)
+    joints = np.column_stack([0.5 * times - 0.125 * times**2, np.sin(times)])
+    recorded = Trajectory(times_s=tuple(times.tolist()), joints=tuple(tuple(row) for row in joints.tolist()))
+    learned = learn_joint_dmp(recorded)
+    assert learned.dmp.dy0 == pytest.approx((0.5, 1.0), abs=5e-3)
+    assert learned.fit.max_rad < 2e-3
+
+
+def test_uneven_samples_with_a_gap_are_learned() -> None:
+    """A recorder that lost a tenth of a second leaves the rest as it is."""
+    led = led_joints(8)
+    kept = [k for k in range(len(led.recorded.times_s)) if not 150 <= k < 160 and k % 7 != 3]
+    recorded = Trajectory(
+        times_s=tuple(led.recorded.times_s[k] for k in kept), joints=tuple(led.recorded.joints[k] for k in kept)
+    )
+    path = roll_out_joints(learn_joint_dmp(recorded).dmp)
+    assert np.abs(path.position[-1] - led.truth[-1]).max() < TENTH_OF_A_DEGREE
+
+
+def test_a_whole_turn_of_the_tool_is_refused() -> None:
+    """There the way to the goal is not defined."""
+    with pytest.raises(RobotError, match="in the recording, which one primitive cannot say"):
+        learn_cart_dmp(led_tool(1, turn_rad=7.0).recorded)
+
+
+@pytest.mark.parametrize(
+    ("recorded", "words"),
+    [
+        (Trajectory(times_s=(0.0, 1.0), joints=((0.0,), (1.0,))), "the recording has 2 samples"),
+        (
+            Trajectory(times_s=tuple(k / 50 for k in range(100)), joints=((0.3, 0.1),) * 100),
+            "nothing moves in the recording",
+        ),
+        (
+            Trajectory(times_s=tuple(k / 50 for k in range(100)), poses=((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0),) * 100),
+            "the recording has no joints",
+        ),
+    ],
+)
+def test_what_cannot_be_learned_from_is_refused_with_the_reason(recorded: Trajectory, words: str) -> None:
+    with pytest.raises(RobotError, match=words):
+        learn_joint_dmp(recorded)

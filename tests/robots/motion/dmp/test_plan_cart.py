@@ -1,0 +1,152 @@
+"""Cartesian primitives as motions of an arm: the tool follows them from where it stands, or says why not."""
+
+from __future__ import annotations
+
+import functools
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from engine.demonstration import Trajectory
+from engine.errors import RobotError
+from engine.primitive import CartDmp
+from robots.model.rigid import Rigid, quaternion_of
+from robots.model.rigid import product as turned
+from robots.motion.dmp import learn_cart_dmp, moved, plan_cart_dmp, roll_out_pose
+from robots.motion.dmp.turns import exp, product
+from robots.motion.min_jerk import min_jerk
+from robots.port import JointTrajectory
+from tests.robots.panda_arm import BASE, home, panda_kinematics, panda_model, played
+
+LIMITS = panda_model().limits
+
+
+@functools.cache
+def led_tool_from_home(*, move: tuple[float, float, float] = (0.1, 0.2, -0.1), duration_s: float = 2.4) -> CartDmp:
+    """A primitive learned on a bow of the tool that starts where the Panda's tool is at home."""
+    here = panda_kinematics().tool_pose(home())
+    times = np.arange(0.0, duration_s + 0.6, 0.01)
+    share = min_jerk((times - 0.3) / duration_s)[:, None]
+    xyz = here.xyz + np.array(move) * share + np.array([0.0, 0.0, 0.05]) * np.sin(np.pi * share)
+    xyzw = product(exp(share * np.array([0.3, 0.2, 0.6])), here.xyzw)
+    rows = tuple(tuple(row) for row in np.hstack((xyz, xyzw)).tolist())
+    return learn_cart_dmp(Trajectory(times_s=tuple(times.tolist()), poses=rows)).dmp
+
+
+def plan(dmp: CartDmp, *, goal: Rigid | None = None, frame: Rigid | None = None) -> JointTrajectory:
+    """Plan for the Panda at home."""
+    if frame is None:
+        return plan_cart_dmp(panda_kinematics(), dmp, home(), goal=goal)
+    return plan_cart_dmp(panda_kinematics(), dmp, home(), goal=goal, frame=frame)
+
+
+def goal_of(dmp: CartDmp) -> Rigid:
+    """Where it ends."""
+    return Rigid.of(dmp.goal[:3], dmp.goal[3:])
+
+
+def test_the_tool_follows_the_primitive() -> None:
+    """Within 0.5 mm and 2 mrad of its roll-out, between the samples too, from rest to rest in tau, within limits."""
+    dmp = led_tool_from_home()
+    way = plan(dmp)
+    path = roll_out_pose(dmp)
+    assert (way.position_rad[0] == home()).all()
+    assert not way.velocity_rad_s[[0, -1]].any()
+    assert way.duration_s == pytest.approx(dmp.tau)
+    position, velocity, acceleration = played(way, between=3)
+    assert (np.abs(velocity) <= np.array(LIMITS.velocity_rad_s) * (1 + 1e-6)).all()
+    assert (np.abs(acceleration) <= np.array(LIMITS.acceleration_rad_s2) * (1 + 1e-6)).all()
+    shares = (np.arange(len(way.position_rad) - 1)[:, None] + np.linspace(0.0, 1.0, 3)).reshape(-1)
+    shares = shares / (len(way.position_rad) - 1)
+    for joints, share in list(zip(position, shares, strict=True))[::4]:
+        at = int(np.argmin(np.abs(path.shares - share)))
+        tool = panda_kinematics().tool_pose(joints)
+        span = (share - path.shares[at]) * path.rate[at]
+        wanted = Rigid(xyz=path.xyz[at] + span[:3], xyzw=turned(quaternion_of(span[3:]), path.xyzw[at]))
+        assert tool.distance_m(wanted) < 5e-4
+        assert tool.angle_rad(wanted) < 2e-3
+    end = panda_kinematics().tool_pose(way.position_rad[-1])
+    assert end.distance_m(goal_of(dmp)) < 1e-6
+    assert end.angle_rad(goal_of(dmp)) < 1e-6
+
+
+offsets = st.tuples(*[st.floats(-0.1, 0.1)] * 3).map(np.array)
+
+
+@settings(max_examples=6, deadline=None)
+@given(offsets, offsets, st.sampled_from([1.0, -1.0]))
+def test_another_goal_is_reached_in_the_same_time(shift: np.ndarray, turn: np.ndarray, sign: float) -> None:
+    """Exactly, whichever sign its quaternion has; a motion that the arm cannot make is refused."""
+    dmp = led_tool_from_home()
+    old = goal_of(dmp)
+    goal = Rigid(xyz=old.xyz + shift, xyzw=sign * turned(quaternion_of(turn), old.xyzw))
+    way = plan(dmp, goal=goal)
+    end = panda_kinematics().tool_pose(way.position_rad[-1])
+    assert end.distance_m(goal) < 1e-6
+    assert end.angle_rad(goal) < 1e-5
+    assert way.duration_s == pytest.approx(dmp.tau)
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.tuples(*[st.floats(-0.015, 0.015)] * 3), st.tuples(*[st.floats(-0.1, 0.1)] * 3))
+def test_a_start_beside_the_primitives_own_fades_out(
+    shift: tuple[float, float, float], turn: tuple[float, float, float]
+) -> None:
+    """The arm starts where it stands and ends at the goal."""
+    dmp = led_tool_from_home()
+    there = Rigid(xyz=np.array(dmp.y0[:3]), xyzw=np.array([0.0, 0.0, 0.0, 1.0]))
+    move = Rigid(xyz=there.xyz + np.array(shift), xyzw=quaternion_of(np.array(turn)))
+    beside = moved(dmp, move.then(there.inverse()), frame="world")
+    way = plan(beside)
+    assert (way.position_rad[0] == home()).all()
+    assert panda_kinematics().tool_pose(way.position_rad[-1]).distance_m(goal_of(beside)) < 1e-6
+
+
+def test_a_primitive_given_in_the_arms_frame_or_moved_by_its_task_transformation_is_the_same_motion() -> None:
+    """Said in the base frame, and said elsewhere and brought here by `tasktrans`."""
+    dmp = led_tool_from_home()
+    plain = plan(dmp)
+    in_base = moved(dmp, BASE.inverse(), frame="left/panda_link0")
+    assert np.abs(plan(in_base, frame=BASE).position_rad - plain.position_rad).max() < 1e-6
+    away = Rigid(xyz=np.array([0.3, -0.2, 0.1]), xyzw=quaternion_of(np.array([0.4, -0.9, 1.2])))
+    back = away.inverse()
+    matrix = np.vstack((np.hstack((back.rotation, back.xyz[:, None])), [0.0, 0.0, 0.0, 1.0]))
+    elsewhere = msgspec.structs.replace(moved(dmp, away, frame="world"), tasktrans=tuple(matrix.reshape(-1).tolist()))
+    assert np.abs(plan(elsewhere).position_rad - plain.position_rad).max() < 1e-6
+    start = Rigid.from_pose(elsewhere.start)
+    assert start.distance_m(Rigid.of(dmp.y0[:3], dmp.y0[3:])) < 1e-9
+    assert start.angle_rad(Rigid.of(dmp.y0[:3], dmp.y0[3:])) < 1e-7
+
+
+def test_too_fast_is_refused_and_the_tau_it_asks_for_suffices() -> None:
+    """Joint, time and limit are in the message."""
+    dmp = msgspec.structs.replace(led_tool_from_home(), tau=0.4)
+    with pytest.raises(RobotError, match=r"panda_joint\d would need .* at t=0\.\d+ s, limit") as refusal:
+        plan(dmp)
+    least_s = float(str(refusal.value.hint).rpartition("least ")[2].removesuffix(" s"))
+    assert least_s > 0.4
+    # The knots lie elsewhere on a slower motion, so the least time is exact within a few percent only.
+    plan(msgspec.structs.replace(dmp, tau=1.05 * least_s))
+
+
+@pytest.mark.parametrize(
+    ("move", "words"),
+    [
+        ((0.7, 0.3, 0.0), "the movement (passes a singularity|leaves the workspace)"),
+        ((0.0, 0.0, -1.2), "the movement (passes|leaves|cannot)|would have to go to"),
+    ],
+)
+def test_a_path_that_the_arm_cannot_follow_is_refused(move: tuple[float, float, float], words: str) -> None:
+    with pytest.raises(RobotError, match=words):
+        plan(led_tool_from_home(move=move, duration_s=5.0))
+
+
+def test_a_tool_elsewhere_is_refused_with_the_distance() -> None:
+    """With the place where the primitive starts."""
+    dmp = led_tool_from_home()
+    away = msgspec.structs.replace(dmp, y0=(dmp.y0[0] + 0.2, *dmp.y0[1:]))
+    with pytest.raises(RobotError, match=r"starts with the tool at \(.*\), it stands 0\.200 m and 0\.00 rad away"):
+        plan(away)

@@ -1,0 +1,73 @@
+"""The world's process waits for nobody: not for who hears it, not for who watches."""
+
+from __future__ import annotations
+
+import os
+import socket
+
+import msgspec
+import pytest
+
+from robots.control.motion_event import MotionFinished
+from robots.port import Tolerance
+from robots.sim.commands import Cancel, StopAll
+from robots.sim.framing import FrameReader, framed
+from robots.sim.process_host import ProcessHost
+from robots.sim.process_main import CommandChannel, ParentGone
+from robots.sim.world import SimWorld
+from robots.sim.world_report import AnyReport
+from tests.robots.sim.sim_cell import HOME, one_arm, smooth
+
+
+def end_of(motion: int) -> MotionFinished:
+    """Return the end of a motion that recorded much."""
+    return MotionFinished(motion=motion, end="reached", progress=1.0, data=bytes(100_000))
+
+
+def test_reports_to_a_parent_that_does_not_listen_are_kept_in_order_and_nothing_waits() -> None:
+    """Far more than the socket holds; each comes whole once there is somebody."""
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    with ours, theirs:
+        channel = CommandChannel(theirs)
+        for number in range(1, 41):
+            channel.report(end_of(number))
+        reader, heard = FrameReader(), list[int]()
+        while len(heard) < 40:
+            for message in reader.feed(ours.recv(1 << 16)):
+                report = msgspec.msgpack.decode(message, type=AnyReport)
+                assert isinstance(report, MotionFinished)
+                heard.append(report.motion)
+            channel.flush()
+        assert heard == list(range(1, 41))
+
+
+def test_commands_that_came_in_pieces_are_taken_once_they_are_whole_and_their_end_is_told() -> None:
+    ours, theirs = socket.socketpair()
+    theirs.setblocking(False)
+    with theirs:
+        channel = CommandChannel(theirs)
+        sent = framed(msgspec.msgpack.encode(Cancel(motion=7))) + framed(msgspec.msgpack.encode(StopAll()))
+        taken = [channel.commands()]
+        for piece in (sent[:3], sent[3:-1], sent[-1:]):
+            ours.sendall(piece)
+            taken.append(channel.commands())
+        assert taken == [[], [], [Cancel(motion=7)], [StopAll()]]
+        ours.close()
+        with pytest.raises(ParentGone):
+            channel.commands()
+
+
+async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> None:
+    """As by a viewer, a recorder or a planner that takes too long: this test never lets the loop turn."""
+    host = ProcessHost(one_arm())
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.05, 0.3), tolerance=Tolerance())
+        began_s = world.measured().time_s
+        while world.measured().arm_progress("left", 1) is None:
+            os.sched_yield()
+        while world.measured().arm_progress("left", 1) is not None:
+            os.sched_yield()
+        assert world.measured().time_s - began_s >= 0.3
+        assert world.measured().arm("left").desired_rad.tolist() == pytest.approx((HOME + 0.05).tolist())
+        assert (await motion.report()).end.value == "reached"
