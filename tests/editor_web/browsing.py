@@ -8,7 +8,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Any, Literal
 
-from playwright.sync_api import Browser, ConsoleMessage, Page
+from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
 import hatch_build
 from editor_web.server import Dashboard
@@ -66,3 +66,10 @@ def require_accessible(page: Page, what: str) -> None:
     result: dict[str, Any] = page.evaluate("() => axe.run(document)")
     found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
     assert found == [], f"{what}: {found}"
+
+
+def switch(box: Locator, *, on: bool = True) -> None:
+    """Turn a switch or choice by the keyboard, which misses nothing in a layout that still moves, and see it turned."""
+    expect(box).to_be_enabled()
+    box.press("Space")
+    expect(box).to_be_checked(checked=on)

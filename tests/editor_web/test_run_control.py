@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from editor_web.access import VIEWER
 from engine.event import Commanded, GateReached, OperatorChanged
 from engine.supervision import Supervision
-from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, switch
 from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
 
 LAPTOP: Size = (1280, 800)
@@ -71,7 +71,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
     """Begun paused from the form; where it waits is marked on the graph and said in words."""
     with at_shift(browser, shop) as page:
         page.get_by_role("button", name="Operation").click()
-        page.get_by_label("Begin paused").check()
+        switch(page.get_by_label("Begin paused"))
         page.get_by_role("button", name="Start").click()
         expect(standing(page)).to_have_text("Paused, everything rests")
         expect(command(page, "Resume")).to_be_enabled()
@@ -188,13 +188,13 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
         page.keyboard.press("?")
         sheet = page.get_by_role("dialog", name="Keyboard")
         expect(sheet).to_contain_text("Pause, or resume a paused run")
-        sheet.get_by_label("Single keys are commands").uncheck()
+        switch(sheet.get_by_label("Single keys are commands"), on=False)
         sheet.get_by_role("button", name="Close").click()
         expect(sheet).to_have_count(0)
         before = len(shop.events(run))
         page.keyboard.press("p")
         command(page, "Keys").click()
-        page.get_by_label("Single keys are commands").check()
+        switch(page.get_by_label("Single keys are commands"))
         page.keyboard.press("Escape")
         expect(page.get_by_role("dialog")).to_have_count(0)
         assert len(shop.events(run)) == before

@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, expect
 from engine.event import StopRequested
 from engine.skills.arm_control import ArmStatus
 from engine.supervision import Supervision
-from tests.editor_web.browsing import opened_page, require_accessible
+from tests.editor_web.browsing import opened_page, require_accessible, switch
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
 from tests.engine.cli.process import entered, run_id_in, started, until
 
@@ -58,7 +58,7 @@ def test_an_interrupted_run_asks_and_goes_on(browser: Browser, tmp_path: Path, l
         require_accessible(page, "an interrupted run")
         question = found.get_by_role("radiogroup", name="root/only")
         expect(question.get_by_role("radio")).to_have_count(2)
-        question.get_by_label("It ended with done").check()
+        switch(question.get_by_label("It ended with done"))
         go_on.click()
         expect(page.locator(".page-head .badge")).to_have_text("finished: good")
         expect(page.get_by_role("log")).to_contain_text("resumed after event")
@@ -77,9 +77,9 @@ def test_a_run_of_a_changed_file_says_why_it_is_not_resumed(browser: Browser, tm
         found = page.get_by_role("listitem", name="Interrupted run of nap")
         found.get_by_role("button", name="Resume").click()
         expect(found.get_by_role("alert")).to_contain_text("the behavior nap has changed since")
-        found.get_by_label("Also if its file has changed since").check()
+        switch(found.get_by_label("Also if its file has changed since"))
         found.get_by_role("button", name="Resume").click()
-        found.get_by_label("Run it again").check()
+        switch(found.get_by_label("Run it again"))
         found.get_by_role("button", name="Go on with these answers").click()
         expect(page.locator(".page-head .badge")).to_have_text("running")
         expect(page.locator(".leaf.is-active")).to_have_count(1)
