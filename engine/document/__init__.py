@@ -4,12 +4,14 @@ A document that cannot be used is a `DocumentError` with file, line and column.
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, Placement, RobotEntry, load_cell
+from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, RobotEntry, load_cell
+from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
 from engine.document.entries import Entries, EntriesDocument, load_entries, write_entries
 from engine.document.expression import Template, compile_template
 from engine.document.loader import CircularReference, load_behavior, parse_behavior, read_behavior
 from engine.document.node import Concurrency, Condition, ForEach, Guard, Machine, Node, Retry, Timeout
 from engine.document.parameter import Parameter, bind_parameters
+from engine.document.placement import Placement
 from engine.document.schema import write_schemas
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.yaml_source import Source, load_source, parse_source
@@ -23,6 +25,7 @@ __all__ = [
     "CircularReference",
     "Concurrency",
     "Condition",
+    "DepthCamera",
     "Entries",
     "EntriesDocument",
     "Fixture",
@@ -32,8 +35,10 @@ __all__ = [
     "KeySignature",
     "Machine",
     "Node",
+    "OccupancyMap",
     "Parameter",
     "Part",
+    "Person",
     "Placement",
     "Retry",
     "RobotEntry",

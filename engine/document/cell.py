@@ -1,4 +1,4 @@
-"""Cell documents: which robots, world, fixtures, parts and store make up a work cell.
+"""Cell documents: which robots, world, fixtures, parts, cameras and store make up a work cell.
 
 Lengths are metres, angles radians, masses kilograms. Paths are relative to the document, except
 `store.path`, which is relative to the current directory because it is written at run time.
@@ -6,7 +6,6 @@ Lengths are metres, angles radians, masses kilograms. Paths are relative to the 
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,27 +13,11 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
+from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
 from engine.document.conversion import Strict, convert
+from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.document.yaml_source import DataPath, Source, load_source
 from engine.errors import DocumentError
-from engine.messages import Pose, Quaternion, Vector3
-
-Length = Annotated[float, Meta(gt=0.0, description="A length in metres, above 0")]
-Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or more")]
-Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
-Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
-Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more")]
-
-
-class Placement(Strict, frozen=True, kw_only=True):
-    """Where something stands in the world frame: position, and rotation about fixed x, y, z axes in turn."""
-
-    xyz: Vector3 = (0.0, 0.0, 0.0)
-    rpy: Vector3 = (0.0, 0.0, 0.0)
-
-    def pose(self) -> Pose:
-        """Return the placement as a pose in the frame `world`."""
-        return Pose(xyz=self.xyz, xyzw=_quaternion(self.rpy))
 
 
 class SqliteStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
@@ -164,6 +147,9 @@ class CellDocument(Strict, frozen=True, kw_only=True):
     robots: dict[Name, RobotEntry] = {}
     fixtures: dict[Name, Fixture] = {}
     parts: dict[Name, Part] = {}
+    cameras: dict[Name, DepthCamera] = {}
+    occupancy: OccupancyMap | None = None
+    people: dict[Name, Person] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -207,7 +193,7 @@ def load_cell(path: Path | str) -> Cell:
 
 
 _LATER = "it comes with a later version; remove it"
-_REFUSED = {"modules": _LATER, "cameras": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
+_REFUSED = {"modules": _LATER, "frames": _LATER, "bus": _LATER, "calibration": _LATER}
 
 
 # A password between `:` and `@` that is not the name of an environment variable.
@@ -275,13 +261,3 @@ def _require_world(document: CellDocument, source: Source) -> None:
                 where=source.position(("robots", name), of_key=True),
                 hint="add `world: {kind: mujoco}`",
             )
-
-
-def _quaternion(rpy: Vector3) -> Quaternion:
-    (cr, cp, cy), (sr, sp, sy) = (tuple(f(angle / 2) for angle in rpy) for f in (math.cos, math.sin))
-    return (
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
-    )

@@ -1,0 +1,62 @@
+"""What a cell document says of its cameras, of the space that they watch, and of the people who reach into it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict
+from engine.document.placement import Color, Length, Offset
+from engine.messages import Vector3
+
+Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
+Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images in a second")]
+FieldOfView = Annotated[float, Meta(gt=0.05, lt=3.0, description="Angle between the upper and lower edge, radians")]
+
+
+class DepthCamera(Strict, frozen=True, kw_only=True):
+    """A depth camera that stands in the cell, simulated by the world.
+
+    `at` is where it stands and `look_at` the point in the middle of its image; up in the image is up in the
+    world. Distances outside `range_m`, along the view, are not measured. `noise_m` is the standard deviation
+    at 1 m, it grows with the square of the distance. `driver` is `sim`.
+    """
+
+    at: Vector3
+    look_at: Vector3
+    size_px: tuple[Pixels, Pixels] = (640, 480)
+    fov_rad: FieldOfView = 1.0
+    rate_hz: Rate = 10.0
+    range_m: tuple[Length, Length] = (0.2, 5.0)
+    noise_m: Offset = 0.0
+    driver: Annotated[str, Meta(pattern="^sim$", description="`sim`")] = "sim"
+
+
+class OccupancyMap(Strict, frozen=True, kw_only=True):
+    """The box of space, along the world's axes, in which unknown things count as obstacles.
+
+    It is filled and cleared by what the cameras see; without cameras it stays empty. What is nearer than
+    `robot_margin_m` to an arm or to what it holds, or than `known_margin_m` to a fixture or part, is taken for
+    that and left out.
+    """
+
+    center_m: Vector3
+    size_m: tuple[Length, Length, Length]
+    voxel_m: Annotated[float, Meta(ge=0.005, le=0.1, description="Edge of a voxel in metres")] = 0.02
+    robot_margin_m: Offset = 0.04
+    known_margin_m: Offset = 0.03
+
+
+class Person(Strict, frozen=True, kw_only=True):
+    """A person of a simulated cell, of whom one arm is there: it reaches from `shoulder` and rests at `hand_rests`.
+
+    The arm is two capsules and a ball, of the lengths and radii of an adult's; it is moved, nothing stops it.
+    """
+
+    shoulder: Vector3
+    hand_rests: Vector3
+    upper_arm_m: Length = 0.32
+    forearm_m: Length = 0.36
+    radius_m: Length = 0.05
+    color: Color = "#d9a066"

@@ -1,0 +1,38 @@
+"""What all parts of a cell document are written with: names, lengths, colors and where things stand."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict
+from engine.messages import Pose, Quaternion, Vector3
+
+Length = Annotated[float, Meta(gt=0.0, description="A length in metres, above 0")]
+Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or more")]
+Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
+Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
+Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more")]
+
+
+class Placement(Strict, frozen=True, kw_only=True):
+    """Where something stands in the world frame: position, and rotation about fixed x, y, z axes in turn."""
+
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+
+    def pose(self) -> Pose:
+        """Return the placement as a pose in the frame `world`."""
+        return Pose(xyz=self.xyz, xyzw=_quaternion(self.rpy))
+
+
+def _quaternion(rpy: Vector3) -> Quaternion:
+    (cr, cp, cy), (sr, sp, sy) = (tuple(f(angle / 2) for angle in rpy) for f in (math.cos, math.sin))
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )

@@ -1,0 +1,239 @@
+"""Answers plan requests in this process: checks start and goal, runs the planner asked for, confirms every way."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+
+from engine.nearness import near_names
+from robots.planning.ends import Ends, checked_ends
+from robots.planning.exact_checker import ExactChecker
+from robots.planning.fast_search import exact_checks_of, fast_search, shortened, taught, warm, with_room_for
+from robots.planning.kernels import blocked_at
+from robots.planning.ompl_search import OMPL_PLANNERS, UNBOUND, ompl_search
+from robots.planning.problem import FREE, Problem
+from robots.planning.request import FAST, STOMP, Plan, PlanAnswer, PlanRequest, PlanStats, Refusal, SampledWay
+from robots.planning.scene import PlanningScene
+from robots.planning.search import Budget, Search, Task
+from robots.planning.stomp import stomp_search
+from robots.planning.timing import timed
+from robots.planning.world_arrays import Names, problem_of
+from robots.port import Array, JointTrajectory
+
+PLANNERS = (FAST, STOMP, *OMPL_PLANNERS)
+"""All planners by name."""
+
+_Result = TypeVar("_Result")
+
+_KEPT = 4
+_ATTEMPTS = 4
+# Share of the time after which the fast planner, whose spheres are larger than the arm, gives way to the exact one.
+_FAST_SHARE = 0.6
+_FALL_BACK = "RRTConnect"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prepared:
+    """One arm in one scene, ready for requests."""
+
+    checker: ExactChecker
+    problem: Problem
+    names: Names
+
+
+class ScenePlanner:
+    """Answers requests one after the other; keeps what it prepared for the latest scenes.
+
+    Args:
+        check_s: What a check counts as when time is to be counted by work done, so that answers repeat
+            whatever the machine does; None goes by the clock.
+    """
+
+    def __init__(self, *, check_s: float | None = None) -> None:
+        self._check_s = check_s
+        self._warm = False
+        self._kept: OrderedDict[tuple[PlanningScene, str, float], Prepared] = OrderedDict()
+
+    def plan(self, request: PlanRequest, *, cancelled: Callable[[], bool] = lambda: False) -> PlanAnswer:
+        """Return a confirmed way, or why there is none; `cancelled` is asked between pieces of work.
+
+        Raises:
+            CellError: the scene has no such arm, or something in it is wrong.
+        """
+        if request.planner not in PLANNERS:
+            return _unknown(request.planner)
+        if request.planner == STOMP and request.keep_orientation is not None:
+            return Refusal(
+                reason="unknown_planner", message="stomp cannot keep the tool's orientation", hint=f"use {FAST}"
+            )
+        prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m)
+        budget = Budget(request.time_s, check_s=self._check_s, cancelled=cancelled)
+        ends = checked_ends(request, prepared.checker, prepared.problem)
+        if isinstance(ends, Refusal):
+            return ends
+        return _Attempt(request, prepared, ends, budget).answer()
+
+    def prepared(self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> Prepared:
+        """Return what checks and plans for an arm in a scene; raises CellError when the scene is wrong."""
+        key = (scene, arm, margin_m)
+        found = self._kept.pop(key, None)
+        if found is None:
+            problem, names = problem_of(scene, arm, margin_m=margin_m)
+            found = Prepared(checker=ExactChecker(scene, arm, margin_m=margin_m), problem=problem, names=names)
+            if not self._warm:
+                # Else the first request would spend its time on compiling.
+                warm(problem)
+                self._warm = True
+        self._kept[key] = found
+        if len(self._kept) > _KEPT:
+            self._kept.popitem(last=False)
+        return found
+
+
+class _Attempt:
+    """One request under way."""
+
+    def __init__(self, request: PlanRequest, prepared: Prepared, ends: Ends, budget: Budget) -> None:
+        self._request = request
+        self._prepared = prepared
+        self._ends = ends
+        self._budget = budget
+        self._spent = {"search": 0.0, "shortening": 0.0, "verification": 0.0, "timing": 0.0}
+        self._exact_checks = 0
+        self._refused = 0
+
+    def answer(self) -> PlanAnswer:
+        name = self._request.planner
+        if name == FAST:
+            found = self._fast()
+            if found is None and not self._budget.over:
+                name, found = _FALL_BACK, self._by_name(_FALL_BACK)
+        else:
+            found = self._by_name(name)
+        if found is None:
+            return self._nothing()
+        way = None
+        if self._request.speed is not None:
+            trajectory = self._timed("timing", lambda w=found, v=self._request.speed: self._trajectory(w, v))
+            way = SampledWay.of(trajectory)
+        stats = PlanStats(
+            search_s=self._spent["search"],
+            shortening_s=self._spent["shortening"],
+            verification_s=self._spent["verification"],
+            timing_s=self._spent["timing"],
+            checks=self._budget.checks,
+            exact_checks=self._exact_checks,
+            refused_ways=self._refused,
+            found_by=name,
+        )
+        rows: list[list[float]] = found.tolist()
+        return Plan(waypoints_rad=tuple(tuple(row) for row in rows), stats=stats, timed=way)
+
+    def _fast(self) -> Array | None:
+        """Return a confirmed way of the fast planner; what the exact check refuses teaches the next attempt."""
+        problem = self._ends.problem
+        known_free = np.vstack((self._ends.start, self._ends.goals))
+        share = Budget(
+            self._budget.left_s * _FAST_SHARE,
+            check_s=None if self._budget.by_clock else 1e-6,
+            cancelled=lambda: self._budget.cancelled,
+        )
+        for attempt in range(_ATTEMPTS):
+            path = self._timed("search", lambda p=problem, a=attempt: fast_search(self._task(p, a), share))
+            if path is None:
+                break
+            path = self._timed(
+                "shortening", lambda p=problem, w=path: shortened(p, w, seed=self._request.seed, budget=share)
+            )
+            hit = self._timed("verification", lambda w=path: self._prepared.checker.first_collision(w))
+            self._exact_checks += exact_checks_of(self._prepared.checker, path)
+            if hit is None:
+                self._budget.spend(share.checks)
+                return path
+            self._refused += 1
+            problem = with_room_for(taught(problem, self._prepared.names, hit), known_free)
+        self._budget.spend(share.checks)
+        return None
+
+    def _by_name(self, name: str) -> Array | None:
+        """Return a confirmed way of STOMP or of a planner of OMPL."""
+        search: Search = stomp_search if name == STOMP else ompl_search(name)
+        for attempt in range(_ATTEMPTS):
+            path = self._timed("search", lambda a=attempt: search(self._task(self._ends.problem, a), self._budget))
+            if path is None:
+                return None
+            path = self._timed("shortening", lambda w=path: self._shorter(w))
+            hit = self._timed("verification", lambda w=path: self._prepared.checker.first_collision(w))
+            self._exact_checks += exact_checks_of(self._prepared.checker, path)
+            if hit is None and self._keeps_orientation(path):
+                return path
+            self._refused += 1
+            if self._budget.over:
+                return None
+        return None
+
+    def _shorter(self, path: Array) -> Array:
+        """Return the way shortened where the spheres allow that; OMPL finds ways where they do not."""
+        problem = with_room_for(self._ends.problem, path[1:-1])
+        shorter = shortened(problem, path, seed=self._request.seed, budget=self._budget)
+        return shorter if self._prepared.checker.first_collision(shorter) is None else path
+
+    def _trajectory(self, path: Array, speed: float) -> JointTrajectory:
+        checker = self._prepared.checker
+        way = timed(
+            path,
+            limits=checker.model.limits,
+            is_free=lambda piece: checker.first_collision(piece) is None and self._keeps_orientation(piece),
+            speed=speed,
+        )
+        return way.trajectory
+
+    def _keeps_orientation(self, path: Array) -> bool:
+        problem = self._ends.problem
+        if problem.orientation == FREE:
+            return True
+        only = problem._replace(
+            solid_gap=np.full_like(problem.solid_gap, -np.inf), pair_gap=np.full_like(problem.pair_gap, -np.inf)
+        )
+        return blocked_at(only, path) < 0
+
+    def _task(self, problem: Problem, attempt: int) -> Task:
+        return Task(
+            start=self._ends.start,
+            goals=self._ends.goals,
+            problem=problem,
+            checker=self._prepared.checker,
+            seed=self._request.seed + 7919 * attempt,
+        )
+
+    def _timed(self, what: str, work: Callable[[], _Result]) -> _Result:
+        start = time.perf_counter()
+        result = work()
+        self._spent[what] += time.perf_counter() - start
+        return result
+
+    def _nothing(self) -> Refusal:
+        if self._budget.cancelled:
+            return Refusal(reason="cancelled", message="the plan is no longer wanted")
+        looked = f"{self._budget.checks} configurations looked at, {self._refused} ways refused by the exact check"
+        return Refusal(
+            reason="no_path_in_time",
+            message=f"{self._request.planner} found no way within {self._request.time_s:g} s ({looked})",
+            hint="give it more time, another planner, or clear the way",
+        )
+
+
+def _unknown(name: str) -> Refusal:
+    message = f"no planner is called {name}"
+    if name.upper() in UNBOUND:
+        message = f"the installed OMPL gives Python no {name.upper()}"
+    return Refusal(
+        reason="unknown_planner",
+        message=message,
+        hint=f"{near_names(name, PLANNERS) or ''} there are {', '.join(PLANNERS)}".strip(),
+    )

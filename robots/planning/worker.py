@@ -1,0 +1,260 @@
+"""Plans in a process of its own, for asyncio: the loop stays free while coal and OMPL hold the interpreter lock."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+from pathlib import Path
+from typing import Protocol, Self
+
+import msgspec
+
+from engine.clock import Clock
+from engine.errors import CellError, RobotError
+from robots.planning.planner import ScenePlanner
+from robots.planning.request import PlanAnswer, PlanRequest
+from robots.planning.worker_messages import Answered, Ask, Failed, FromWorker, Ready, ToWorker, Withdraw
+from robots.sim.framing import FrameReader, framed
+
+_START = "from robots.planning.worker_main import main; main()"
+_ROOT = str(Path(__file__).resolve().parents[2])
+# The first start on a machine compiles everything.
+_START_S = 300.0
+_OVERDUE_S = 5.0
+INLINE_CHECK_S = 2e-5
+"""What a check counts as in virtual time: 50,000 a second, as many as a slow machine does."""
+
+
+class PlanService(Protocol):
+    """Who answers plan requests on an event loop."""
+
+    async def plan(self, request: PlanRequest) -> PlanAnswer:
+        """Return a confirmed way, or why there is none.
+
+        Raises:
+            CellError: the scene has no such arm, or something in it is wrong.
+            RobotError: the planning process ended; the next request finds a new one.
+        """
+        ...
+
+
+class InlinePlanner:
+    """Plans on the loop itself, by effort instead of by the clock: for virtual time, where answers must repeat."""
+
+    def __init__(self) -> None:
+        self._planner = ScenePlanner(check_s=INLINE_CHECK_S)
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(self, *_error: object) -> None:
+        return None
+
+    async def plan(self, request: PlanRequest) -> PlanAnswer:
+        """Return a confirmed way, or why there is none; no time passes. Raises CellError as `PlanService` says."""
+        return self._planner.plan(request)
+
+
+class PlanningWorker:
+    """The planning process and its requests, in turn; started by `async with`, again by the next request if it died.
+
+    Cancelling the task that awaits a plan withdraws the request: the process stops looking for a way at
+    the next piece of work. A request that stays unanswered well beyond its time ends the process.
+    """
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._wire: _Wire | None = None
+        self._starting: asyncio.Lock = asyncio.Lock()
+        self._numbers = 0
+        self._closed = False
+
+    @property
+    def pid(self) -> int:
+        """The process id, 0 while there is none."""
+        return self._process.pid if self._process is not None and self._process.poll() is None else 0
+
+    async def __aenter__(self) -> Self:
+        await self._running()
+        return self
+
+    async def __aexit__(self, *_error: object) -> None:
+        self._closed = True
+        self._end()
+
+    async def plan(self, request: PlanRequest) -> PlanAnswer:
+        """Return a confirmed way, or why there is none.
+
+        Raises:
+            CellError: the scene has no such arm, or something in it is wrong.
+            RobotError: the planning process ended or hangs; the next request finds a new one.
+        """
+        wire = await self._running()
+        self._numbers += 1
+        number = self._numbers
+        answer = wire.ask(Ask(number=number, request=request))
+        # Others before it in turn take their time too.
+        allowed_s = wire.promised_s + _OVERDUE_S
+        try:
+            found = await asyncio.wait_for(asyncio.shield(answer), allowed_s)
+        except TimeoutError as error:
+            self._end()
+            raise RobotError(
+                f"the planning process has not answered within {allowed_s:.1f} s and was ended",
+                hint="plan again; a new process is started",
+            ) from error
+        except asyncio.CancelledError:
+            wire.withdraw(number)
+            raise
+        if isinstance(found, Failed):
+            raise CellError(found.message, where=found.where or None, hint=found.hint or None)
+        return found.answer
+
+    async def _running(self) -> _Wire:
+        """Return the wire to the process, which is started if there is none."""
+        if self._closed:
+            raise RobotError("the planning worker was closed", hint="enter a new one with `async with`")
+        async with self._starting:
+            if self._wire is None or self._wire.lost:
+                self._end()
+                self._wire = await self._start()
+            return self._wire
+
+    async def _start(self) -> _Wire:
+        ours, theirs = socket.socketpair()
+        try:
+            self._process = _started(theirs.fileno())
+            theirs.close()
+            _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._how_it_ended), sock=ours)
+        except BaseException:
+            # Whatever went wrong, cancellation included, no process may be left behind.
+            ours.close()
+            theirs.close()
+            self._end()
+            raise
+        try:
+            await asyncio.wait_for(asyncio.shield(wire.ready), _START_S)
+        except BaseException:
+            wire.close()
+            self._end()
+            raise
+        return wire
+
+    def _end(self) -> None:
+        wire, self._wire = self._wire, None
+        if wire is not None:
+            wire.close()
+        process, self._process = self._process, None
+        if process is not None:
+            # It holds nothing that could be lost.
+            process.kill()
+            process.wait()
+
+    def _how_it_ended(self) -> str:
+        """Say why the process is gone, once its socket has closed."""
+        if self._process is None:
+            return "the planning process was ended"
+        try:
+            code = self._process.wait(timeout=1.0)
+        except subprocess.TimeoutExpired:
+            return "the planning process closed its connection"
+        if code < 0:
+            return f"the planning process was ended by {signal.Signals(-code).name}"
+        return f"the planning process ended with exit code {code}"
+
+
+def plan_service(clock: Clock) -> InlinePlanner | PlanningWorker:
+    """Return who plans under a clock: inline in virtual time, else a process; to be entered with `async with`."""
+    return InlinePlanner() if clock.virtual else PlanningWorker()
+
+
+class _Wire(asyncio.Protocol):
+    """The client's end of the socket."""
+
+    def __init__(self, how_it_ended: _Reason) -> None:
+        self._how_it_ended = how_it_ended
+        self._reader = FrameReader()
+        self._decode = msgspec.msgpack.Decoder(FromWorker).decode
+        self._transport: asyncio.Transport | None = None
+        self._asked: dict[int, tuple[asyncio.Future[Answered | Failed], float]] = {}
+        self.ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self.lost = False
+
+    @property
+    def promised_s(self) -> float:
+        """The time that all requests which are not answered may take together."""
+        return sum(time_s for _, time_s in self._asked.values())
+
+    def ask(self, ask: Ask) -> asyncio.Future[Answered | Failed]:
+        future: asyncio.Future[Answered | Failed] = asyncio.get_running_loop().create_future()
+        if self.lost:
+            future.set_exception(_gone(self._how_it_ended()))
+            return future
+        self._asked[ask.number] = (future, ask.request.time_s)
+        self._send(ask)
+        return future
+
+    def withdraw(self, number: int) -> None:
+        if not self.lost:
+            self._send(Withdraw(number=number))
+
+    def close(self) -> None:
+        self.lost = True
+        if self._transport is not None:
+            self._transport.close()
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+
+    def data_received(self, data: bytes) -> None:
+        for frame in self._reader.feed(data):
+            message = self._decode(frame)
+            if isinstance(message, Ready):
+                self.ready.set_result(None)
+                continue
+            future, _ = self._asked.pop(message.number)
+            if not future.done():
+                future.set_result(message)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self.lost = True
+        reason = self._how_it_ended()
+        waiting = [future for future, _ in self._asked.values()]
+        self._asked.clear()
+        for future in (self.ready, *waiting):
+            if not future.done():
+                future.set_exception(_gone(reason))
+                # Who asked may have gone; then nobody else hears of it.
+                future.exception()
+
+    def _send(self, message: ToWorker) -> None:
+        assert self._transport is not None
+        self._transport.write(framed(msgspec.msgpack.encode(message)))
+
+
+def _gone(reason: str) -> RobotError:
+    return RobotError(reason, hint="plan again; a new process is started")
+
+
+class _Reason(Protocol):
+    def __call__(self) -> str: ...
+
+
+def _started(descriptor: int) -> subprocess.Popen[bytes]:
+    environment = {
+        **os.environ,
+        # The process must import this very package, wherever this one found it.
+        "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
+        "OPENBLAS_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+    }
+    command = [sys.executable, "-P", "-c", _START, str(descriptor)]
+    try:
+        return subprocess.Popen(command, pass_fds=(descriptor,), env=environment, stdin=subprocess.DEVNULL)
+    except OSError as error:
+        raise RobotError(f"the planning process does not start: {error}", where=sys.executable) from error

@@ -1,0 +1,111 @@
+"""The planning process: takes requests from a socket, one at a time, and looks for withdrawals while it plans."""
+
+from __future__ import annotations
+
+import select
+import socket
+import sys
+from collections import deque
+
+import msgspec
+
+from engine.errors import FlexcellError
+from engine.messages import Pose
+from engine.shapes import Box, Obstacle
+from robots.planning.planner import ScenePlanner
+from robots.planning.request import JointGoal, PlanRequest
+from robots.planning.scene import PlanningScene, SceneArm
+from robots.planning.worker_messages import Answered, Ask, Failed, FromWorker, Ready, ToWorker
+from robots.sim.framing import FrameReader, framed
+from robots.sim.scene import ArmPlacement
+
+_READ_BYTES = 65536
+
+
+class _ClientGone(Exception):
+    """The other end of the socket was closed."""
+
+
+class _Mailbox:
+    """The worker's end of the socket."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._reader = FrameReader()
+        self._decode = msgspec.msgpack.Decoder(ToWorker).decode
+        self._waiting: deque[Ask] = deque()
+        self._withdrawn: set[int] = set()
+        self._answered = 0
+
+    def next(self) -> Ask:
+        """Return the next request, once there is one."""
+        while not self._waiting:
+            self._read()
+        return self._waiting.popleft()
+
+    def is_withdrawn(self, number: int) -> bool:
+        """Return whether a request is no longer wanted, reading what has arrived meanwhile."""
+        while select.select([self._connection], [], [], 0.0)[0]:
+            self._read()
+        return number in self._withdrawn
+
+    def send(self, message: FromWorker) -> None:
+        """Send a message."""
+        try:
+            self._connection.sendall(framed(msgspec.msgpack.encode(message)))
+        except (BrokenPipeError, ConnectionResetError) as error:
+            raise _ClientGone from error
+
+    def done(self, number: int) -> None:
+        """Forget about a request that was answered."""
+        self._withdrawn.discard(number)
+        self._answered = number
+
+    def _read(self) -> None:
+        data = self._connection.recv(_READ_BYTES)
+        if not data:
+            raise _ClientGone
+        for frame in self._reader.feed(data):
+            message = self._decode(frame)
+            if isinstance(message, Ask):
+                self._waiting.append(message)
+            elif message.number > self._answered:
+                # Numbers rise: the answer was not on its way already.
+                self._withdrawn.add(message.number)
+
+
+def main() -> None:
+    """Serve the socket whose descriptor is the first argument until the other end closes it."""
+    connection = socket.socket(fileno=int(sys.argv[1]))
+    mailbox = _Mailbox(connection)
+    planner = ScenePlanner()
+    try:
+        _warm(planner)
+        mailbox.send(Ready())
+        while True:
+            ask = mailbox.next()
+            mailbox.send(_answer(planner, mailbox, ask))
+            mailbox.done(ask.number)
+    except _ClientGone:
+        connection.close()
+
+
+def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: Ask) -> FromWorker:
+    try:
+        answer = planner.plan(ask.request, cancelled=lambda: mailbox.is_withdrawn(ask.number))
+    except FlexcellError as error:
+        where = str(error.where) if error.where is not None else ""
+        return Failed(number=ask.number, message=error.message, where=where, hint=error.hint or "")
+    return Answered(number=ask.number, answer=answer)
+
+
+def _warm(planner: ScenePlanner) -> None:
+    """Have everything compiled and loaded that a first request would wait for."""
+    placement = ArmPlacement(name="arm", model="servo_arm", base=Pose(xyz=(0.0, 0.0, 0.0)))
+    far = Obstacle.of("far", Box(size_m=(0.1, 0.1, 0.1)), Pose(xyz=(5.0, 0.0, 0.0)))
+    scene = PlanningScene(arms=(SceneArm(placement=placement),), obstacles=(far,))
+    goal = JointGoal(joints_rad=((1.0, 0.0),))
+    for name in ("fast", "RRTConnect"):
+        planner.plan(
+            PlanRequest(scene=scene, arm="arm", start_rad=(0.5, 0.0), goal=goal, speed=1.0, planner=name, time_s=60.0)
+        )

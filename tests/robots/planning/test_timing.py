@@ -1,0 +1,122 @@
+"""Trajectories keep to speed and acceleration, to the confirmed way, rest at both ends, and touch nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import msgspec
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchmarks.planning_scenes import cases
+from engine.errors import RobotError
+from robots.model.registry import robot_model
+from robots.model.robot_model import JointLimits
+from robots.motion.joint_checks import check_speed
+from robots.motion.joint_profile import plan_joints
+from robots.planning.exact_checker import ExactChecker
+from robots.planning.planner import ScenePlanner
+from robots.planning.request import Plan
+from robots.planning.timing import timed
+from robots.port import Array
+
+PANDA = robot_model("panda")
+LIMITS = PANDA.limits
+SPEED, PUSH = np.array(LIMITS.velocity_rad_s), np.array(LIMITS.acceleration_rad_s2)
+
+
+def random_way(seed: int) -> Array:
+    random = np.random.default_rng(seed)
+    steps = random.normal(size=(int(random.integers(2, 9)), 7)) * random.choice([0.001, 0.05, 0.5])
+    # Some joints stand still, some lines turn back, some waypoints are double.
+    steps[:, random.random(7) < 0.3] = 0.0
+    if random.random() < 0.3:
+        steps[-1] = -0.7 * steps[-2]
+    if random.random() < 0.3:
+        steps[0] = 0.0
+    return np.cumsum(steps, axis=0)
+
+
+def distance_to(way: Array, points: Array) -> Array:
+    """Return how far each point is from a way of straight lines."""
+    a, b = way[:-1], way[1:]
+    along = (b - a)[None]
+    share = ((points[:, None] - a[None]) * along).sum(axis=2) / np.maximum((along**2).sum(axis=2), 1e-30)
+    nearest = a[None] + np.clip(share, 0.0, 1.0)[:, :, None] * along
+    return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
+
+
+@settings(deadline=None, max_examples=60)
+@given(seed=st.integers(0, 2**32 - 1), speed=st.sampled_from([1.0, 0.3]))
+def test_a_trajectory_keeps_to_the_limits_and_to_the_way(seed: int, speed: float) -> None:
+    way = random_way(seed)
+    found = timed(way, limits=LIMITS, is_free=lambda _: True, speed=speed)
+    trajectory = found.trajectory
+    assert np.array_equal(trajectory.position_rad[0], way[0])
+    assert np.allclose(trajectory.position_rad[-1], way[-1], atol=1e-9)
+    assert not trajectory.velocity_rad_s[[0, -1]].any()
+    check_speed(LIMITS, PANDA.arm_joints, trajectory)
+    assert (np.abs(trajectory.velocity_rad_s) <= speed * SPEED * 1.001).all()
+    push = np.abs(np.diff(trajectory.velocity_rad_s, axis=0)) / trajectory.dt_s
+    assert (push <= speed * PUSH * 0.53 + 1e-6).all()
+    assert distance_to(way, trajectory.position_rad).max() <= 0.05 + 1e-6
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_where_no_corner_may_be_cut_the_arm_stops_there_and_stays_on_the_lines(seed: int) -> None:
+    way = random_way(seed)
+    found = timed(way, limits=LIMITS, is_free=lambda _: False)
+    assert distance_to(way, found.trajectory.position_rad).max() <= 1e-6
+    check_speed(LIMITS, PANDA.arm_joints, found.trajectory)
+
+
+def test_a_straight_line_takes_as_long_as_the_trapezoid_for_it() -> None:
+    start, goal = np.zeros(7), np.array([1.0, -0.5, 0.2, 0.0, 0.8, 0.4, -1.0])
+    goal[3], start[3] = -1.0, -0.5
+    best = plan_joints(start, goal, speed=1.0, limits=_wide(), joint_names=PANDA.arm_joints)
+    found = timed(np.array([start, goal]), limits=_wide(), is_free=lambda _: True)
+    best_s = best.dt_s * (len(best.position_rad) - 1)
+    assert found.duration_s == pytest.approx(best_s, rel=0.02)
+
+
+def _wide() -> JointLimits:
+
+    return replace(LIMITS, lower_rad=(-9.0,) * 7, upper_rad=(9.0,) * 7)
+
+
+def test_rounded_corners_are_faster_than_stops() -> None:
+    way = np.cumsum(np.eye(7)[[0, 1, 2, 1]] * 0.5, axis=0)
+    smooth = timed(way, limits=LIMITS, is_free=lambda _: True)
+    stopping = timed(way, limits=LIMITS, is_free=lambda _: False)
+    assert smooth.stops == 0
+    assert stopping.stops == 2
+    assert smooth.duration_s < 0.85 * stopping.duration_s
+
+
+def test_an_arm_that_is_there_already_stands() -> None:
+    found = timed(np.zeros((3, 7)), limits=LIMITS, is_free=lambda _: True)
+    assert not found.trajectory.velocity_rad_s.any()
+
+
+def test_a_speed_above_the_limits_is_refused() -> None:
+    with pytest.raises(RobotError, match="speed 2"):
+        timed(np.zeros((2, 7)), limits=LIMITS, is_free=lambda _: True, speed=2.0)
+
+
+@pytest.mark.parametrize("title", ["IRB4600, one box", "UR10, one box", "Panda, table and shelf"])
+def test_the_trajectory_of_a_plan_touches_nothing(title: str) -> None:
+    request = next(case.request for case in cases() if case.title == title)
+    planner = ScenePlanner(check_s=2e-5)
+    checker = ExactChecker(request.scene, request.arm)
+    for seed in range(3):
+        answer = planner.plan(msgspec.structs.replace(request, seed=seed, speed=1.0))
+        assert isinstance(answer, Plan), answer
+        assert answer.timed is not None
+        trajectory = answer.timed.trajectory()
+        check_speed(checker.model.limits, checker.model.arm_joints, trajectory)
+        assert np.allclose(trajectory.position_rad[[0, -1]], answer.path[[0, -1]], atol=1e-9)
+        touching = [q for q in trajectory.position_rad[::4] if checker.clearance(q).distance_m < -1e-3]
+        assert not touching
