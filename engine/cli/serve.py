@@ -21,6 +21,7 @@ from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
+from engine.teaching import HelpingHand, teachable
 from engine.watchdog import Watchdog
 
 ServeDashboard = Callable[..., Coroutine[Any, Any, None]]
@@ -63,6 +64,7 @@ async def _serve(
     with Journal.open(state) as journal, Watchdog():
         async with (
             OpenCell(cell, seed=seed) as opened,
+            HelpingHand(opened.bus, robots=teachable(opened.bus), folder=state / "captures"),
             Session(opened, project=project, catalogue=catalogue, journal=journal) as session,
         ):
             serving = asyncio.create_task(

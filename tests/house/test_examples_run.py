@@ -23,6 +23,7 @@ from engine.document.cell import load_cell
 from engine.document.faults import parse_faults
 from engine.registry import load_states
 from engine.skills.entries import WriteEntry
+from engine.teaching import load_triggers
 from engine.testing.behavior import run_behavior
 from robots.sim.cell_scene import scene_of
 
@@ -31,6 +32,7 @@ EXAMPLES = ROOT / "docs" / "how-to" / "examples"
 PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]
 CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
+TRIGGERS = "\ntriggers:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:")
@@ -121,9 +123,16 @@ def test_breakpoints_are_taken(tmp_path: Path, text: str) -> None:
     assert len(load_breakpoints(behavior)) == text.count("path:")
 
 
+@shown(holding=TRIGGERS)
+def test_triggers_are_taken(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "triggers.yaml"
+    file.write_text(text, encoding="utf-8")
+    assert len(load_triggers(file)) == text.count("trig_name:")
+
+
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS, TRIGGERS)
     begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

@@ -1,0 +1,313 @@
+"""The Helping Hand: listens to triggers, captures where robots are, lets them be led, saves captures (RCY 7.1)."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from engine.bus import GoalHandle, SkillBus
+from engine.cause import cause_of, describe
+from engine.errors import BusError, FlexcellError, SkillFailed
+from engine.skills.entries import EntryRecord
+from engine.skills.guiding import FinishGuiding, GuideArm
+from engine.skills.teaching import (
+    ButtonState,
+    Capture,
+    DiscardCapture,
+    FireTrigger,
+    ReadCapture,
+    ReadTeachStatus,
+    SaveCapture,
+    SetTriggers,
+    TeachStatus,
+    Trigger,
+    TriggerStatus,
+)
+from engine.teaching.buffer import CaptureBuffer
+from engine.teaching.capturing import Capturing
+from engine.teaching.edges import Edge, EdgeDetector
+from engine.teaching.recording import JointRecording
+from engine.teaching.saving import save
+
+NAMESPACE = "teach"
+STATUS = f"{NAMESPACE}/status"
+_RECORDS = ("joint_dmp_save", "cart_dmp_save")
+_log = logging.getLogger("flexcell.teaching")
+
+
+def teachable(bus: SkillBus) -> tuple[str, ...]:
+    """Return the robots on a bus that can be led by hand, sorted."""
+    ending = f"/{GuideArm.skill_name()}"
+    return tuple(sorted(row.name.removesuffix(ending) for row in bus.listing() if row.name.endswith(ending)))
+
+
+@dataclass(kw_only=True)
+class _Listening:
+    """One trigger and its subscription."""
+
+    trigger: Trigger
+    message_type: str = ""
+    detector: EdgeDetector | None = None
+    fault: str = ""
+    close: Callable[[], None] = lambda: None
+
+
+class HelpingHand:
+    """Answers `teach/…` while it is open; belongs to the event loop of its bus.
+
+    What a trigger asks for is done one after the other, in the order in which the buttons were pressed;
+    recordings begin and end at once. A refusal is told in the status and changes nothing.
+
+    Args:
+        bus: With the robots and the store.
+        robots: The arms that can be taught, by their names on the bus.
+        folder: Where captures are kept until they are saved or discarded; None to keep them in memory.
+        triggers: Listened to from the start.
+    """
+
+    def __init__(
+        self, bus: SkillBus, *, robots: Sequence[str], folder: Path | None = None, triggers: Sequence[Trigger] = ()
+    ) -> None:
+        self._bus = bus
+        self._robots = tuple(robots)
+        self._buffer = CaptureBuffer(folder)
+        self._capturing = Capturing(bus, self._buffer)
+        self._triggers = tuple(triggers)
+        self._listening: list[_Listening] = []
+        self._recordings: dict[str, tuple[Trigger, JointRecording]] = {}
+        self._guides: dict[str, GoalHandle[Any, Any]] = {}
+        self._due: asyncio.Queue[tuple[Trigger, Callable[[], Any]]] = asyncio.Queue()
+        self._worker: asyncio.Task[None] | None = None
+        self._said = ""
+        self._status = bus.topic(STATUS, TeachStatus)
+
+    async def __aenter__(self) -> Self:
+        bus = self._bus
+        bus.advertise_service(ReadTeachStatus, self._read_status, namespace=NAMESPACE)
+        bus.advertise_service(SetTriggers, self._set_triggers, namespace=NAMESPACE)
+        bus.advertise_service(FireTrigger, self._fire_trigger, namespace=NAMESPACE)
+        bus.advertise_service(ReadCapture, self._read_capture, namespace=NAMESPACE)
+        bus.advertise_service(SaveCapture, self._save_capture, namespace=NAMESPACE)
+        bus.advertise_service(DiscardCapture, self._discard_capture, namespace=NAMESPACE)
+        self._worker = asyncio.create_task(self._work(), name="helping hand")
+        self._listen(self._triggers)
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End recordings and guiding; what was captured stays in the buffer's folder."""
+        self._deafen()
+        for robot in tuple(self._recordings):
+            self._end_recording(robot)
+        self._bus.withdraw(NAMESPACE)
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            # What was recorded is kept before the end.
+            await self._due.join()
+            worker.cancel()
+            await asyncio.wait((worker,))
+        for guide in self._guides.values():
+            guide.cancel()
+            await guide.result()
+
+    @property
+    def status(self) -> TeachStatus:
+        """What it does now."""
+        return TeachStatus(
+            triggers=tuple(
+                TriggerStatus(
+                    trigger=one.trigger,
+                    message_type=one.message_type,
+                    pressed=one.detector is not None and one.detector.pressed,
+                    fault=one.fault,
+                )
+                for one in self._listening
+            ),
+            captures=tuple(capture.summary for capture in self._buffer.captures),
+            recording=tuple(self._recordings),
+            guided=tuple(robot for robot, guide in self._guides.items() if not guide.finished),
+            said=self._said,
+        )
+
+    def fired(self, trigger: Trigger, edge: Edge) -> None:
+        """Do what a trigger is for; `edge` is what its button did."""
+        held = trigger.trig_type == "hold"
+        wanted = Edge.RELEASED if trigger.trig_type == "falling_edge" else Edge.PRESSED
+        if trigger.trig_callback in _RECORDS:
+            robot = self._robot_of(trigger)
+            if robot is None:
+                return
+            running = robot in self._recordings
+            if held and edge is Edge.RELEASED:
+                self._end_recording(robot, of=trigger)
+            elif edge is wanted and not (held and running):
+                self._end_recording(robot) if running else self._begin_recording(robot, trigger)
+        elif edge is wanted:
+            self._due.put_nowait((trigger, lambda: self._do(trigger)))
+        elif held and trigger.trig_callback == "grav_comp":
+            self._due.put_nowait((trigger, lambda: self._guide(trigger, on=False)))
+        self._tell()
+
+    async def _do(self, trigger: Trigger) -> None:
+        robot = self._robot_of(trigger)
+        if robot is None and trigger.trig_callback != "tf_save":
+            return
+        match trigger.trig_callback:
+            case "grav_comp":
+                await self._guide(trigger, on=True if trigger.trig_type == "hold" else None)
+            case "joint_save":
+                self._took(await self._capturing.joints(trigger, robot or ""))
+            case "pose_save":
+                self._took(await self._capturing.pose(trigger, robot or ""))
+            case _:
+                self._took(await self._capturing.frame(trigger, robot or ""))
+
+    async def _guide(self, trigger: Trigger, *, on: bool | None) -> None:
+        """Let the arm float, or hold itself again; with `on` None whichever it does not now."""
+        robot = self._robot_of(trigger)
+        if robot is None:
+            return
+        running = self._guides.get(robot)
+        floating = running is not None and not running.finished
+        if floating and on is not True:
+            await self._bus.call(FinishGuiding(), to=robot)
+            assert running is not None
+            await running.result()
+            self._say(f"{robot} holds itself")
+        elif not floating and on is not False:
+            guide = self._bus.send_goal(GuideArm(), to=robot)
+            await guide.accepted()
+            self._guides[robot] = guide
+            self._say(f"{robot} floats: lead it by hand")
+
+    def _begin_recording(self, robot: str, trigger: Trigger) -> None:
+        try:
+            self._recordings[robot] = (trigger, JointRecording(self._bus, robot))
+            self._say(f"{robot} is being recorded")
+        except BusError as error:
+            self._say(describe(cause_of(error)))
+
+    def _end_recording(self, robot: str, *, of: Trigger | None = None) -> None:
+        """End a recording, only that of one trigger with `of`; what was recorded is worked on in its turn."""
+        running = self._recordings.get(robot)
+        if running is None or (of is not None and running[0] != of):
+            return
+        trigger, recording = self._recordings.pop(robot)
+
+        async def keep() -> None:
+            self._took(await self._capturing.recorded(trigger, recording))
+
+        self._due.put_nowait((trigger, keep))
+
+    def _robot_of(self, trigger: Trigger) -> str | None:
+        """Return the robot that is meant, and say so where it is not clear."""
+        name = trigger.robot_ns.strip("/")
+        if name in self._robots:
+            return name
+        if not name and len(self._robots) == 1:
+            return self._robots[0]
+        known = ", ".join(self._robots) or "none"
+        self._say(f"{trigger.trig_name}: " + (f"there is no robot {name}" if name else "name a robot") + f" ({known})")
+        return None
+
+    def _took(self, capture: Capture) -> None:
+        self._say(f"capture {capture.summary.id} of {capture.summary.robot or 'the cell'}: {capture.summary.form}")
+
+    async def _work(self) -> None:
+        while True:
+            trigger, work = await self._due.get()
+            try:
+                await work()
+            except FlexcellError as error:
+                self._say(f"{trigger.trig_name}: {describe(cause_of(error))}")
+            except Exception:
+                # One capture that fails must not end teaching.
+                _log.exception("%s failed", trigger.trig_name)
+                self._say(f"{trigger.trig_name} failed; the log says why")
+            finally:
+                self._due.task_done()
+
+    def _listen(self, triggers: Sequence[Trigger]) -> None:
+        self._deafen()
+        self._listening = [self._listen_to(trigger) for trigger in triggers]
+        self._tell()
+
+    def _listen_to(self, trigger: Trigger) -> _Listening:
+        listening = _Listening(trigger=trigger)
+        name = trigger.trig_topic.strip("/")
+        try:
+            topic = self._bus.find_topic(name)
+        except BusError:
+            # Nobody has published there: it is a button that is still to be pressed.
+            topic = self._bus.topic(name, ButtonState)
+        listening.message_type = topic.kind.__name__
+        try:
+            detector = EdgeDetector(topic.kind, field=trigger.field, value=trigger.trig_value)
+        except BusError as error:
+            listening.fault = describe(cause_of(error))
+            return listening
+
+        def take(message: object) -> None:
+            edge = detector.take(message)
+            if edge is not None:
+                self.fired(trigger, edge)
+
+        listening.detector = detector
+        subscription = topic.obey(take) if topic.kind is ButtonState else topic.subscribe(take)
+        listening.close = subscription.close
+        return listening
+
+    def _deafen(self) -> None:
+        for one in self._listening:
+            one.close()
+        self._listening = []
+
+    def _say(self, words: str) -> None:
+        self._said = words
+        _log.info("%s", words)
+        self._tell()
+
+    def _tell(self) -> None:
+        self._status.publish(self.status)
+
+    async def _read_status(self, _request: ReadTeachStatus) -> TeachStatus:
+        return self.status
+
+    async def _set_triggers(self, request: SetTriggers) -> TeachStatus:
+        names = [trigger.trig_name for trigger in request.triggers]
+        if len(set(names)) < len(names):
+            raise SkillFailed("two triggers have the same name", where=NAMESPACE, hint="give each its own name")
+        for robot in tuple(self._recordings):
+            self._end_recording(robot)
+        self._listen(request.triggers)
+        return self.status
+
+    async def _fire_trigger(self, request: FireTrigger) -> TeachStatus:
+        for one in self._listening:
+            if one.trigger.trig_name == request.trig_name:
+                self.fired(one.trigger, Edge.PRESSED if request.pressed else Edge.RELEASED)
+                await self._due.join()
+                return self.status
+        known = ", ".join(one.trigger.trig_name for one in self._listening)
+        raise SkillFailed(f"there is no trigger {request.trig_name!r}", where=NAMESPACE, hint=known or "set some")
+
+    async def _read_capture(self, request: ReadCapture) -> Capture:
+        return self._buffer.get(request.id)
+
+    async def _save_capture(self, request: SaveCapture) -> EntryRecord:
+        capture = self._buffer.get(request.id)
+        record, kept = await save(self._bus, capture, request)
+        self._buffer.put(kept)
+        self._say(f"capture {request.id} is the entry {record.kind} {record.name}")
+        return record
+
+    async def _discard_capture(self, request: DiscardCapture) -> TeachStatus:
+        self._buffer.discard(request.id)
+        self._tell()
+        return self.status
