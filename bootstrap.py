@@ -8,6 +8,7 @@ python3 bootstrap.py test              everything that must pass
 
 from __future__ import annotations
 
+import ctypes.util
 import hashlib
 import importlib.util
 import os
@@ -23,6 +24,7 @@ BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
 DEMO = "behaviors/reconcycle/two_arm_transfer.yaml"
 CELL = "behaviors/cells/dual_panda.yaml"
+MESA_DRIVERS = ("*/dri/swrast_dri.so", "*/libgallium-*.so")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
@@ -56,6 +58,7 @@ def test(options: list[str]) -> int:
     """Run lint, types, import contracts and the tests; pytest's own line is the last one."""
     install("all,test,bench")
     ensure_browser()
+    ensure_graphics()
     for name, command in (
         ("format", ["ruff", "format", "--check", "."]),
         ("lint", ["ruff", "check", "."]),
@@ -90,6 +93,21 @@ def ensure_browser() -> None:
         _apt("chromium", "fonts-dejavu-core")
         return
     raise SystemExit(_fail("the browser tests need Chromium: install it, or set FLEXCELL_CHROMIUM to its path"))
+
+
+def ensure_graphics() -> None:
+    """Have depth images rendered in software; as root on Debian, install what is missing. Without it rays do."""
+    present = ctypes.util.find_library("EGL") and any(map(_is_there, MESA_DRIVERS))
+    if present or not shutil.which("apt-get") or not hasattr(os, "geteuid") or os.geteuid() != 0:
+        return
+    try:
+        _apt("libegl1", "libegl-mesa0", "libgl1-mesa-dri")
+    except subprocess.CalledProcessError:
+        _say("OpenGL cannot be installed; depth images are made by rays")
+
+
+def _is_there(pattern: str) -> bool:
+    return any(Path("/usr/lib").glob(pattern))
 
 
 def _make_venv() -> None:

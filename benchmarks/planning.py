@@ -1,8 +1,9 @@
-"""Measures planning: `python -P benchmarks/planning.py [--runs N] [--scenes N] [--configurations N] [--json FILE]`.
+"""Measures planning: `python -P benchmarks/planning.py [--runs N] [--scenes N] [--problems FILE] [--json FILE]`.
 
 Prints the documents' experiments with all planners beside the documents' figures; random scenes of a Panda
 with shelf, table and clutter, ours beside OMPL with the same exact checker and beside RoboPlan, where that is
-installed; what a new scene and a trajectory cost; and how checker and spheres agree with MuJoCo's contacts.
+installed; the problems of MotionBenchMaker, where a file of them is given (`planning_problems`); what scenes,
+trajectories, voxels and checks of ways cost; and how checker and spheres agree with MuJoCo's contacts.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ import argparse
 import gc
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import msgspec
 import numpy as np
@@ -22,6 +24,8 @@ import numpy as np
 from benchmarks.comparison import machine
 from benchmarks.peers.roboplan_planner import RoboplanPlanner
 from benchmarks.planning_contacts import NEAR_M, Agreement, compared
+from benchmarks.planning_costs import other_costs, words
+from benchmarks.planning_problems import problem_sets
 from benchmarks.planning_scenes import ARM, Case, cases, random_case
 from engine.messages import Pose
 from robots.planning.exact_checker import ExactChecker
@@ -128,17 +132,7 @@ def measure(case: Case, planner: str, *, runs: int, time_s: float = _TIME_S) -> 
 
 def random_lines(count: int, planners: Sequence[str]) -> list[Line]:
     """Plan in `count` random scenes, one second each; a scene is prepared outside the timing."""
-    drawn = [random_case(seed) for seed in range(count)]
-    lines: list[Line] = []
-    for planner in planners:
-        answers = Answers("random scenes, 1 s", planner)
-        # What must be compiled or loaded is, before the first.
-        _asking(planner, drawn[0], 60.0)(1)
-        for case in drawn:
-            ask = _asking(planner, case, 1.0)
-            answers.ask(lambda a=ask: a(0), ExactChecker(case.request.scene, ARM))
-        lines.append(answers.line())
-    return lines
+    return _each_once("random scenes, 1 s", [random_case(seed) for seed in range(count)], planners)
 
 
 def peers() -> tuple[str, ...]:
@@ -161,30 +155,26 @@ def _asking(planner: str, case: Case, time_s: float) -> Callable[[int], Found]:
     return ask
 
 
-def other_costs(runs: int) -> dict[str, float]:
-    """Return median CPU milliseconds of preparing a new scene and of an answer with a trajectory (Panda's shelf)."""
-    case = cases()[-1]
-    fresh: list[float] = []
-    for seed in range(runs):
-        scene = case.request.scene.with_joints(ARM, [0.001 * seed] * 7)
-        start = time.process_time_ns()
-        ScenePlanner().prepared(scene, ARM)
-        fresh.append((time.process_time_ns() - start) / 1e6)
-    service = ScenePlanner()
-    service.plan(msgspec.structs.replace(case.request, speed=1.0))
-    timed: list[float] = []
-    timing: list[float] = []
-    for seed in range(runs):
-        start = time.process_time_ns()
-        answer = service.plan(msgspec.structs.replace(case.request, speed=1.0, seed=seed))
-        timed.append((time.process_time_ns() - start) / 1e6)
-        if isinstance(answer, Plan):
-            timing.append(answer.stats.timing_s * 1e3)
-    return {
-        "new scene": float(np.median(fresh)),
-        "answer with trajectory": float(np.median(timed)),
-        "timing alone (wall)": float(np.median(timing)),
-    }
+def problem_lines(file: Path, planners: Sequence[str], *, most: int = 1000) -> Iterator[list[Line]]:
+    """Plan the problems of MotionBenchMaker for a Panda, set by set; `file` is vamp's source distribution."""
+    with TemporaryDirectory() as folder:
+        for one in problem_sets(file, Path(folder), most=most):
+            left_out = f", {one.touching + one.outside} left out" if one.touching + one.outside else ""
+            yield _each_once(f"{one.name}{left_out}, 1 s", one.cases, planners)
+
+
+def _each_once(title: str, drawn: Sequence[Case], planners: Sequence[str]) -> list[Line]:
+    """Plan each case once, one second each; a scene is prepared outside the timing."""
+    lines: list[Line] = []
+    for planner in planners:
+        answers = Answers(title, planner)
+        # What must be compiled or loaded is, before the first.
+        _asking(planner, drawn[0], 60.0)(1)
+        for case in drawn:
+            ask = _asking(planner, case, 1.0)
+            answers.ask(lambda a=ask: a(0), ExactChecker(case.request.scene, ARM))
+        lines.append(answers.line())
+    return lines
 
 
 def agreements(configurations: int) -> dict[str, Agreement]:
@@ -219,8 +209,11 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=50, help="runs of a planner in a case; a fifth of the slow ones")
-    parser.add_argument("--scenes", type=int, default=300, help="random scenes (default 300)")
+    parser.add_argument("--time", type=float, default=_TIME_S, help="seconds for a plan in a case (default 5)")
+    parser.add_argument("--scenes", type=int, default=300, help="random scenes, or problems of a set (default 300)")
     parser.add_argument("--configurations", type=int, default=10_000, help="compared with MuJoCo, in each cell")
+    parser.add_argument("--costs", type=int, default=50, help="runs of what is not a search (default 50)")
+    parser.add_argument("--problems", type=Path, metavar="FILE", help="vamp's source distribution, for its problems")
     parser.add_argument("--case", default="", help="only experiments with this in their title")
     parser.add_argument("--planner", action="append", help="only this planner (may be repeated)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures to FILE")
@@ -229,17 +222,28 @@ def main() -> None:
     done: list[Line] = []
     for case in (case for case in cases() if options.case in case.title):
         lines = [
-            measure(case, planner, runs=max(1, options.runs // 5) if planner in _SLOW else options.runs)
+            measure(
+                case,
+                planner,
+                runs=max(1, options.runs // 5) if planner in _SLOW else options.runs,
+                time_s=options.time,
+            )
             for planner in options.planner or (*PLANNERS, *peers())
         ]
         print(table(lines), end="\n\n", flush=True)
         done += lines
-    if options.scenes:
-        lines = random_lines(options.scenes, ("fast", _PEER, *peers()))
+    beside = options.planner or ("fast", _PEER, *peers())
+    if options.scenes and not options.problems:
+        lines = random_lines(options.scenes, beside)
         print(table(lines), end="\n\n", flush=True)
         done += lines
-    costs = other_costs(max(5, options.runs))
-    print("; ".join(f"{what} {ms:.2f} ms" for what, ms in costs.items()), end=" (Panda, shelf)\n\n")
+    if options.problems:
+        for lines in problem_lines(options.problems, beside, most=options.scenes):
+            print(table(lines), end="\n\n", flush=True)
+            done += lines
+    costs = other_costs(options.costs) if options.costs else {}
+    if costs:
+        print(words(costs), end="\n\n")
     found = agreements(options.configurations) if options.configurations else {}
     for title, agreement in found.items():
         print(f"{title}: {_words(agreement)}")

@@ -1,20 +1,24 @@
-"""Makes the pictures in docs/screenshots: serves the demo cell, runs the transfer, photographs the page in mid-motion.
+"""Makes the pictures in docs/screenshots: serves the demo cells and photographs the page at work, in both themes.
 
-    python docs/make_screenshots.py
+    python docs/make_screenshots.py [NAME …]
 
-Needs the extras `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
+`dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
+planned way that waits for its operator, `shared` an arm that waits because a person reaches into its way. Needs the
+extras `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -22,20 +26,31 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 ROOT = Path(__file__).parent.parent
 OUT = ROOT / "docs" / "screenshots"
-CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
-BEHAVIOR = "behaviors/reconcycle/two_arm_transfer.yaml"
 LOGIN = re.compile(r"http://\S+/login\?t=\S+")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-PICTURE_LIMIT_MS = 120_000
+LIMIT_MS = 240_000
 Scheme = Literal["light", "dark"]
+DESK, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """One picture: what is served, which address is opened at which size, and what is done before it is taken."""
+
+    name: str
+    cell: str
+    address: str
+    size: tuple[int, int]
+    prepare: Callable[[Page], None]
 
 
 @contextmanager
-def served() -> Generator[str]:
+def served(cell: str) -> Generator[str]:
     """Run `flexcell serve` on a free port; gives the log-in address."""
     program = Path(sys.executable).with_name("flexcell")
+    document = ROOT / "behaviors" / "cells" / f"{cell}.yaml"
     with tempfile.TemporaryDirectory() as state:
-        command = [program, "serve", "--cell", CELL, "--port", "0", "--project", ROOT, "--state", state]
+        command = [program, "serve", "--cell", document, "--port", "0", "--project", ROOT, "--state", state]
         server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
         try:
             assert server.stdout is not None
@@ -48,50 +63,94 @@ def served() -> Generator[str]:
             server.wait(timeout=60)
 
 
-def picture(page: Page, name: str) -> None:
-    """Take one picture."""
-    OUT.mkdir(parents=True, exist_ok=True)
-    file = OUT / f"{name}.png"
-    page.screenshot(path=file, timeout=PICTURE_LIMIT_MS)
-    print(file.relative_to(ROOT))
+def drawn(page: Page) -> None:
+    """Wait until the 3D view shows something."""
+    view = page.frame_locator("iframe[title='3D view of the cell']").locator("canvas[data-engine]")
+    expect(view).to_be_visible(timeout=LIMIT_MS)
+    # Meshes arrive after the canvas, and nothing on the page tells when the last one is drawn.
+    page.wait_for_timeout(6000)
 
 
-def visit(browser: Browser, login: str, scheme: Scheme) -> Page:
-    """Open the page of the transfer, logged in, with the 3D view drawn."""
-    page = browser.new_page(locale="en-US", color_scheme=scheme, viewport={"width": 1600, "height": 900})
+def start(page: Page) -> None:
+    """Press the button."""
+    page.get_by_role("button", name="Start", exact=True).click()
+
+
+def in_motion(page: Page) -> None:
+    """Start the transfer and wait until both arms move."""
+    drawn(page)
+    start(page)
+    expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=LIMIT_MS)
+    expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=LIMIT_MS)
+
+
+def asked(page: Page) -> None:
+    """Start below full autonomy, and wait for the question about the planned way."""
+    is_narrow = page.viewport_size is not None and page.viewport_size["width"] < DESK[0]
+    if not is_narrow:
+        drawn(page)
+    page.get_by_role("button", name="Operation").click()
+    page.get_by_role("combobox", name="Autonomy at the start").click()
+    page.get_by_role("option", name="low").click()
+    start(page)
+    expect(page.get_by_role("region", name="The run asks")).to_contain_text("shown in the 3D view", timeout=LIMIT_MS)
+    if is_narrow:
+        page.get_by_role("tab", name="Cell").click()
+        drawn(page)
+
+
+def waiting(page: Page) -> None:
+    """Let a person keep a hand in the way, and wait until the arm says that it waits."""
+    drawn(page)
+    page.get_by_role("combobox", name="person", exact=True).click()
+    page.get_by_role("option", name="stays").click()
+    start(page)
+    expect(page.get_by_role("log")).to_contain_text("pick —picked→ carry", timeout=LIMIT_MS)
+    expect(page.get_by_role("list", name="Arms whose way is blocked")).to_be_visible(timeout=LIMIT_MS)
+
+
+CONFIRM = "/behaviors/behaviors/pick_and_place/confirmed_move.yaml"
+TRANSFER = "/behaviors/behaviors/reconcycle/two_arm_transfer.yaml"
+SHARED = "/behaviors/behaviors/plate_transfer_shared/plate_transfer_shared.yaml"
+PICTURES = (
+    Picture(name="dashboard", cell="dual_panda", address=TRANSFER, size=DESK, prepare=in_motion),
+    Picture(name="cell", cell="dual_panda", address="/", size=LARGE, prepare=drawn),
+    Picture(name="phone", cell="dual_panda", address="/", size=PHONE, prepare=drawn),
+    Picture(name="confirm", cell="ur10", address=CONFIRM, size=DESK, prepare=asked),
+    Picture(name="confirm-phone", cell="ur10", address=CONFIRM, size=PHONE, prepare=asked),
+    Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESK, prepare=waiting),
+)
+
+
+def take(browser: Browser, login: str, picture: Picture, scheme: Scheme) -> None:
+    """Open the page, logged in, bring it to where it is worth a picture, and take that."""
+    width, height = picture.size
+    page = browser.new_page(locale="en-US", color_scheme=scheme, viewport={"width": width, "height": height})
+    page.set_default_timeout(LIMIT_MS)
     page.goto(login)
-    page.goto(login.partition("/login")[0] + f"/behaviors/{BEHAVIOR}")
-    drawn = page.frame_locator("iframe[title='3D view of the cell']").locator("canvas[data-engine]")
-    expect(drawn).to_be_visible(timeout=PICTURE_LIMIT_MS)
-    expect(page.locator(".leaf").first).to_be_visible()
-    return page
-
-
-def in_motion(page: Page, name: str) -> None:
-    """Start the transfer, take a picture while both arms move, wait for its end, put the parts back."""
-    page.get_by_role("button", name="Start").click()
-    expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=60_000)
-    expect(page.get_by_role("log")).to_contain_text("ended with reached", timeout=60_000)
-    picture(page, name)
-    expect(page.locator(".page-head .badge")).not_to_have_text("running", timeout=120_000)
-    page.get_by_role("button", name="Reset parts").click(timeout=PICTURE_LIMIT_MS)
-    expect(page.get_by_text("Parts are back")).to_be_visible(timeout=60_000)
+    page.goto(login.partition("/login")[0] + picture.address)
+    picture.prepare(page)
+    OUT.mkdir(parents=True, exist_ok=True)
+    file = OUT / f"{picture.name}-{scheme}.png"
+    page.screenshot(path=file, timeout=LIMIT_MS)
+    print(file.relative_to(ROOT), flush=True)
+    page.close()
 
 
 def main() -> None:
-    """Make all pictures."""
+    """Make the pictures that are named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(each.name for each in PICTURES))
+    wanted = [each for each in PICTURES if each.name in (parser.parse_args().names or [p.name for p in PICTURES])]
     program = os.environ.get("FLEXCELL_CHROMIUM") or next(filter(None, map(shutil.which, BROWSERS)), None)
-    with served() as login, sync_playwright() as playwright:
+    schemes: tuple[Scheme, ...] = ("light", "dark")
+    with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        schemes: tuple[Scheme, ...] = ("light", "dark")
-        for scheme in schemes:
-            page = visit(browser, login, scheme)
-            in_motion(page, f"dashboard-{scheme}")
-            page.goto(login.partition("/login")[0] + "/")
-            expect(page.get_by_role("table")).to_be_visible()
-            page.wait_for_timeout(4000)
-            picture(page, f"cell-{scheme}")
-            page.close()
+        for picture in wanted:
+            for scheme in schemes:
+                # A cell of its own for each: what one leaves behind is not in the next.
+                with served(picture.cell) as login:
+                    take(browser, login, picture, scheme)
         browser.close()
 
 

@@ -10,16 +10,30 @@ from contextlib import asynccontextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from fastapi import FastAPI, HTTPException, Request
+from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp
 
 from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
-from editor_web.routes import behaviors, breakpoints, bus, cell, control, halt, live, page, runs, session
+from editor_web.routes import (
+    behaviors,
+    breakpoints,
+    bus,
+    catalogue,
+    cell,
+    control,
+    documents,
+    halt,
+    live,
+    page,
+    runs,
+    session,
+)
 from editor_web.routes.services import Services
 from editor_web.security import Gate
 from editor_web.wire import AskBody, ErrorBody, QuestionBody
@@ -73,7 +87,7 @@ def api() -> FastAPI:
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
     )
-    for module in (session, breakpoints, behaviors, runs, control, halt, bus, live, cell, page):
+    for module in (session, breakpoints, behaviors, documents, catalogue, runs, control, halt, bus, live, cell, page):
         app.include_router(module.router)
     app.include_router(control.interrupted_router)
     app.add_exception_handler(FlexcellError, _refused)
@@ -94,17 +108,19 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     services: Services = app.state.services
     services.hub.open()
     await services.hub.robots.open()
+    services.hub.documents.open()
     view = services.cell_view
     if view is not None:
         await asyncio.to_thread(view.open)
-        view.subscribe()
+        await view.subscribe()
     try:
         yield
     finally:
+        await services.hub.documents.close()
         services.hub.robots.close()
         services.hub.close()
         if view is not None:
-            view.unsubscribe()
+            await view.unsubscribe()
             await asyncio.to_thread(view.close)
 
 

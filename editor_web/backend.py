@@ -12,6 +12,7 @@ from typing import Protocol
 from editor_web.operation import Operation
 from engine.bus.access import BusAccess
 from engine.control import ControlView
+from engine.editing import Documents
 from engine.event import Event
 from engine.launch import Moment
 from engine.supervision import Supervision
@@ -258,6 +259,11 @@ class Backend(Operation, Protocol):
     @property
     def cell_name(self) -> str:
         """Name of the connected cell, for the title; may be empty."""
+        ...
+
+    @property
+    def documents(self) -> Documents:
+        """The behaviors of the project as files to be edited."""
         ...
 
     @property

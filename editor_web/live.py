@@ -16,7 +16,8 @@ from collections.abc import Callable
 from editor_web.backend import Backend, RunSummary, Unsubscribe
 from editor_web.event_words import LogLine
 from editor_web.live_control import ControlLive, control_live, waits_for
-from editor_web.live_frames import Delta, RunLine, Snapshot
+from editor_web.live_documents import DocumentWatch
+from editor_web.live_frames import Delta, DocumentsChanged, RunLine, Snapshot
 from editor_web.live_robots import RobotBoard
 from editor_web.live_run import LOG_LINES, Change, LiveRun, NodeLive
 from engine.errors import FlexcellError
@@ -38,6 +39,7 @@ class LiveClient:
         self._dropped = 0
         self._runs: dict[str, None] = {}
         self._robots: dict[str, None] = {}
+        self._documents: dict[str, str | None] = {}
         self.dirty = asyncio.Event()
         self.dirty.set()
 
@@ -70,6 +72,11 @@ class LiveClient:
         self._robots[name] = None
         self.dirty.set()
 
+    def note_documents(self, changed: dict[str, str | None]) -> None:
+        """Mark documents that have changed on disk."""
+        self._documents |= changed
+        self.dirty.set()
+
     def refresh(self, live: LiveRun) -> None:
         """Mark a run that was rebuilt as a whole."""
         self._runs[live.run_id] = None
@@ -77,8 +84,12 @@ class LiveClient:
         if self._watched is not None and live.run_id == self._watched.run_id:
             self.watch(live.run_id)
 
-    def frame(self) -> Snapshot | Delta | None:
+    def frame(self) -> Snapshot | Delta | DocumentsChanged | None:
         """Take what is due as one frame; None when nothing is."""
+        if self._documents and not self._snapshot_due:
+            # The rest is still due.
+            told, self._documents = self._documents, {}
+            return DocumentsChanged(changed=told)
         self.dirty.clear()
         if self._snapshot_due:
             made: Snapshot | Delta | None = self._snapshot()
@@ -88,6 +99,8 @@ class LiveClient:
             made = None
         self._snapshot_due = False
         self._nodes, self._log, self._dropped, self._robots = {}, deque(), 0, {}
+        if self._documents:
+            self.dirty.set()
         # The engine tells the end of a run before it has filed it; such a run is looked at again.
         self._runs = {run_id: None for run_id in self._runs if not self._hub.is_settled(run_id)}
         if self._runs:
@@ -143,6 +156,9 @@ class LiveHub:
         self._clients: set[LiveClient] = set()
         self._unsubscribe: Unsubscribe | None = None
         self.robots = RobotBoard(backend, changed=self._on_robot)
+        self.documents = DocumentWatch(
+            backend.documents, changed=self._on_documents, wanted=lambda: bool(self._clients)
+        )
 
     @property
     def clients(self) -> tuple[LiveClient, ...]:
@@ -217,6 +233,10 @@ class LiveHub:
     def _on_robot(self, name: str) -> None:
         for client in self._clients:
             client.note_robot(name)
+
+    def _on_documents(self, changed: dict[str, str | None]) -> None:
+        for client in self._clients:
+            client.note_documents(changed)
 
     def _recorded(self, run_id: str) -> list[Event]:
         try:

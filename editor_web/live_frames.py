@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from editor_web.cell_view import Group
 from editor_web.event_words import LogLine
 from editor_web.live_control import ControlLive
 from editor_web.live_robots import RobotLine
@@ -72,6 +73,12 @@ class Delta(msgspec.Struct, frozen=True, kw_only=True, tag="delta", tag_field="k
     robots: dict[str, RobotLine]
 
 
+class DocumentsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="documents", tag_field="k"):
+    """Documents that have changed on disk, by id: their hash now, null where they are gone."""
+
+    changed: dict[str, str | None]
+
+
 class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
     """Nothing happened; the connection lives."""
 
@@ -90,9 +97,16 @@ class Operate(msgspec.Struct, frozen=True, kw_only=True, tag="operate", tag_fiel
     run: str = ""
 
 
+class Show(msgspec.Struct, frozen=True, kw_only=True, tag="show", tag_field="k"):
+    """From the client: the 3D view under `/cell/<page>/` shows these groups from now on, and no others."""
+
+    page: str
+    groups: tuple[Group, ...]
+
+
 class Pong(msgspec.Struct, frozen=True, kw_only=True, tag="pong", tag_field="k"):
     """From the client: answer to a ping."""
 
 
-Frame = Hello | Snapshot | Delta | Ping
-Request = Watch | Operate | Pong
+Frame = Hello | Snapshot | Delta | DocumentsChanged | Ping
+Request = Watch | Operate | Show | Pong

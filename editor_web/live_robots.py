@@ -1,19 +1,39 @@
-"""The arms of the cell as the page's strip shows them, folded from `<arm>/status` and `<arm>/speed_override`."""
+"""The arms of the cell as the page's strip shows them, folded from status, speed override and planned path."""
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Callable
+from itertools import pairwise
 
 import msgspec
 
 from editor_web.backend import Backend, Unsubscribe
 from engine.skills.arm_control import ArmStatus, SpeedOverride
+from engine.skills.planning import PathPreview
 
-_STATUS, _SPEED = "/status", "/speed_override"
+# In this order: what an arm is comes before what it plans.
+_KINDS = (ArmStatus.__name__, SpeedOverride.__name__, PathPreview.__name__)
+
+
+class WayLine(msgspec.Struct, frozen=True, kw_only=True):
+    """The planned way of an arm: `proposed`, `moving` or `blocked`, by what, and since when (of the server's clock).
+
+    `length_m` is that of the tool's path.
+    """
+
+    state: str
+    reason: str
+    length_m: float
+    since_s: float
 
 
 class RobotLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at."""
+    """One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at.
+
+    `way` is the way that is planned for it, which the 3D view shows.
+    """
 
     name: str
     mode: str
@@ -21,6 +41,7 @@ class RobotLine(msgspec.Struct, frozen=True, kw_only=True):
     error: str
     speed_override: float
     controller: str
+    way: WayLine | None = None
 
 
 class RobotBoard:
@@ -29,23 +50,23 @@ class RobotBoard:
     Args:
         backend: Where the topics are.
         changed: Told the name of an arm whose line is another now.
+        unix_s: The server's clock.
     """
 
-    def __init__(self, backend: Backend, *, changed: Callable[[str], None]) -> None:
+    def __init__(
+        self, backend: Backend, *, changed: Callable[[str], None], unix_s: Callable[[], float] = time.time
+    ) -> None:
         self._backend = backend
         self._changed = changed
+        self._unix_s = unix_s
         self._unsubscribe: list[Unsubscribe] = []
         self.lines: dict[str, RobotLine] = {}
 
     async def open(self) -> None:
         """Follow every arm that is on the bus now."""
-        for entry in await self._backend.bus.listing():
-            if entry.kind != "topic":
-                continue
-            if entry.type == ArmStatus.__name__ and entry.name.endswith(_STATUS):
-                self._follow(entry.name, entry.name.removesuffix(_STATUS))
-            elif entry.type == SpeedOverride.__name__ and entry.name.endswith(_SPEED):
-                self._follow(entry.name, entry.name.removesuffix(_SPEED))
+        entries = [each for each in await self._backend.bus.listing() if each.kind == "topic" and each.type in _KINDS]
+        for entry in sorted(entries, key=lambda each: _KINDS.index(each.type)):
+            self._follow(entry.name, entry.name.rpartition("/")[0])
 
     def close(self) -> None:
         """Follow them no more."""
@@ -67,11 +88,25 @@ class RobotBoard:
                     error=message.error,
                     speed_override=message.settings.speed_override,
                     controller=message.settings.controller,
+                    way=known.way if known is not None else None,
                 )
             case SpeedOverride() if known is not None:
                 line = msgspec.structs.replace(known, speed_override=message.share)
+            case PathPreview() if known is not None:
+                line = msgspec.structs.replace(known, way=self._way(known.way, message))
             case _:
                 return
         if line != known:
             self.lines[arm] = line
             self._changed(arm)
+
+    def _way(self, known: WayLine | None, preview: PathPreview) -> WayLine | None:
+        if preview.state == "none":
+            return None
+        has_lasted = known is not None and known.state == preview.state
+        return WayLine(
+            state=preview.state,
+            reason=preview.reason,
+            length_m=sum(math.dist(here, there) for here, there in pairwise(preview.tool_path)),
+            since_s=known.since_s if known is not None and has_lasted else self._unix_s(),
+        )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
+from itertools import pairwise
 
 import msgspec
 
@@ -15,6 +17,7 @@ from engine.event import (
     Exited,
     GatePassed,
     GateReached,
+    GoalFinished,
     OperatorChanged,
     RunEnded,
     RunStarted,
@@ -22,10 +25,21 @@ from engine.event import (
     StopRequested,
     Transitioned,
 )
+from engine.skills.planning import PlannedMotion
 
 LOG_LINES = 1000
 # After these the list of runs may have another word on what the run waits for.
 _TURNS = (RunStarted, StopRequested, RunEnded, Commanded, GateReached, GatePassed, OperatorChanged)
+
+
+class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
+    """A way that a node has planned: for which arm, how long it takes and is, who found it, and in what time."""
+
+    robot: str
+    duration_s: float
+    length_m: float
+    found_by: str
+    planning_s: float
 
 
 class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -33,7 +47,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
 
     `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the
     run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine
-    took last, as `source|outcome`.
+    took last, as `source|outcome`. `plan` is the way that this visit has planned last.
     """
 
     status: str = "idle"
@@ -43,6 +57,7 @@ class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
     duration_s: float = 0.0
     cause: str = ""
     followed: str = ""
+    plan: PlanLive | None = None
 
 
 class Change(msgspec.Struct, frozen=True, kw_only=True):
@@ -96,6 +111,8 @@ class LiveRun:
         if isinstance(event, Transitioned):
             node = self.nodes.get(event.path, NodeLive())
             return {event.path: msgspec.structs.replace(node, followed=f"{event.source}|{event.outcome}")}
+        if isinstance(event, GoalFinished):
+            return self._planned(event)
         if isinstance(event, StatusChanged):
             return {event.path: self._status_changed(event)}
         if isinstance(event, Diverted):
@@ -120,6 +137,21 @@ class LiveRun:
         }
         changed[event.path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
         return changed
+
+    def _planned(self, event: GoalFinished) -> dict[str, NodeLive]:
+        """A finished goal matters to its node only where its result is a way."""
+        try:
+            plan = msgspec.convert(event.result, PlannedMotion)
+        except msgspec.ValidationError:
+            return {}
+        line = PlanLive(
+            robot=plan.robot,
+            duration_s=plan.duration_s,
+            length_m=sum(math.dist(here, there) for here, there in pairwise(plan.tool_path)),
+            found_by=plan.found_by,
+            planning_s=plan.planning_s,
+        )
+        return {event.path: msgspec.structs.replace(self.nodes.get(event.path, NodeLive()), plan=line)}
 
     def _status_changed(self, event: StatusChanged) -> NodeLive:
         """A composite or decorator of a behavior tree has no visits of its own."""

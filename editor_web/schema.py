@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import msgspec
 
 from editor_web.app import api
-from editor_web.live_frames import Delta, Hello, Operate, Ping, Pong, Snapshot, Watch
+from editor_web.live_frames import Delta, DocumentsChanged, Hello, Operate, Ping, Pong, Show, Snapshot, Watch
+from engine.document.parameter import any_value
+from engine.editing import AnyEdit
 
 HERE = Path(__file__).parent
 OPENAPI = HERE / "openapi.json"
@@ -34,10 +36,11 @@ def openapi() -> str:
 
 def typescript() -> str:
     """Return the TypeScript types of all HTTP bodies and websocket frames."""
-    schemas = {**_http_schemas(), **_live_schemas()}
+    schemas = {**_http_schemas(), **_live_schemas(), **_edit_schemas()}
     parts = ["// Made by `python -m editor_web.schema`; edit the Python models instead.\n"]
     parts += [_interface(name, schemas[name]) for name in sorted(schemas)]
-    parts.append("export type Frame = Hello | Snapshot | Delta | Ping\n")
+    parts.append("export type Frame = Hello | Snapshot | Delta | DocumentsChanged | Ping\n")
+    parts.append(f"export type Edit = {' | '.join(_EDITS)}\n")
     return "\n".join(parts)
 
 
@@ -48,7 +51,15 @@ def _http_schemas() -> dict[str, Schema]:
 
 def _live_schemas() -> dict[str, Schema]:
     _, components = msgspec.json.schema_components(
-        [Hello, Snapshot, Delta, Ping, Pong, Watch, Operate], ref_template="#/components/schemas/{name}"
+        [Hello, Snapshot, Delta, DocumentsChanged, Ping, Pong, Watch, Operate, Show],
+        ref_template="#/components/schemas/{name}",
+    )
+    return dict(components)
+
+
+def _edit_schemas() -> dict[str, Schema]:
+    _, components = msgspec.json.schema_components(
+        [AnyEdit], schema_hook=any_value, ref_template="#/components/schemas/{name}"
     )
     return dict(components)
 
@@ -68,7 +79,11 @@ def _interface(name: str, schema: Schema) -> str:
     return "\n".join(lines)
 
 
+_EDITS = tuple(str(each.__name__) for each in get_args(AnyEdit))
 _SENT = {
+    *_EDITS,
+    "Edge",
+    "NewDocumentBody",
     "BreakpointBody",
     "MomentBody",
     "Operate",

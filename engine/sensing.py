@@ -20,7 +20,8 @@ class DepthImage(Message, frozen=True, kw_only=True):
     """One image of a depth camera, published on `<camera>/depth`.
 
     `pose` is that of the optical frame in the world when the image was taken: x to the right, y down, z into
-    the scene. `depth_m` are float32 distances along z by rows, top row first; 0 where nothing was measured.
+    the scene. `depth_m` are float32 distances along z by rows, top row first; 0 where nothing was measured,
+    infinity where it was measured that nothing is there as far as the camera can see (as in ROS, REP 117).
     """
 
     time_s: float
@@ -45,3 +46,33 @@ class OccupancyGrid(Message, frozen=True, kw_only=True):
     voxel_m: float
     shape: tuple[int, int, int]
     occupied: bytes
+
+
+class CameraInfo(Message, frozen=True, kw_only=True):
+    """What a depth camera is, the latest value of `<camera>/camera_info`; `pose` is that of its optical frame.
+
+    The images themselves may be smaller, and carry their own intrinsics.
+    """
+
+    camera: str
+    intrinsics: CameraIntrinsics
+    pose: Pose
+    rate_hz: float
+    range_m: tuple[float, float]
+
+
+class OccupancyState(Message, frozen=True, kw_only=True):
+    """Whether `cell/occupancy` can be relied on, the latest value of `cell/occupancy_state`.
+
+    `stale_reason` says why not, and is empty while it can. `made` says how the depth images are made. `looks`
+    counts the images' moments since the cell was opened, `dropped` those left out because the one before was
+    still being mapped. `image_s` and `mapping_s` are how long the newest images took to make and to map.
+    """
+
+    stale_reason: str
+    made: str
+    revision: int
+    looks: int
+    dropped: int
+    image_s: float
+    mapping_s: float

@@ -16,6 +16,7 @@ from engine.cause import describe
 from engine.cell import OpenCell
 from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
 from engine.document.faults import Faults
+from engine.editing import Documents
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.faults import FaultPort
@@ -58,6 +59,7 @@ class Session:
     def __init__(self, cell: OpenCell, *, project: Path, catalogue: Catalogue, journal: Journal) -> None:
         self.cell = cell
         self._library = Library(project, catalogue)
+        self.documents = Documents(project, catalogue)
         self._journal = journal
         self._runs: dict[str, SessionRun] = {}
         self._callbacks: tuple[EventCallback, ...] = ()

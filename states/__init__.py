@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 from engine.state import State
 from states.cell.expect_part import ExpectPart
+from states.cell.reach import Reach
+from states.cell.withdraw import Withdraw
 from states.flow.decide import Decide
 from states.flow.log import Log
 from states.flow.set_value import SetValue
@@ -22,14 +24,19 @@ from states.io.set_output import SetOutput
 from states.magnet.check_held import CheckHeld as MagnetCheckHeld
 from states.magnet.off import Off as MagnetOff
 from states.magnet.on import On as MagnetOn
+from states.manipulation.pick_part import PickPart
+from states.manipulation.place_part import PlacePart
 from states.motion.cart_dmp import FollowCartDmp
+from states.motion.execute_plan import ExecutePlan
 from states.motion.guide import Guide
 from states.motion.joint_dmp import FollowJointDmp
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
+from states.motion.move_free import MoveFree
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
 from states.motion.move_pose import MovePose
 from states.motion.move_until_contact import MoveUntilContact
+from states.motion.plan_motion import PlanMotion
 from states.motion.press_along_dmp import PressAlongDmp
 from states.motion.recover import Recover
 from states.motion.set_collision import SetCollision
@@ -38,15 +45,28 @@ from states.motion.set_impedance import SetImpedance
 from states.motion.set_load import SetLoad
 from states.motion.set_speed import SetSpeed
 from states.motion.set_tool_frame import SetToolFrame
+from states.scene.allow_contact import AllowContact
+from states.scene.attach import Attach
+from states.scene.check import Check
+from states.scene.detach import Detach
+from states.scene.forget_occupancy import ForgetOccupancy
+from states.scene.put_obstacle import PutObstacle
+from states.scene.remove_obstacle import RemoveObstacle
 from states.store.read_entry import ReadEntry
 from states.store.write_entry import WriteEntry
 
 _STATES: tuple[type[State], ...] = (
+    AllowContact,
+    Attach,
+    Check,
     CheckHeld,
     Decide,
+    Detach,
+    ExecutePlan,
     ExpectPart,
     FollowCartDmp,
     FollowJointDmp,
+    ForgetOccupancy,
     Grasp,
     Guide,
     HandCheckHeld,
@@ -59,14 +79,21 @@ _STATES: tuple[type[State], ...] = (
     MagnetOff,
     MagnetOn,
     Move,
+    MoveFree,
     MoveJoints,
     MoveLinear,
     MovePose,
     MoveUntilContact,
     Open,
+    PickPart,
+    PlacePart,
+    PlanMotion,
     PressAlongDmp,
+    PutObstacle,
+    Reach,
     ReadEntry,
     Recover,
+    RemoveObstacle,
     SetCollision,
     SetController,
     SetImpedance,
@@ -76,6 +103,7 @@ _STATES: tuple[type[State], ...] = (
     SetToolFrame,
     SetValue,
     Wait,
+    Withdraw,
     WriteEntry,
 )
 

@@ -7,8 +7,13 @@ import inspect
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 from engine.clock import run_virtual
+
+# How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
+settings.register_profile("flexcell", deadline=None)
+settings.load_profile("flexcell")
 
 
 def pytest_configure(config: pytest.Config) -> None:

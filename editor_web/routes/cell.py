@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
@@ -14,13 +15,15 @@ from starlette.websockets import WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-from editor_web.cell_view import KEY_HEADER, CellView, page
+from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, page
 from editor_web.routes.services import ServicesOf, services_of
 
 router = APIRouter(include_in_schema=False)
 # As viser's own limit: its render answers are large.
 MAX_MESSAGE_BYTES = 50 * 1024 * 1024
 UNAVAILABLE = 1013
+# What a page calls itself; it goes into a header.
+_PAGE = re.compile(r"[0-9a-z]{1,40}")
 
 
 class _Closed(Exception):
@@ -28,8 +31,11 @@ class _Closed(Exception):
 
 
 @router.get("/cell/")
-async def cell_page(services: ServicesOf) -> Response:
-    """Serve the one-file page of the 3D view."""
+@router.get("/cell/{name}/")
+async def cell_page(services: ServicesOf, name: str = "") -> Response:
+    """Serve the one-file page of the 3D view; `name` is that of the page around it, which says what it shows."""
+    if name and not _PAGE.fullmatch(name):
+        raise HTTPException(404, "no such page")
     if services.cell_view is None:
         raise HTTPException(404, "this server has no cell view")
     return HTMLResponse(await run_in_threadpool(page))
@@ -37,14 +43,16 @@ async def cell_page(services: ServicesOf) -> Response:
 
 @router.websocket("/cell/")
 @router.websocket("/cell")
-async def cell_socket(socket: WebSocket) -> None:
+@router.websocket("/cell/{name}/")
+@router.websocket("/cell/{name}")
+async def cell_socket(socket: WebSocket, name: str = "") -> None:
     """Pass the 3D view's websocket through to viser and back."""
     view = services_of(socket).cell_view
-    if view is None:
-        await socket.close(UNAVAILABLE, "this server has no cell view")
+    if view is None or (name and not _PAGE.fullmatch(name)):
+        await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     try:
-        async with _viser(view, socket.scope.get("subprotocols", [])) as inner:
+        async with _viser(view, socket.scope.get("subprotocols", []), name=name) as inner:
             await socket.accept(subprotocol=inner.subprotocol)
             async with asyncio.TaskGroup() as tasks:
                 tasks.create_task(_inwards(socket, inner), name="cell-inwards")
@@ -54,11 +62,13 @@ async def cell_socket(socket: WebSocket) -> None:
 
 
 @asynccontextmanager
-async def _viser(view: CellView, offered: list[str]) -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
+async def _viser(
+    view: CellView, offered: list[str], *, name: str
+) -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
     connection = await websockets.asyncio.client.connect(
         f"ws://127.0.0.1:{view.port}/",
         subprotocols=[Subprotocol(p) for p in offered if p.startswith("viser-v")],
-        additional_headers={KEY_HEADER: view.key},
+        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: name},
         max_size=MAX_MESSAGE_BYTES,
         compression=None,
         proxy=None,

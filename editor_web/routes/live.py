@@ -11,8 +11,9 @@ from fastapi import APIRouter, WebSocket
 from starlette.websockets import WebSocketDisconnect
 
 from editor_web.access import OPERATOR
+from editor_web.cell_view import CellView
 from editor_web.live import LiveClient
-from editor_web.live_frames import PROTOCOL_VERSION, Frame, Hello, Operate, Ping, Request, Watch
+from editor_web.live_frames import PROTOCOL_VERSION, Frame, Hello, Operate, Ping, Request, Show, Watch
 from editor_web.operation import Attached, Operation
 from editor_web.routes.services import role_of, services_of
 from engine.errors import FlexcellError
@@ -42,7 +43,7 @@ async def live(socket: WebSocket) -> None:
     try:
         await _send(socket, hello)
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, client, operator), name="live-receive")
+            tasks.create_task(_receive(socket, client, operator, services.cell_view), name="live-receive")
             tasks.create_task(_stream(socket, client), name="live-stream")
     except* _Closed:
         pass
@@ -79,7 +80,7 @@ class _Operator:
             self._attached = None
 
 
-async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator) -> None:
+async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, view: CellView | None) -> None:
     while True:
         try:
             request = _decoder.decode(await socket.receive_text())
@@ -93,6 +94,9 @@ async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator) -
                 client.watch(request.run)
             case Operate():
                 operator.operate(request.run)
+            case Show():
+                if view is not None:
+                    view.show(request.page, frozenset(request.groups))
             case _:
                 pass
 

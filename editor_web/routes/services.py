@@ -13,6 +13,7 @@ from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
+from engine.editing import Documents
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +27,11 @@ class Services:
     cell_view: CellView | None
     static: Path
     port: int
+
+    @property
+    def documents(self) -> Documents:
+        """The behaviors of the project as files to be edited."""
+        return self.backend.documents
 
 
 def services_of(connection: HTTPConnection) -> Services:

@@ -17,7 +17,7 @@ from engine.errors import Position
 
 
 class BehaviorDocument(Strict, frozen=True, kw_only=True):
-    """A behavior as written. `view` holds canvas positions by node path and has no meaning."""
+    """A behavior as written. `view` (canvas positions) and `notes`, by node path, have no meaning."""
 
     flexcell: Literal[1]
     name: Annotated[str, Meta(min_length=1, max_length=128, description="What people call it")]
@@ -29,6 +29,7 @@ class BehaviorDocument(Strict, frozen=True, kw_only=True):
     cell: Annotated[str, Meta(min_length=1, description="The cell it runs in, relative to this document")] | None = None
     root: Node
     view: dict[str, tuple[float, float]] = {}
+    notes: dict[str, str] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +39,7 @@ class Behavior:
     document: BehaviorDocument
     file: Path
     meaning: str
-    """SHA-256 of what the document and its references mean: without `view`, comments, formatting."""
+    """SHA-256 of what the document and its references mean: without `view`, `notes`, comments, formatting."""
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
     source: Source = field(repr=False)

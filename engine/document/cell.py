@@ -6,6 +6,7 @@ Lengths are metres, angles radians, masses kilograms. Paths are relative to the 
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -189,6 +190,7 @@ def load_cell(path: Path | str) -> Cell:
     _require_sizes(document, source)
     _require_drivers(document, source)
     _require_world(document, source)
+    _require_people(document, source)
     return Cell(document=document, file=file, source=source)
 
 
@@ -260,4 +262,34 @@ def _require_world(document: CellDocument, source: Source) -> None:
                 f"robot `{name}` is simulated, and the cell has no world",
                 where=source.position(("robots", name), of_key=True),
                 hint="add `world: {kind: mujoco}`",
+            )
+
+
+def _require_people(document: CellDocument, source: Source) -> None:
+    taken = {
+        **dict.fromkeys(document.parts, "part"),
+        **dict.fromkeys(document.fixtures, "fixture"),
+        **dict.fromkeys(document.robots, "robot"),
+    }
+    for name, person in document.people.items():
+        path: DataPath = ("people", name)
+        if document.world is None:
+            raise DocumentError(
+                f"person `{name}` is simulated, and the cell has no world",
+                where=source.position(path, of_key=True),
+                hint="add `world: {kind: mujoco}`",
+            )
+        if name in taken:
+            raise DocumentError(
+                f"`{name}` is a person and a {taken[name]}",
+                where=source.position(path, of_key=True),
+                hint="rename one",
+            )
+        least_m, greatest_m = person.reach_m
+        away_m = math.dist(person.shoulder, person.hand_rests)
+        if not least_m <= away_m <= greatest_m:
+            raise DocumentError(
+                f"the hand of person `{name}` cannot rest {away_m:.3f} m from the shoulder",
+                where=source.position((*path, "hand_rests")),
+                hint=f"it reaches {least_m:.3f} to {greatest_m:.3f} m",
             )

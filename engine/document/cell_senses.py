@@ -48,10 +48,16 @@ class OccupancyMap(Strict, frozen=True, kw_only=True):
     known_margin_m: Offset = 0.03
 
 
+def arm_reach_m(upper_arm_m: float, forearm_m: float, radius_m: float) -> tuple[float, float]:
+    """Return the least and the greatest distance of a hand from the shoulder; the hand stays out of the shoulder."""
+    return max(abs(upper_arm_m - forearm_m), radius_m), upper_arm_m + forearm_m
+
+
 class Person(Strict, frozen=True, kw_only=True):
     """A person of a simulated cell, of whom one arm is there: it reaches from `shoulder` and rests at `hand_rests`.
 
     The arm is two capsules and a ball, of the lengths and radii of an adult's; it is moved, nothing stops it.
+    `forearm_m` ends in the middle of the hand, which is what `hand_rests` and reaches are about.
     """
 
     shoulder: Vector3
@@ -60,3 +66,8 @@ class Person(Strict, frozen=True, kw_only=True):
     forearm_m: Length = 0.36
     radius_m: Length = 0.05
     color: Color = "#d9a066"
+
+    @property
+    def reach_m(self) -> tuple[float, float]:
+        """Least and greatest distance of the hand from the shoulder."""
+        return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)

@@ -1,4 +1,4 @@
-"""What a behavior document means, as one hash: formatting, comments and canvas positions do not count."""
+"""What a behavior document means, as one hash: formatting, comments, canvas positions and notes do not count."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ def meaning_hash(document: BehaviorDocument, references: Mapping[str, str]) -> s
     """Return the SHA-256 of a document's meaning.
 
     Args:
-        document: The behavior. Its `view` is left out; the order of nodes and parameters counts.
+        document: The behavior. Its `view` and `notes` are left out; the order of nodes and parameters counts.
         references: The hashes of the behaviors it refers to, by the path as written.
     """
     order = [list(document.parameters), *(list(node.children) for _, node in walk("root", document.root))]
     digest = hashlib.sha256()
-    for part in (msgspec.structs.replace(document, view={}), order, references):
+    for part in (msgspec.structs.replace(document, view={}, notes={}), order, references):
         digest.update(msgspec.json.encode(part, order="sorted"))
         digest.update(b"\n")
     return digest.hexdigest()

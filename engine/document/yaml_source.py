@@ -36,7 +36,7 @@ _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("false", "False", "FALSE"), False),
 }
 _UNREADABLE = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
-_SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
+SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
 
 
 @dataclass(slots=True)
@@ -110,7 +110,7 @@ def parse_source(content: bytes | str, *, file: str) -> Source:
         shown = f"U+{ord(unreadable.group()):04X}"
         _refuse(file, line, column, f"the character {shown} is not allowed in a document", "remove or escape it")
     if file.endswith(".json"):
-        text = _SURROGATE_PAIR.sub(_one_code_point, text)
+        text = SURROGATE_PAIR.sub(one_code_point, text)
     return _read_events(text, file)
 
 
@@ -129,7 +129,7 @@ def _decode(content: bytes, file: str) -> str:
         raise DocumentError(f"byte 0x{byte:02x} is not UTF-8", where=position, hint="save it as UTF-8") from error
 
 
-def _one_code_point(pair: re.Match[str]) -> str:
+def one_code_point(pair: re.Match[str]) -> str:
     """Join the two halves in which JSON writes a character that YAML writes with one escape."""
     backslashes, high, low = pair.groups()
     code = 0x10000 + ((int(high, 16) - 0xD800) << 10) + (int(low, 16) - 0xDC00)

@@ -40,6 +40,8 @@ MAX_CHUNK = 256 * 2**20
 
 _FRAME = 9  # opcode and length before the content of every record
 _FOOTER = _FRAME + 20
+_DATA_END = _FRAME + 4
+_PIECE = 2**20
 _MAGIC = len(MCAP0_MAGIC)
 _KINDS: Mapping[int, Callable[[ReadDataStream], McapRecord]] = {
     Opcode.SCHEMA: Schema.read,
@@ -150,7 +152,30 @@ def _index_start(stream: BinaryIO, size: int) -> int | None:
     checked = stream.read(size - _MAGIC - footer.summary_start)[:-4]
     if footer.summary_crc and zlib.crc32(checked) != footer.summary_crc:
         raise ValueError("the checksum of its index is wrong")
+    _verify_data(stream, footer.summary_start - _DATA_END)
     return footer.summary_start
+
+
+def _verify_data(stream: BinaryIO, end: int) -> None:
+    """Raise ValueError where what lies before the record at `end`, which has its checksum, is not what was written."""
+    if end < _MAGIC:
+        raise ValueError("its index begins before its data")
+    stream.seek(end)
+    record = stream.read(_DATA_END)
+    if record[0] != Opcode.DATA_END:
+        raise ValueError("its data has no end")
+    wanted = int.from_bytes(record[_FRAME:], "little")
+    if wanted == 0:
+        # Nobody made one.
+        return
+    stream.seek(0)
+    found = 0
+    while end > 0:
+        piece = stream.read(min(end, _PIECE))
+        found = zlib.crc32(piece, found)
+        end -= len(piece)
+    if found != wanted:
+        raise ValueError("the checksum of its data is wrong")
 
 
 def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:

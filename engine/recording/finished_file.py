@@ -37,7 +37,8 @@ def finish(part: Path, target: Path) -> None:
     fresh = target.with_name(f".{target.name}.new")
     try:
         with open_records(part) as records, fresh.open("wb") as stream:
-            _copy(records, Writer(stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD))
+            writer = Writer(stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
+            _copy(records, writer)
         os.replace(fresh, target)
         part.unlink()
     except OSError as error:

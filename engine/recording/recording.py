@@ -61,11 +61,16 @@ def load_recording(path: Path) -> Recording:
     documents = Documents(
         behavior=description.behavior_file, cell=description.cell_file, texts=dict(content.attachments)
     )
+    events = tuple(_events(content, file))
+    if content.complete and not events:
+        raise RecordingError(
+            "the events of the run are missing", where=file, hint="it is damaged; record the run again"
+        )
     return Recording(
         path=file,
         description=description,
         documents=documents,
-        events=tuple(_events(content, file)),
+        events=events,
     )
 
 

@@ -16,6 +16,8 @@ HandSpeed = Annotated[
     float, msgspec.Meta(gt=0.0, le=3.0, description="Speed of the hand", extra_json_schema={"unit": "m/s"})
 ]
 
+StayTime = Annotated[float, msgspec.Meta(ge=0.0, le=3600.0, extra_json_schema={"unit": "s"})]
+
 
 class PersonReaching(Message, frozen=True, kw_only=True):
     """Whose hand is on its way, where to and how long it takes to get there."""
@@ -28,14 +30,15 @@ class PersonReaching(Message, frozen=True, kw_only=True):
 class Reach(Service[PersonReaching], frozen=True, kw_only=True):
     """Let the hand of a person move to `hand_m` (world) on a straight line, from now on; replaces what it did.
 
-    It starts and ends at rest and is nowhere faster than `speed_m_s`. With `stay_s` it goes back to where the
-    person rests after that time, else it stays. A hand that cannot be reached by the arm's length is refused.
+    It ends at rest and is nowhere faster than `speed_m_s`; a hand that is on its way turns off it smoothly, and may
+    be faster only until it has slowed down. With `stay_s` it goes back to where the person rests after that time,
+    else it stays. A place that the arm does not reach is refused, and a way that leads through the own shoulder.
     """
 
     person: str
     hand_m: Vector3
     speed_m_s: HandSpeed = 0.8
-    stay_s: Annotated[float, msgspec.Meta(ge=0.0, le=3600.0)] | None = None
+    stay_s: StayTime | None = None
 
 
 class Withdraw(Service[PersonReaching], frozen=True, kw_only=True):
@@ -46,9 +49,11 @@ class Withdraw(Service[PersonReaching], frozen=True, kw_only=True):
 
 
 class ContactCount(Message, frozen=True, kw_only=True):
-    """How often two groups of bodies began to touch since the world was opened, how long they did, how hard at most.
+    """How often bodies of two groups began to touch since the world was opened, how long any did, how hard at most.
 
-    `pairs` are the names of those that touched.
+    Each pair of bodies counts for itself; a contact begins when two touch that did not one step of the physics
+    before. The force is that of a pair, over all its points. `pairs` are the names of those that touched. A run
+    that is resumed goes on counting.
     """
 
     contacts: int

@@ -119,7 +119,8 @@ class FreeMotionResult(Message, frozen=True, kw_only=True):
     """The measured configuration at the end, radians, and what it took to get there.
 
     `stops` counts how often the arm stopped before a predicted collision, `replans` how often it went on along
-    another way, `reused` how often along the old one because that was free again.
+    another way, `reused` how often along the old one because that was free again. A motion that was given up
+    because its way stayed blocked for longer than its patience says in `blocked` by what; else that is empty.
     """
 
     joints: tuple[float, ...]
@@ -128,6 +129,7 @@ class FreeMotionResult(Message, frozen=True, kw_only=True):
     replans: int
     reused: int
     waited_s: float
+    blocked: str = ""
 
 
 class Adaptation(Message, frozen=True, kw_only=True):
@@ -153,7 +155,11 @@ class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_
 
 
 class MoveFree(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_only=True):
-    """Find a way to `target` that touches nothing, and go it; see `Adaptation` for what happens on the way."""
+    """Find a way to `target` that touches nothing, and go it; see `Adaptation` for what happens on the way.
+
+    Rejected with the reason where there is none and none will be; where only somebody, or another arm, is in
+    every way, it is accepted and waits.
+    """
 
     target: MotionTarget
     options: PlanOptions = PlanOptions()

@@ -10,6 +10,9 @@ from engine.messages import Message, Pose
 from engine.shapes import AT_ORIGIN, Obstacle, Solid
 from engine.skill import Service
 
+FARTHEST_M = 1000.0
+"""The distance of what is not there: infinity could not be written down."""
+
 
 class HeldPart(Message, frozen=True, kw_only=True):
     """A part that moves along with a link of an arm, at `pose` in the frame of that link."""
@@ -60,8 +63,8 @@ class AllowContact(Service[PlanningSceneState], frozen=True, kw_only=True):
 class AttachPart(Service[PlanningSceneState], frozen=True, kw_only=True):
     """Let a part of the scene move with an arm from now on, from where it is relative to the tool.
 
-    It may touch the tool that holds it, and as long as it is held what it touched when it was attached may be
-    touched by it, as the table that a part is lifted from.
+    It may touch the tool that holds it, and what it touches at that moment, as the table that a part is lifted
+    from, until they have parted by 1 cm. One that another arm held goes over.
     """
 
     part: str
@@ -71,7 +74,10 @@ class AttachPart(Service[PlanningSceneState], frozen=True, kw_only=True):
 
 
 class DetachPart(Service[PlanningSceneState], frozen=True, kw_only=True):
-    """Let go of a part: it stays in the scene where it is. One that nobody holds is no error."""
+    """Let go of a part: it stays in the scene where it is. One that nobody holds is no error.
+
+    The links that are beside it then, as the fingers, may touch it until they have parted by 1 cm.
+    """
 
     part: str
 
@@ -90,7 +96,7 @@ class TouchingPair(Message, frozen=True, kw_only=True):
 class CollisionReport(Message, frozen=True, kw_only=True):
     """What an arm touches in a configuration, and the smallest distance of what it must not touch.
 
-    `nearest` are the two things at that distance; both empty and `distance_m` infinite in an empty scene.
+    `nearest` are the two things at that distance, `FARTHEST_M` at most; both empty in an empty scene.
     """
 
     touching: tuple[TouchingPair, ...]

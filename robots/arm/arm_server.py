@@ -17,6 +17,7 @@ from robots.arm.contact_motions import ContactMotions
 from robots.arm.direct_control import DirectControl
 from robots.arm.dmp_motions import DmpMotions
 from robots.arm.force_motions import ForceMotions
+from robots.arm.free_motions import FreeMotions
 from robots.arm.guiding import Guiding
 from robots.arm.inverse_motions import InverseMotions
 from robots.arm.jogging import Jogging
@@ -29,6 +30,7 @@ from robots.gripper.tool_server import ToolServer
 from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
 from robots.port import ArmPort, Tolerance
+from robots.workspace.workspace import Workspace
 
 
 class SkillGroup(Protocol):
@@ -51,6 +53,7 @@ class ArmServer:
         gripper: The gripper, hand or magnet on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
         tolerance: How closely the port must follow.
+        workspace: The space it shares with others; without one it has no collision-free motions.
     """
 
     def __init__(
@@ -64,6 +67,7 @@ class ArmServer:
         gripper: ToolServer | None = None,
         outputs: Outputs | None = None,
         tolerance: Tolerance | None = None,
+        workspace: Workspace | None = None,
     ) -> None:
         self._runner = runner = MotionRunner(
             name=name,
@@ -87,6 +91,7 @@ class ArmServer:
             ArmControl(runner, report),
             report,
             *((outputs,) if outputs is not None else ()),
+            *((FreeMotions(runner, workspace),) if workspace is not None else ()),
         )
 
     @property

@@ -16,7 +16,7 @@ from robots.model.robot_model import RobotModel
 from robots.planning.arm_shapes import ArmShapes, arm_shapes
 from robots.planning.coal_shapes import pin, rigid_of, shape_of
 from robots.planning.motion_bound import motion_bound
-from robots.planning.problem import FREE, SOLID_COLUMNS, Indices, Problem
+from robots.planning.problem import FREE, GRID_COLUMNS, SOLID_COLUMNS, Indices, Problem
 from robots.planning.sphere_fit import LinkSolid, covering_spheres
 from robots.port import Array
 
@@ -119,6 +119,8 @@ def bare_problem(arm: ArmSpheres, model: RobotModel) -> Problem:
         solids=np.empty((0, SOLID_COLUMNS)),
         planes=np.empty((0, 4)),
         solid_gap=np.empty((len(arm.links), 0)),
+        voxels=np.empty((0, 0, 0), dtype=np.float32),
+        voxel_grid=np.zeros(GRID_COLUMNS),
         orientation=FREE,
         upright=np.vstack((np.eye(3), (0.0, 0.0, 1.0))),
         tolerance=0.0,

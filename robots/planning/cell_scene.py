@@ -24,12 +24,9 @@ def planning_scene(cell: Scene, *, parts: Mapping[str, Pose] | None = None) -> P
     Raises:
         CellError: a body has a shape that there is not.
     """
-    lying = parts or {}
-    obstacles = [Obstacle(name=f.name, solids=_solids(f), pose=f.pose) for f in cell.fixtures]
-    obstacles += [Obstacle(name=p.name, solids=_solids(p), pose=lying.get(p.name, p.pose)) for p in cell.parts]
     scene = PlanningScene(
         arms=tuple(SceneArm(placement=arm) for arm in cell.arms),
-        obstacles=tuple(obstacles),
+        obstacles=known_obstacles(cell, parts=parts),
     )
     fixtures = {fixture.name for fixture in cell.fixtures}
     allowed: list[NamePair] = []
@@ -42,6 +39,18 @@ def planning_scene(cell: Scene, *, parts: Mapping[str, Pose] | None = None) -> P
     for a, b in allowed:
         scene = scene.with_allowed(a, b)
     return scene
+
+
+def known_obstacles(cell: Scene, *, parts: Mapping[str, Pose] | None = None) -> tuple[Obstacle, ...]:
+    """Return the fixtures and parts of a cell; parts lie where `parts` says, else where they begin.
+
+    Raises:
+        CellError: a body has a shape that there is not.
+    """
+    lying = parts or {}
+    obstacles = [Obstacle(name=f.name, solids=_solids(f), pose=f.pose) for f in cell.fixtures]
+    obstacles += [Obstacle(name=p.name, solids=_solids(p), pose=lying.get(p.name, p.pose)) for p in cell.parts]
+    return tuple(obstacles)
 
 
 def _solids(body: FixtureBody | PartBody) -> tuple[Solid, ...]:

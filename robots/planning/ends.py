@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.errors import RobotError
+from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from robots.model.inverse_kinematics import InverseKinematics, Match
 from robots.model.kinematics import ArmKinematics
@@ -14,8 +14,9 @@ from robots.model.rigid import Rigid
 from robots.planning.exact_checker import ExactChecker
 from robots.planning.fast_search import tilt_at, with_room_for
 from robots.planning.kernels import tool_rotation
+from robots.planning.leaving import Leaving, way_out
 from robots.planning.problem import FREE, FULL, TILT, Problem
-from robots.planning.request import JointGoal, KeepOrientation, PlanRequest, PoseGoal, Refusal
+from robots.planning.request import JointGoal, KeepOrientation, PlanRequest, PoseGoal, Refusal, WayGoal
 from robots.planning.scene import NamePair
 from robots.port import Array
 
@@ -25,8 +26,13 @@ _BEYOND_RAD = 1e-6
 
 @dataclass(frozen=True, kw_only=True)
 class Ends:
-    """A start (n,) and goals (k, n), nearest first, that are free; the problem in which the spheres agree to that."""
+    """A start (n,) and goals (k, n), nearest first, that are free; the problem in which the spheres agree to that.
 
+    `lead` (k, n) are the waypoints before the start: that of the arm, where it stands nearer to something than
+    the margin, else none.
+    """
+
+    lead: Array
     start: Array
     goals: Array
     problem: Problem
@@ -35,23 +41,31 @@ class Ends:
 def checked_ends(request: PlanRequest, checker: ExactChecker, problem: Problem) -> Ends | Refusal:
     """Return the ends of a request, or why there is no way between them at all."""
     start = np.array(request.start_rad, dtype=np.float64)
-    outside = _outside(start, problem, checker)
+    outside = outside_limits(start, problem, checker)
     if outside:
         return Refusal(reason="start_outside_limits", message=f"the start: {outside}", hint="move the arm back first")
-    if checker.in_collision(start):
-        pairs = checker.colliding_pairs(start)
-        return Refusal(
-            reason="start_in_collision",
-            message=f"at the start {_words(pairs)}",
-            hint="move the arm free by hand, or allow the pair to touch",
-            pairs=pairs,
-        )
+    looking = Leaving(checker, start)
+    if looking.in_collision(start):
+        return _touching(looking.colliding_pairs(start), hint="move the arm free by hand, or allow the pair to touch")
     if request.keep_orientation is not None:
-        problem = _kept_upright(problem, start, request.keep_orientation)
+        problem = kept_upright(problem, start, request.keep_orientation)
     goals = _goals(request, checker, problem, start)
     if isinstance(goals, Refusal):
         return goals
-    return Ends(start=start, goals=goals, problem=with_room_for(problem, np.vstack((start, goals))))
+    lead = np.empty((0, len(start)))
+    if looking.within_margin:
+        out = way_out(checker, problem, start, goals, seed=request.seed)
+        if out is None:
+            pairs = checker.colliding_pairs(start)
+            return _touching(
+                pairs, hint=f"no way out of the margin of {request.margin_m:g} m was found; make it smaller"
+            )
+        lead, start = start[None], out
+    return Ends(lead=lead, start=start, goals=goals, problem=with_room_for(problem, np.vstack((start, goals))))
+
+
+def _touching(pairs: tuple[NamePair, ...], *, hint: str) -> Refusal:
+    return Refusal(reason="start_in_collision", message=f"at the start {touch_words(pairs)}", hint=hint, pairs=pairs)
 
 
 def _goals(request: PlanRequest, checker: ExactChecker, problem: Problem, start: Array) -> Array | Refusal:
@@ -78,7 +92,8 @@ def _goals(request: PlanRequest, checker: ExactChecker, problem: Problem, start:
     if pairs:
         return Refusal(
             reason="goal_in_collision",
-            message=f"at the goal {_words(pairs)}" + (f" (and at {len(found) - 1} more)" if len(found) > 1 else ""),
+            message=f"at the goal {touch_words(pairs)}"
+            + (f" (and at {len(found) - 1} more)" if len(found) > 1 else ""),
             hint="choose another goal, or allow the pair to touch",
             pairs=pairs,
         )
@@ -92,12 +107,14 @@ def _goals(request: PlanRequest, checker: ExactChecker, problem: Problem, start:
 def _wanted(request: PlanRequest, checker: ExactChecker, problem: Problem, start: Array) -> Array | Refusal:
     """Return the configurations (k, n) that are a goal, within the limits."""
     match request.goal:
+        case WayGoal():
+            raise ValueError("a given way has no ends to be looked for")
         case JointGoal(joints_rad=rows):
             kept: list[Array] = []
             reason = "no goal is given"
             for row in rows:
                 joints = np.array(row, dtype=np.float64)
-                outside = _outside(joints, problem, checker)
+                outside = outside_limits(joints, problem, checker)
                 if outside:
                     reason = outside
                 else:
@@ -121,7 +138,8 @@ def _solutions(request: PlanRequest, checker: ExactChecker, pose: Pose, match: M
         return Refusal(reason="goal_unreachable", message=message, hint=hint)
 
 
-def _kept_upright(problem: Problem, start: Array, wish: KeepOrientation) -> Problem:
+def kept_upright(problem: Problem, start: Array, wish: KeepOrientation) -> Problem:
+    """Return the problem in which the tool keeps the orientation that it has at `start` (n,)."""
     tool = tool_rotation(problem, start)
     if wish.free_about is None:
         return problem._replace(
@@ -133,7 +151,8 @@ def _kept_upright(problem: Problem, start: Array, wish: KeepOrientation) -> Prob
     return problem._replace(orientation=TILT, upright=upright, tolerance=wish.tolerance_rad)
 
 
-def _outside(joints: Array, problem: Problem, checker: ExactChecker) -> str:
+def outside_limits(joints: Array, problem: Problem, checker: ExactChecker) -> str:
+    """Return which joint is how far outside its limits at `joints` (n,), empty where none is."""
     lower, upper = problem.limits[0], problem.limits[1]
     if joints.shape != lower.shape or not np.isfinite(joints).all():
         return f"{joints.tolist()} is no configuration of an arm with {len(lower)} joints"
@@ -145,6 +164,15 @@ def _outside(joints: Array, problem: Problem, checker: ExactChecker) -> str:
     return f"{name} at {joints[worst]:.4f} rad is outside {lower[worst]:.4f} … {upper[worst]:.4f}"
 
 
-def _words(pairs: tuple[NamePair, ...]) -> str:
+def checked_joints(joints_rad: tuple[float, ...], checker: ExactChecker) -> Array:
+    """Return a configuration (n,); raises CellError when it is none of this arm."""
+    joints = np.array(joints_rad, dtype=np.float64)
+    if joints.shape != (checker.dof,) or not np.isfinite(joints).all():
+        raise CellError(f"{list(joints_rad)} is no configuration", where=checker.arm, hint=f"give {checker.dof} joints")
+    return joints
+
+
+def touch_words(pairs: tuple[NamePair, ...]) -> str:
+    """Return what touches in words, the first three pairs of it."""
     shown = ", ".join(f"{a} touches {b}" for a, b in pairs[:3])
     return shown + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")

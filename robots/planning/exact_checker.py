@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from copy import copy
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from robots.model.rigid import Rigid
+from robots.planning.allowed import may_touch_each
 from robots.planning.arm_shapes import arm_shapes
-from robots.planning.coal_shapes import coal_shape, pin, placement
+from robots.planning.coal_shapes import pin, placement
 from robots.planning.motion_bound import motion_bound
-from robots.planning.scene import AttachedPart, NamePair, PlanningScene
-from robots.planning.surroundings import held_frame, surroundings
+from robots.planning.pair_checks import PairChecks
+from robots.planning.ready_shapes import ReadyShape, ready_shape
+from robots.planning.scene import OCCUPANCY, AttachedPart, NamePair, PlanningScene
+from robots.planning.surroundings import ArmAmong, PlacedSolid, arm_among, held_frame
+from robots.planning.voxels import Voxels
 from robots.port import Array
 
-# Coal's test without contacts ends at its tolerance and then calls cylinders that are millimetres deep in one
-# another free; a margin above that tolerance makes it certain.
-_TOUCHING_M = 1e-5
 _STEP_SHARE, _LEAST_STEP_M, _MOST_STEP_M = 0.016, 0.01, 0.04
 
 
@@ -41,6 +43,18 @@ class Hit:
     pairs: tuple[NamePair, ...]
 
 
+class Looking(Protocol):
+    """What tells whether, and what, an arm touches: a checker, or one that lets it leave from where it is too near."""
+
+    def in_collision(self, joints: Array) -> bool:
+        """Return whether anything touches at `joints`, shape (n,)."""
+        ...
+
+    def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
+        """Return the names of all pairs that touch at `joints`, shape (n,), each once."""
+        ...
+
+
 class ExactChecker:
     """One arm of a scene against itself, what it holds and everything else.
 
@@ -51,35 +65,47 @@ class ExactChecker:
         scene: The scene; later changes need another checker (a millisecond).
         arm: Name of the arm that moves.
         margin_m: Nearer than this counts as touching an obstacle or another arm; the arm itself has no margin.
+        among: What `arm_among` returns for them, if that is known already.
 
     Raises:
         CellError: there is no such arm, or a shape or model is wrong.
     """
 
-    def __init__(self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> None:
-        placed = scene.arm(arm)
+    def __init__(self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0, among: ArmAmong | None = None) -> None:
+        among = among or arm_among(scene, arm)
         self.arm = arm
         self.scene = scene
-        self.model = placed.placement.robot()
-        base = arm_shapes(self.model, placed.tool_joints)
-        # Pinocchio's managers keep none of these alive: this object does.
+        self.model = among.model
+        self.margin_m = margin_m
+        base = arm_shapes(self.model, among.placed.tool_joints)
         self._solver = base.solver
         self._geometry = base.geometry.copy()
         self._names = [f"{arm}/{link}" for link in base.links]
-        self._outside: list[int] = []
-        self._attach(tuple(part for part in scene.attached if part.arm == arm))
-        self._surround(Rigid.from_pose(placed.placement.base).inverse())
-        self._drop_allowed()
+        self._world = Rigid.from_pose(among.placed.placement.base).inverse()
+        wanted = [(int(pair.first), int(pair.second)) for pair in base.geometry.collisionPairs]
+        wanted += self._attach(among.held)
+        own = len(self._names)
+        wanted += self._surround(among.outside)
+        allowed = may_touch_each(scene, self._names[:own], self._names)
+        pairs = [pair for pair in wanted if not allowed[pair]]
         self.bound_m = motion_bound(self._solver, self._geometry)
         self.step_m = min(max(_STEP_SHARE * float(self.bound_m.max()), _LEAST_STEP_M), _MOST_STEP_M)
-        self._data, self._geometry_data = self._solver.createData(), self._geometry.createData()
-        for index in range(len(self._geometry.collisionPairs)):
-            self._geometry_data.collisionRequests[index].security_margin = _TOUCHING_M
-        for index in self._outside:
-            self._geometry_data.collisionRequests[index].security_margin = max(margin_m, _TOUCHING_M)
-        self._manager = pin.BroadPhaseManager_DynamicAABBTreeCollisionManager(
-            self._solver, self._geometry, self._geometry_data
-        )
+        margins = [margin_m if second >= own else 0.0 for _, second in pairs]
+        self._checks = PairChecks(self._solver, self._geometry, self._names, pairs, margins)
+        self._voxels: Voxels | None = None
+        self._seen: PairChecks | None = None
+        self._may_meet: Callable[[Array], bool] = _always
+
+    def seeing(self, voxels: Voxels, *, may_meet: Callable[[Array], bool] | None = None) -> ExactChecker:
+        """Return a checker that has what cameras see as well, under the name `occupancy`; the rest is shared.
+
+        Its octree is made when it is first needed. `may_meet` may say False of configurations (n,) in which surely
+        nothing is nearer to a taken voxel than the margin: an octree takes longer than all the rest.
+        """
+        other = copy(self)
+        other._voxels, other._seen = voxels, None
+        other._may_meet = may_meet or _always
+        return other
 
     @property
     def dof(self) -> int:
@@ -94,58 +120,71 @@ class ExactChecker:
 
     def in_collision(self, joints: Array) -> bool:
         """Return whether anything touches at `joints`, shape (n,)."""
-        return bool(pin.computeCollisions(self._solver, self._data, self._manager, joints, True))
+        return any(checks.in_collision(joints) for checks in self._checks_at(joints))
+
+    def touches_known(self, joints: Array) -> bool:
+        """Return whether anything but what cameras see touches at `joints`, shape (n,)."""
+        return self._checks.in_collision(joints)
 
     def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
         """Return the names of all pairs that touch at `joints`, shape (n,), each once."""
-        pin.computeCollisions(self._solver, self._data, self._geometry, self._geometry_data, joints, False)
-        found: dict[NamePair, None] = {}
-        for index, pair in enumerate(self._geometry.collisionPairs):
-            if self._geometry_data.collisionResults[index].isCollision():
-                found[self._names_of(pair)] = None
-        return tuple(found)
+        return tuple(pair for checks in self._checks_at(joints) for pair in checks.colliding_pairs(joints))
 
     @property
     def looked_at(self) -> frozenset[frozenset[str]]:
         """The pairs of names that must not touch."""
-        pairs = self._geometry.collisionPairs
-        return frozenset(frozenset(self._names_of(pair)) for pair in pairs)
+        return frozenset(frozenset(pair) for checks in self.checks for pair in checks.pairs)
 
     def depth(self, joints: Array, pair: frozenset[str]) -> float:
         """Return how deep two things, by name, are in one another at `joints`, shape (n,), metres; negative apart."""
-        pin.computeDistances(self._solver, self._data, self._geometry, self._geometry_data, joints)
-        found = [
-            float(result.min_distance)
-            for result, one in zip(self._geometry_data.distanceResults, self._geometry.collisionPairs, strict=True)
-            if frozenset(self._names_of(one)) == pair
-        ]
-        return -min(found, default=math.inf)
+        return -min(
+            (
+                float(distance)
+                for checks in self.checks
+                for one, distance in zip(checks.pairs, checks.distances(joints), strict=True)
+                if frozenset(one) == pair
+            ),
+            default=math.inf,
+        )
 
     def clearance(self, joints: Array) -> Clearance:
         """Return the smallest distance of a pair that must not touch, at `joints` (n,); the margin is not in it."""
-        pin.computeDistances(self._solver, self._data, self._geometry, self._geometry_data, joints)
-        distances: list[float] = [result.min_distance for result in self._geometry_data.distanceResults]
-        if not distances:
-            return Clearance(distance_m=math.inf, pair=("", ""))
-        nearest = int(np.argmin(distances))
-        pair = self._geometry.collisionPairs[nearest]
-        return Clearance(distance_m=float(distances[nearest]), pair=self._names_of(pair))
+        found = Clearance(distance_m=math.inf, pair=("", ""))
+        for checks in self.checks:
+            distances = checks.distances(joints)
+            if len(distances) and float(distances.min()) < found.distance_m:
+                nearest = int(np.argmin(distances))
+                found = Clearance(distance_m=float(distances[nearest]), pair=checks.pairs[nearest])
+        return found
 
-    def first_collision(self, path: Array, *, step_m: float | None = None) -> Hit | None:
+    @property
+    def checks(self) -> tuple[PairChecks, ...]:
+        """The pairs that are looked at: those of the scene, and those with what cameras see."""
+        if self._voxels is None:
+            return (self._checks,)
+        if self._seen is None:
+            self._seen = self._octree_checks(self._voxels)
+        return self._checks, self._seen
+
+    def first_collision(
+        self, path: Array, *, step_m: float | None = None, looking: Looking | None = None
+    ) -> Hit | None:
         """Return where a way of straight joint lines, shape (waypoints, n), first touches something; None if nowhere.
 
         No point of the arm moves farther than `step_m` between two configurations that are looked at;
         by default the checker's own `step_m`, 1.6 % of the arm's reach but 1 cm at least and 4 cm at most.
+        `looking` is asked instead of the checker itself, configuration after configuration.
         """
-        if len(path) and self.in_collision(path[0]):
-            return Hit(segment=0, share=0.0, joints=path[0], pairs=self.colliding_pairs(path[0]))
+        look = looking or self
+        if len(path) and look.in_collision(path[0]):
+            return Hit(segment=0, share=0.0, joints=path[0], pairs=look.colliding_pairs(path[0]))
         for segment in range(len(path) - 1):
             start, way = path[segment], path[segment + 1] - path[segment]
             count = self.steps(path[segment], path[segment + 1], step_m=step_m)
             for i in range(1, count + 1):
                 joints = start + way * (i / count)
-                if self.in_collision(joints):
-                    return Hit(segment=segment, share=i / count, joints=joints, pairs=self.colliding_pairs(joints))
+                if look.in_collision(joints):
+                    return Hit(segment=segment, share=i / count, joints=joints, pairs=look.colliding_pairs(joints))
         return None
 
     def is_edge_free(self, start: Array, end: Array) -> bool:
@@ -161,52 +200,50 @@ class ExactChecker:
         """Return into how many parts a straight joint line is cut so that no point moves farther than `step_m`."""
         return max(1, math.ceil(float(np.abs(end - start) @ self.bound_m) / (step_m or self.step_m)))
 
-    def _names_of(self, pair: Any) -> NamePair:
-        return self._names[int(pair.first)], self._names[int(pair.second)]
+    def _checks_at(self, joints: Array) -> Iterator[PairChecks]:
+        """Yield what can touch at `joints`: what cameras see only where something may be near it."""
+        yield self._checks
+        if self._voxels is not None and self._may_meet(joints):
+            yield from self.checks[1:]
 
-    def _attach(self, parts: tuple[AttachedPart, ...]) -> None:
+    def _attach(self, parts: tuple[AttachedPart, ...]) -> list[tuple[int, int]]:
+        pairs: list[tuple[int, int]] = []
         for part in parts:
             frame = held_frame(self.model, self._solver, part)
             own = range(len(self._names))
             for solid in part.solids:
                 at = frame.placement * placement(Rigid.from_pose(part.pose).then(Rigid.from_pose(solid.pose)))
-                index = self._add(part.name, frame.parentJoint, at, coal_shape(solid.shape, part.name))
+                index = self._add(part.name, frame.parentJoint, at, ready_shape(solid.shape, part.name))
                 for other in own:
                     # What moves along with the part, as the tool that holds it, cannot hit it.
                     if self._geometry.geometryObjects[other].parentJoint != frame.parentJoint:
-                        self._geometry.addCollisionPair(pin.CollisionPair(other, index))
+                        pairs.append((other, index))
+        return pairs
 
-    def _surround(self, world: Rigid) -> None:
+    def _surround(self, outside: tuple[PlacedSolid, ...]) -> list[tuple[int, int]]:
         moving = [i for i, g in enumerate(self._geometry.geometryObjects) if g.parentJoint > 0]
-        for solid in surroundings(self.scene, self.arm):
-            at = placement(world.then(solid.pose))
-            index = self._add(solid.name, 0, at, coal_shape(solid.shape, solid.name))
-            for own in moving:
-                self._geometry.addCollisionPair(pin.CollisionPair(own, index))
+        added = [self._add(solid.name, 0, placement(self._world.then(solid.pose)), solid.ready) for solid in outside]
+        return [(own, index) for index in added for own in moving]
 
-    def _add(self, name: str, joint: int, at: Any, shape: Any) -> int:
+    def _octree_checks(self, voxels: Voxels) -> PairChecks:
+        geometry, names = pin.GeometryModel(), list[str]()
+        for name, shape in zip(self._names, self._geometry.geometryObjects, strict=True):
+            if shape.parentJoint > 0 and not self.scene.may_touch(name, OCCUPANCY):
+                geometry.addGeometryObject(shape)
+                names.append(name)
+        at = placement(self._world.then(voxels.corner))
+        index = int(geometry.addGeometryObject(pin.GeometryObject(OCCUPANCY, 0, at, voxels.octree)))
+        pairs = [(own, index) for own in range(len(names))]
+        return PairChecks(self._solver, geometry, [*names, OCCUPANCY], pairs, [self.margin_m] * len(names))
+
+    def _add(self, name: str, joint: int, at: Any, ready: ReadyShape) -> int:
         self._names.append(name)
         unique = f"{name}#{len(self._names)}"
-        return int(self._geometry.addGeometryObject(pin.GeometryObject(unique, joint, at, shape)))
+        return int(self._geometry.addGeometryObject(pin.GeometryObject(unique, joint, at, ready.geometry)))
 
-    def _drop_allowed(self) -> None:
-        # Copies: the pairs of the model are views that removing would move.
-        pairs = [(int(pair.first), int(pair.second)) for pair in self._geometry.collisionPairs]
-        verdicts: dict[NamePair, bool] = {}
-        kept: list[tuple[int, int]] = []
-        for a, b in pairs:
-            names = (self._names[a], self._names[b])
-            if names not in verdicts:
-                verdicts[names] = self.scene.may_touch(*names)
-            if not verdicts[names]:
-                kept.append((a, b))
-        if len(kept) < len(pairs):
-            self._geometry.removeAllCollisionPairs()
-            for a, b in kept:
-                self._geometry.addCollisionPair(pin.CollisionPair(a, b))
-        fixed = [g.parentJoint == 0 for g in self._geometry.geometryObjects]
-        own = {i for i, name in enumerate(self._names) if name.startswith(f"{self.arm}/")}
-        self._outside = [k for k, (_, b) in enumerate(kept) if fixed[b] and b not in own]
+
+def _always(_joints: Array) -> bool:
+    return True
 
 
 def _ever_finer(count: int) -> Iterator[int]:

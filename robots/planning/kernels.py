@@ -1,8 +1,9 @@
-"""The compiled core of the fast planner: configuration and edge checks, RRT-Connect, shortcutting.
+"""The compiled core of the fast planner: checks of configurations and ways.
 
-An arm is links of spheres, and the rest of the world convex solids; see `problem` for the arrays. A
+An arm is links of spheres, and the rest of the world convex solids and voxels; see `problem` for the arrays. A
 configuration is blocked where a sphere comes nearer to a solid than the slack of that link and solid
-allows, two links nearer than the slack of that pair, or the tool turns out of its tolerance.
+allows, two links nearer than the slack of that pair, or the tool turns out of its tolerance. After a change
+here save `tree_kernels` anew: numba's cache notices changes of a function's own file only.
 """
 
 from __future__ import annotations
@@ -17,24 +18,24 @@ from robots.compiled import compiled
 from robots.planning.leaf_kernels import (
     is_box_nearer,
     joint_frames,
-    length,
     near_pairs,
-    nearest,
     pair_gap,
     place,
     place_balls,
-    random_number,
     solid_gap,
     turn_missing,
 )
-from robots.planning.problem import BOX, FREE, KIND, TILT, Problem
+from robots.planning.problem import BOX, FREE, GRID, KIND, TILT, Problem
+from robots.planning.voxel_kernels import is_ball_far, is_voxel_nearer, voxel_gap
 from robots.port import Array
 
 Counts = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-class _Scratch(NamedTuple):
+class Scratch(NamedTuple):
+    """What a check works in; one for each call from outside, as threads may call at once."""
+
     q: Array
     frames: Array
     balls: Array
@@ -47,11 +48,12 @@ class _Scratch(NamedTuple):
 
 
 @compiled()
-def _scratch(p: Problem) -> _Scratch:
+def new_scratch(p: Problem) -> Scratch:
+    """Return room for the checks of a problem."""
     n, links = len(p.sliding), len(p.link_joint)
     balls = np.empty((links, 4))
     balls[:, 3] = p.link_ball[:, 3]
-    return _Scratch(
+    return Scratch(
         np.empty(n),
         np.empty((n + 2, 12)),
         balls,
@@ -65,7 +67,7 @@ def _scratch(p: Problem) -> _Scratch:
 
 
 @compiled()
-def _place_balls(p: Problem, q: Array, s: _Scratch) -> None:
+def _place_balls(p: Problem, q: Array, s: Scratch) -> None:
     joint_frames(p.placements, p.sliding, q, s.frames)
     for link in range(len(p.link_joint)):
         s.placed[link] = False
@@ -73,7 +75,7 @@ def _place_balls(p: Problem, q: Array, s: _Scratch) -> None:
 
 
 @compiled()
-def _place_link(p: Problem, link: int, s: _Scratch) -> None:
+def _place_link(p: Problem, link: int, s: Scratch) -> None:
     """Write where the spheres of a link are, once in each configuration."""
     if not s.placed[link]:
         s.placed[link] = True
@@ -81,7 +83,7 @@ def _place_link(p: Problem, link: int, s: _Scratch) -> None:
 
 
 @compiled()
-def _pair_gap(p: Problem, a: int, b: int, enough: float, any_: bool, s: _Scratch) -> float:
+def _pair_gap(p: Problem, a: int, b: int, enough: float, any_: bool, s: Scratch) -> float:
     _place_link(p, a, s)
     _place_link(p, b, s)
     a0, a1, b0, b1 = p.first_sphere[a], p.first_sphere[a + 1], p.first_sphere[b], p.first_sphere[b + 1]
@@ -89,38 +91,41 @@ def _pair_gap(p: Problem, a: int, b: int, enough: float, any_: bool, s: _Scratch
 
 
 @compiled()
-def _solid_gap(p: Problem, link: int, k: int, enough: float, s: _Scratch) -> float:
+def _solid_gap(p: Problem, link: int, k: int, enough: float, s: Scratch) -> float:
     _place_link(p, link, s)
     first, last = p.first_sphere[link], p.first_sphere[link + 1]
+    if p.solids[k, KIND] == GRID:
+        return voxel_gap(s.centres, p.spheres, first, last, p.voxels, p.voxel_grid, enough)
     return solid_gap(s.centres, p.spheres, first, last, p.solids, p.planes, k, enough)
 
 
 @compiled()
-def _balls_near(s: _Scratch, a: int, b: int, limit: float) -> bool:
+def _balls_near(s: Scratch, a: int, b: int, limit: float) -> bool:
     dx, dy, dz = s.balls[a, 0] - s.balls[b, 0], s.balls[a, 1] - s.balls[b, 1], s.balls[a, 2] - s.balls[b, 2]
     reach = s.balls[a, 3] + s.balls[b, 3] + limit
     return reach > 0.0 and dx * dx + dy * dy + dz * dz < reach * reach
 
 
 @compiled()
-def _turned(p: Problem, s: _Scratch) -> float:
+def turned(p: Problem, s: Scratch) -> float:
+    """Return by what angle the tool, where the frames are, is turned out of the orientation that it shall keep."""
     return turn_missing(s.frames[len(s.frames) - 1], p.upright, p.orientation == TILT, s.error)
 
 
 @compiled()
-def _is_blocked(p: Problem, q: Array, s: _Scratch) -> bool:
-    return not _is_edge_free(p, q, q, s)
+def _is_blocked(p: Problem, q: Array, s: Scratch) -> bool:
+    return not is_edge_free(p, q, q, s)
 
 
 @compiled()
-def _is_edge_free(p: Problem, a: Array, b: Array, s: _Scratch) -> bool:
+def is_edge_free(p: Problem, a: Array, b: Array, s: Scratch) -> bool:
     """Return whether all but `a` of the straight line is free: the end first, then halves, quarters, …
 
     All checks are in this one function, as a call with a whole problem takes as long as a check.
     """
     frames, balls, centres, placed, touching, near = s.frames, s.balls, s.centres, s.placed, s.touching, s.near
     link_joint, first_sphere, spheres, solids, gaps = p.link_joint, p.first_sphere, p.spheres, p.solids, p.solid_gap
-    solid_count, q = len(solids), s.q
+    voxels, grid, solid_count, q = p.voxels, p.voxel_grid, len(solids), s.q
     way = 0.0
     for j in range(len(a)):
         way += abs(b[j] - a[j]) * p.bound[j]
@@ -136,19 +141,24 @@ def _is_edge_free(p: Problem, a: Array, b: Array, s: _Scratch) -> bool:
         joint_frames(p.placements, p.sliding, q, frames)
         place_balls(frames, link_joint, p.link_ball, balls)
         placed[:] = False
-        if p.orientation != FREE and _turned(p, s) > p.tolerance:
+        if p.orientation != FREE and turned(p, s) > p.tolerance:
             return False
         for t in range(near_pairs(balls, link_joint, solids, gaps, touching)):
             link, k = int(touching[t]) // solid_count, int(touching[t]) % solid_count
             limit, first, last = gaps[link, k], first_sphere[link], first_sphere[link + 1]
-            box = solids[k, KIND] == BOX
+            box, seen = solids[k, KIND] == BOX, solids[k, KIND] == GRID
             if box and not is_box_nearer(balls, balls, link, link + 1, solids, k, limit):
+                continue
+            if seen and is_ball_far(balls, link, voxels, grid, limit):
                 continue
             if not placed[link]:
                 placed[link] = True
                 place(frames, link_joint[link], spheres, first, last, centres)
             if box:
                 if is_box_nearer(centres, spheres, first, last, solids, k, limit):
+                    return False
+            elif seen:
+                if is_voxel_nearer(centres, spheres, first, last, voxels, grid, limit):
                     return False
             elif solid_gap(centres, spheres, first, last, solids, p.planes, k, limit) < limit:
                 return False
@@ -177,194 +187,52 @@ def _is_edge_free(p: Problem, a: Array, b: Array, s: _Scratch) -> bool:
 
 
 @compiled()
-def _project(p: Problem, q: Array, s: _Scratch) -> bool:
-    """Turn the tool back to how it shall stand, by Newton steps; False where that does not succeed."""
-    n = len(q)
-    a = np.empty((3, 3))
-    for _ in range(12):
-        joint_frames(p.placements, p.sliding, q, s.frames)
-        if _turned(p, s) < 0.2 * p.tolerance:
-            return True
-        # J of the turn, without the part about the upright axis where that is free; y = (J Jᵀ + λ)⁻¹ error.
-        a[:, :] = 0.0
-        a[0, 0] = a[1, 1] = a[2, 2] = 1e-4
-        for j in range(n):
-            if not p.sliding[j]:
-                z = _turn_of(p, s, j)
-                for r in range(3):
-                    for c in range(3):
-                        a[r, c] += z[r] * z[c]
-        y = np.linalg.solve(a, s.error)
-        for j in range(n):
-            if not p.sliding[j]:
-                z = _turn_of(p, s, j)
-                step = z[0] * y[0] + z[1] * y[1] + z[2] * y[2]
-                q[j] = min(max(q[j] + min(max(step, -0.5), 0.5), p.limits[0, j]), p.limits[1, j])
-    return False
-
-
-@compiled()
-def _turn_of(p: Problem, s: _Scratch, j: int) -> tuple[float, float, float]:
-    """Return how joint `j` turns the tool (world axes), without what is free."""
-    x, y, z = s.frames[j + 1, 2], s.frames[j + 1, 5], s.frames[j + 1, 8]
-    if p.orientation == TILT:
-        u, v, w = p.upright[0, 2], p.upright[1, 2], p.upright[2, 2]
-        along = x * u + y * v + z * w
-        return x - along * u, y - along * v, z - along * w
-    return x, y, z
-
-
-@compiled()
-def _advance(
-    p: Problem,
-    nodes: Array,
-    parents: Counts,
-    tree: int,
-    count: int,
-    target: Array,
-    stride: float,
-    steps: int,
-    s: _Scratch,
-) -> tuple[int, int, bool]:
-    """Grow a tree from its node nearest to `target` towards it; return its size, the last node, whether it is there."""
-    n = len(target)
-    at = nearest(nodes, tree, count, target)
-    away = length(nodes[tree, at], target)
-    new = np.empty(n)
-    for _ in range(steps):
-        if count == nodes.shape[1]:
-            break
-        share = 1.0 if away <= stride else stride / away
-        for j in range(n):
-            new[j] = nodes[tree, at, j] + share * (target[j] - nodes[tree, at, j])
-        if p.orientation != FREE and share < 1.0 and not _project(p, new, s):
-            break
-        left = length(new, target)
-        if left > away - 0.2 * min(stride, away) or not _is_edge_free(p, nodes[tree, at], new, s):
-            break
-        nodes[tree, count, :] = new
-        parents[tree, count] = at
-        at, away = count, left
-        count += 1
-        if share >= 1.0:
-            return count, at, True
-    return count, at, False
-
-
-@compiled()
-def grow(
-    p: Problem,
-    nodes: Array,
-    parents: Counts,
-    counts: Counts,
-    state: NDArray[np.uint64],
-    stride: float,
-    rounds: int,
-    met: Counts,
-) -> bool:
-    """Let two trees grow for some rounds, RRT-Connect; True when they have met, at the nodes in `met`.
-
-    `nodes` (2, size, n), `parents` (2, size) and `counts` (2) hold the trees, which begin at the starts
-    and at the goals; `state` is of the random numbers. `counts` has a
-    third number, the configurations looked at.
-    """
-    s = _scratch(p)
-    n = len(p.sliding)
-    sample = np.empty(n)
-    for _ in range(rounds):
-        if max(counts[0], counts[1]) >= nodes.shape[1]:
-            break
-        one = 0 if counts[0] <= counts[1] else 1
-        other = 1 - one
-        for j in range(n):
-            sample[j] = p.limits[2, j] + (p.limits[3, j] - p.limits[2, j]) * random_number(state)
-        if p.orientation != FREE and not _project(p, sample, s):
-            continue
-        before = counts[one]
-        # Where the tool must stay upright the steps are short, and so a tree takes several at once.
-        steps = 1 if p.orientation == FREE else 8
-        counts[one], at, _ = _advance(p, nodes, parents, one, before, sample, stride, steps, s)
-        if counts[one] == before:
-            continue
-        size = counts[other]
-        counts[other], end, there = _advance(p, nodes, parents, other, size, nodes[one, at], stride, 10_000, s)
-        if there:
-            met[one], met[other] = at, end
-            counts[2] += s.tries[0]
-            return True
-    counts[2] += s.tries[0]
-    return False
-
-
-@compiled()
-def shorten(p: Problem, path: Array, state: NDArray[np.uint64], rounds: int, tries: Counts) -> Array:
-    """Return a shorter free way with the same ends: waypoints left out, then random points joined directly."""
-    s = _scratch(p)
-    n = path.shape[1]
-    out = np.empty((len(path) + rounds + 2, n))
-    out[0] = path[0]
-    count, i = 1, 0
-    while i < len(path) - 1:
-        j = len(path) - 1
-        while j > i + 1 and not _is_edge_free(p, path[i], path[j], s):
-            j -= 1
-        out[count] = path[j]
-        count += 1
-        i = j
-    along = np.empty(len(out))
-    a, b = np.empty(n), np.empty(n)
-    for _ in range(rounds):
-        if count < 3:
-            break
-        along[0] = 0.0
-        for k in range(1, count):
-            along[k] = along[k - 1] + length(out[k], out[k - 1])
-        first, second = random_number(state) * along[count - 1], random_number(state) * along[count - 1]
-        first, second = min(first, second), max(first, second)
-        i = j = 0
-        while i < count - 2 and along[i + 1] <= first:
-            i += 1
-        while j < count - 2 and along[j + 1] <= second:
-            j += 1
-        if i == j:
-            continue
-        for k in range(n):
-            a[k] = out[i, k] + (out[i + 1, k] - out[i, k]) * (first - along[i]) / (along[i + 1] - along[i])
-            b[k] = out[j, k] + (out[j + 1, k] - out[j, k]) * (second - along[j]) / (along[j + 1] - along[j])
-        if length(a, b) > 0.98 * (second - first) or not _is_edge_free(p, a, b, s):
-            continue
-        # Waypoints i + 1 … j give way to a and b.
-        rest = out[j + 1 : count].copy()
-        out[i + 1], out[i + 2] = a, b
-        count = i + 3 + len(rest)
-        out[i + 3 : count] = rest
-    tries[0] += s.tries[0]
-    return out[:count].copy()
-
-
-@compiled()
 def blocked_at(p: Problem, path: Array) -> int:
     """Return the first waypoint or segment (k for what leads to waypoint k) that is blocked, -1 when all is free."""
-    s = _scratch(p)
+    s = new_scratch(p)
     if len(path) and _is_blocked(p, path[0], s):
         return 0
     for k in range(1, len(path)):
-        if not _is_edge_free(p, path[k - 1], path[k], s):
+        if not is_edge_free(p, path[k - 1], path[k], s):
             return k
     return -1
 
 
 @compiled()
+def look_along(p: Problem, rows: Array, looked: Counts, blocked: Flags) -> int:
+    """Look at rows of a way (k, n), the first, the last and so many that nothing moves farther than the step between.
+
+    Write which rows were looked at and whether each is blocked; return how many. Where one row is farther from the
+    next than a step, what is between is looked at as well and counts as the latter.
+    """
+    s = new_scratch(p)
+    count, at = 0, 0
+    for k in range(len(rows)):
+        way = ahead = 0.0
+        for j in range(rows.shape[1]):
+            way += abs(rows[k, j] - rows[at, j]) * p.bound[j]
+            if k + 1 < len(rows):
+                ahead += abs(rows[k + 1, j] - rows[at, j]) * p.bound[j]
+        if k == 0 or k == len(rows) - 1 or ahead > p.step_m:
+            looked[count] = k
+            far = way > p.step_m
+            blocked[count] = not is_edge_free(p, rows[at] if far else rows[k], rows[k], s)
+            count += 1
+            at = k
+    return count
+
+
+@compiled()
 def gaps(p: Problem, q: Array, to_solids: Array, between: Array) -> float:
     """Write the distances of each link from each solid (links, solids) and of each pair; return the tool's turn."""
-    s = _scratch(p)
+    s = new_scratch(p)
     _place_balls(p, q, s)
     for link in range(len(p.link_joint)):
         for k in range(len(p.solids)):
             to_solids[link, k] = _solid_gap(p, link, k, 1e9, s)
     for i in range(len(p.pairs)):
         between[i] = _pair_gap(p, p.pairs[i, 0], p.pairs[i, 1], 1e9, False, s)
-    return _turned(p, s) if p.orientation != FREE else 0.0
+    return turned(p, s) if p.orientation != FREE else 0.0
 
 
 @compiled()
@@ -381,7 +249,7 @@ def path_cost(p: Problem, path: Array, keep_m: float, out: Array) -> None:
 
     Nearer to a solid than `keep_m` counts as well.
     """
-    s = _scratch(p)
+    s = new_scratch(p)
     for w in range(1, len(path) - 1):
         _place_balls(p, path[w], s)
         deep = 0.0

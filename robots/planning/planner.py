@@ -11,30 +11,56 @@ from typing import TypeVar
 import numpy as np
 
 from engine.nearness import near_names
-from robots.planning.ends import Ends, checked_ends
+from engine.sensing import OccupancyGrid
+from engine.skills.planning_scene import FARTHEST_M, CollisionReport, TouchingPair
+from robots.model.robot_model import RobotModel
+from robots.planning.ends import Ends, checked_ends, checked_joints
 from robots.planning.exact_checker import ExactChecker
 from robots.planning.fast_search import exact_checks_of, fast_search, shortened, taught, warm, with_room_for
+from robots.planning.given_way import confirmed_way
 from robots.planning.kernels import blocked_at
 from robots.planning.ompl_search import OMPL_PLANNERS, UNBOUND, ompl_search
 from robots.planning.problem import FREE, Problem
-from robots.planning.request import FAST, STOMP, Plan, PlanAnswer, PlanRequest, PlanStats, Refusal, SampledWay
+from robots.planning.request import (
+    FAST,
+    STOMP,
+    LookRequest,
+    Plan,
+    PlanAnswer,
+    PlanRequest,
+    PlanStats,
+    Refusal,
+    SampledWay,
+    WayCheck,
+    WayGoal,
+    WayRequest,
+)
 from robots.planning.scene import PlanningScene
 from robots.planning.search import Budget, Search, Task
 from robots.planning.stomp import stomp_search
+from robots.planning.surroundings import arm_among
 from robots.planning.timing import timed
-from robots.planning.world_arrays import Names, problem_of
+from robots.planning.voxels import LatestVoxels
+from robots.planning.way_check import OwnWays, checked_way
+from robots.planning.world_arrays import Names, problem_of, voxels_alone, with_voxels
 from robots.port import Array, JointTrajectory
+from robots.sim.scene import ArmPlacement
 
 PLANNERS = (FAST, STOMP, *OMPL_PLANNERS)
 """All planners by name."""
 
 _Result = TypeVar("_Result")
 
+GIVEN = "given"
+"""Who found a way that came with the request."""
+
 _KEPT = 4
 _ATTEMPTS = 4
 # Share of the time after which the fast planner, whose spheres are larger than the arm, gives way to the exact one.
 _FAST_SHARE = 0.6
 _FALL_BACK = "RRTConnect"
+# What a look of the spheres, and one of the exact checker, takes on the machine of the benchmark.
+_FAST_CHECK_S, _EXACT_CHECK_S = 2e-6, 1.5e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +83,11 @@ class ScenePlanner:
     def __init__(self, *, check_s: float | None = None) -> None:
         self._check_s = check_s
         self._warm = False
+        self._models: dict[ArmPlacement, RobotModel] = {}
+        self._voxels = LatestVoxels()
+        self._own_ways = OwnWays()
+        self.effort_s = 0.0
+        """The time that the counted work of the latest plan stands for, whatever the machine."""
         self._kept: OrderedDict[tuple[PlanningScene, str, float], Prepared] = OrderedDict()
 
     def plan(self, request: PlanRequest, *, cancelled: Callable[[], bool] = lambda: False) -> PlanAnswer:
@@ -71,20 +102,65 @@ class ScenePlanner:
             return Refusal(
                 reason="unknown_planner", message="stomp cannot keep the tool's orientation", hint=f"use {FAST}"
             )
-        prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m)
+        self.effort_s = 0.0
+        prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
         budget = Budget(request.time_s, check_s=self._check_s, cancelled=cancelled)
-        ends = checked_ends(request, prepared.checker, prepared.problem)
-        if isinstance(ends, Refusal):
-            return ends
-        return _Attempt(request, prepared, ends, budget).answer()
+        if isinstance(request.goal, WayGoal):
+            given = confirmed_way(request, request.goal, prepared.checker, prepared.problem)
+            if isinstance(given, Refusal):
+                return given
+            attempt = _Attempt(request, prepared, given[1], budget)
+            answer = attempt.given(given[0])
+        else:
+            ends = checked_ends(request, prepared.checker, prepared.problem)
+            if isinstance(ends, Refusal):
+                return ends
+            attempt = _Attempt(request, prepared, ends, budget)
+            answer = attempt.answer()
+        self.effort_s = attempt.effort_s
+        if isinstance(answer, Plan) and answer.timed is not None:
+            self._own_ways.add(request.scene, request.arm, answer.timed, 0.0)
+        return answer
 
-    def prepared(self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> Prepared:
-        """Return what checks and plans for an arm in a scene; raises CellError when the scene is wrong."""
+    def check_way(self, request: WayRequest) -> WayCheck:
+        """Return where an arm that follows a trajectory would touch something first.
+
+        Raises:
+            CellError: the scene has no such arm, something in it is wrong, or the way is not this arm's.
+        """
+        prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
+        return checked_way(request, prepared.checker, prepared.problem, self._own_ways)
+
+    def look(self, request: LookRequest) -> CollisionReport:
+        """Return what an arm touches in a configuration and how near it is to what it must not touch.
+
+        Raises:
+            CellError: the scene has no such arm, something in it is wrong, or the joints are not this arm's.
+        """
+        checker = self.prepared(
+            request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy
+        ).checker
+        joints = checked_joints(request.joints_rad, checker)
+        nearest = checker.clearance(joints)
+        return CollisionReport(
+            touching=tuple(TouchingPair(first=a, second=b) for a, b in checker.colliding_pairs(joints)),
+            distance_m=min(nearest.distance_m, FARTHEST_M),
+            nearest=nearest.pair,
+        )
+
+    def prepared(
+        self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0, occupancy: OccupancyGrid | None = None
+    ) -> Prepared:
+        """Return what checks and plans for an arm in a scene; raises CellError when the scene or the grid is wrong."""
+        # Where the arm is itself, is asked about with every request.
+        scene = scene.with_joints(arm, ())
         key = (scene, arm, margin_m)
         found = self._kept.pop(key, None)
         if found is None:
-            problem, names = problem_of(scene, arm, margin_m=margin_m)
-            found = Prepared(checker=ExactChecker(scene, arm, margin_m=margin_m), problem=problem, names=names)
+            among = arm_among(scene, arm, robot=self._robot)
+            problem, names = problem_of(scene, arm, margin_m=margin_m, among=among)
+            checker = ExactChecker(scene, arm, margin_m=margin_m, among=among)
+            found = Prepared(checker=checker, problem=problem, names=names)
             if not self._warm:
                 # Else the first request would spend its time on compiling.
                 warm(problem)
@@ -92,6 +168,20 @@ class ScenePlanner:
         self._kept[key] = found
         if len(self._kept) > _KEPT:
             self._kept.popitem(last=False)
+        voxels = self._voxels.of(occupancy)
+        if voxels is None:
+            return found
+        problem, names = with_voxels(found.problem, found.names, scene, voxels, margin_m=margin_m)
+        seen = voxels_alone(problem)
+        # The spheres hold all of the arm: where they meet no voxel, the arm does not.
+        checker = found.checker.seeing(voxels, may_meet=lambda joints: blocked_at(seen, joints[None]) >= 0)
+        return Prepared(checker=checker, problem=problem, names=names)
+
+    def _robot(self, placement: ArmPlacement) -> RobotModel:
+        """Return the model of an arm as it was when it was first met: what stands in the cell does not change."""
+        found = self._models.get(placement)
+        if found is None:
+            found = self._models[placement] = placement.robot()
         return found
 
 
@@ -105,6 +195,7 @@ class _Attempt:
         self._budget = budget
         self._spent = {"search": 0.0, "shortening": 0.0, "verification": 0.0, "timing": 0.0}
         self._exact_checks = 0
+        self._fast_checks = 0
         self._refused = 0
 
     def answer(self) -> PlanAnswer:
@@ -117,6 +208,20 @@ class _Attempt:
             found = self._by_name(name)
         if found is None:
             return self._nothing()
+        return self._plan(np.vstack((self._ends.lead, found)), name)
+
+    def given(self, path: Array) -> Plan:
+        """Return the plan that a way is that was confirmed already."""
+        self._exact_checks += exact_checks_of(self._prepared.checker, path)
+        return self._plan(path, GIVEN)
+
+    @property
+    def effort_s(self) -> float:
+        """The time that the work so far stands for."""
+        exact = self._exact_checks + self._budget.checks - self._fast_checks
+        return self._fast_checks * _FAST_CHECK_S + exact * _EXACT_CHECK_S
+
+    def _plan(self, found: Array, name: str) -> Plan:
         way = None
         if self._request.speed is not None:
             trajectory = self._timed("timing", lambda w=found, v=self._request.speed: self._trajectory(w, v))
@@ -143,6 +248,7 @@ class _Attempt:
             check_s=None if self._budget.by_clock else 1e-6,
             cancelled=lambda: self._budget.cancelled,
         )
+        path = None
         for attempt in range(_ATTEMPTS):
             path = self._timed("search", lambda p=problem, a=attempt: fast_search(self._task(p, a), share))
             if path is None:
@@ -153,18 +259,21 @@ class _Attempt:
             hit = self._timed("verification", lambda w=path: self._prepared.checker.first_collision(w))
             self._exact_checks += exact_checks_of(self._prepared.checker, path)
             if hit is None:
-                self._budget.spend(share.checks)
-                return path
+                break
             self._refused += 1
+            path = None
             problem = with_room_for(taught(problem, self._prepared.names, hit), known_free)
+        self._fast_checks += share.checks
         self._budget.spend(share.checks)
-        return None
+        return path
 
     def _by_name(self, name: str) -> Array | None:
         """Return a confirmed way of STOMP or of a planner of OMPL."""
         search: Search = stomp_search if name == STOMP else ompl_search(name)
         for attempt in range(_ATTEMPTS):
             path = self._timed("search", lambda a=attempt: search(self._task(self._ends.problem, a), self._budget))
+            if name == STOMP:
+                self._fast_checks = self._budget.checks
             if path is None:
                 return None
             path = self._timed("shortening", lambda w=path: self._shorter(w))

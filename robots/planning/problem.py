@@ -9,14 +9,19 @@ from numpy.typing import NDArray
 
 from robots.port import Array
 
-BOX, CYLINDER, SPHERE, CAPSULE, HULL = 0, 1, 2, 3, 4
+BOX, CYLINDER, SPHERE, CAPSULE, HULL, GRID = 0, 1, 2, 3, 4, 5
 FREE, TILT, FULL = 0, 1, 2
 
 Indices = NDArray[np.int64]
 
 KIND, TURN, PLACE, SIZE, BALL, PLANES, SOLID_COLUMNS = 0, 1, 10, 13, 16, 20, 22
 """Columns of a solid: kind; rotation (9, by rows) and position in the world; half edges, or radius and half
-length, or radius; centre and radius of a ball around it; first and last + 1 of its planes."""
+length, or radius; centre and radius of a ball around it; first and last + 1 of its planes. A GRID has only the ball:
+it is all of the voxels that cameras see taken."""
+
+CORNER, VOXEL, FARTHEST, LOW, HIGH, GRID_COLUMNS = 0, 3, 4, 5, 8, 11
+"""What describes the grid of voxels: its lowest corner, the voxel's edge, the distance at which the field is truncated,
+the corners of a box around what is taken."""
 
 
 class Problem(NamedTuple):
@@ -54,6 +59,10 @@ class Problem(NamedTuple):
     """(M, 4) of hulls, in the solid's frame: outward normal and offset"""
     solid_gap: Array
     """(L, K)"""
+    voxels: NDArray[np.float32]
+    """(x, y, z) the distance of each voxel from the nearest taken one, as `voxel_kernels` returns it"""
+    voxel_grid: Array
+    """(GRID_COLUMNS,)"""
     orientation: int
     """FREE, TILT (the tool's `axis` stays along the third column of `upright`) or FULL (the tool stays as `upright`)"""
     upright: Array

@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.errors import RobotError
 from engine.messages import Pose, Vector3
+from engine.sensing import OccupancyGrid
 from robots.planning.scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
 
@@ -20,6 +21,7 @@ Reason = Literal[
     "goal_in_collision",
     "goal_outside_limits",
     "goal_unreachable",
+    "way_blocked",
     "no_path_in_time",
     "unknown_planner",
     "cancelled",
@@ -39,6 +41,15 @@ class PoseGoal(msgspec.Struct, frozen=True, kw_only=True, tag="pose"):
     match: Literal["pose", "position", "axis"] = "pose"
 
 
+class WayGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
+    """The end of this very way of straight joint lines, radians, n each: it is confirmed and timed, none is looked for.
+
+    Its first waypoint is where the arm starts.
+    """
+
+    waypoints_rad: tuple[tuple[float, ...], ...]
+
+
 class KeepOrientation(msgspec.Struct, frozen=True, kw_only=True):
     """The tool link keeps the orientation that it has at the start, within a tolerance.
 
@@ -55,14 +66,15 @@ class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
 
     `planner` is `fast`, `stomp` or a planner of OMPL by name. `time_s` is for all of it; the same request
     with the same `seed` has the same answer unless time runs out. Obstacles and other arms are passed at
-    `margin_m` at least. `tool` is the tool centre point in the frame of the model's tool link. With a
-    `speed`, the share of the joint speed limits, the answer has a trajectory too.
+    `margin_m` at least, and so is `occupancy`, what cameras see; its name in pairs is `occupancy`. An arm that
+    starts nearer than that leaves first, going no nearer. `tool` is the tool centre point in the frame of the
+    model's tool link. With a `speed`, the share of the joint speed limits, the answer has a trajectory too.
     """
 
     scene: PlanningScene
     arm: str
     start_rad: tuple[float, ...]
-    goal: JointGoal | PoseGoal
+    goal: JointGoal | PoseGoal | WayGoal
     planner: str = FAST
     time_s: float = 1.0
     seed: int = 0
@@ -70,6 +82,7 @@ class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
     keep_orientation: KeepOrientation | None = None
     tool: Pose | None = None
     speed: float | None = None
+    occupancy: OccupancyGrid | None = None
 
 
 class SampledWay(msgspec.Struct, frozen=True, kw_only=True):
@@ -148,3 +161,38 @@ class Refusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
 
 
 PlanAnswer = Plan | Refusal
+
+
+class WayRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether an arm that follows `way` would touch anything from `from_s` of the way's own time on."""
+
+    scene: PlanningScene
+    arm: str
+    way: SampledWay
+    from_s: float
+    occupancy: OccupancyGrid | None = None
+    margin_m: float = 0.0
+
+
+class WayCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
+    """The first instant of a way's own time at which the arm would touch something, and what; None where it is free.
+
+    `looked_s` is the instant up to which the way was looked at: that of the touch, or the way's end.
+    """
+
+    blocked_at_s: float | None
+    pairs: tuple[NamePair, ...]
+    looked_s: float
+
+
+class LookRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """What an arm touches at `joints_rad`, and how near it is to what it must not touch.
+
+    Obstacles, other arms and `occupancy` nearer than `margin_m` count as touching.
+    """
+
+    scene: PlanningScene
+    arm: str
+    joints_rad: tuple[float, ...]
+    occupancy: OccupancyGrid | None = None
+    margin_m: float = 0.0

@@ -1,7 +1,8 @@
 """The planning scene as plain data: arms where they stand, obstacles, parts in hands, pairs that may touch.
 
 A scene never changes: `with_…` and `without_…` return another one. It can cross a process border by
-msgspec. Things are named `obstacle`, `part` or `arm/link`. Poses of obstacles are in the world frame.
+msgspec. Things are named `obstacle`, `part` or `arm/link`, what cameras see `occupancy`. Poses of obstacles
+are in the world frame.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from engine.shapes import AT_ORIGIN, Obstacle, Solid
 from robots.sim.scene import ArmPlacement
 
 NamePair = tuple[str, str]
+
+OCCUPANCY = "occupancy"
+"""The name of all that cameras see and nobody knows, in pairs of names."""
 
 
 class AttachedPart(msgspec.Struct, frozen=True, kw_only=True):
@@ -69,10 +73,10 @@ class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
         """Return the scene with these obstacles; each takes the place of one of the same name.
 
         Raises:
-            CellError: the name is that of an arm or of a part in a hand.
+            CellError: the name is that of an arm, of a part in a hand or of the occupancy.
         """
         for obstacle in obstacles:
-            if obstacle.name in {part.name for part in self.attached} | {arm.name for arm in self.arms}:
+            if obstacle.name in {part.name for part in self.attached} | {arm.name for arm in self.arms} | {OCCUPANCY}:
                 raise CellError(f"{obstacle.name} is in the scene already", hint="give the obstacle another name")
         new = {obstacle.name: obstacle for obstacle in (*self.obstacles, *obstacles)}
         return msgspec.structs.replace(self, obstacles=tuple(new.values()))

@@ -40,6 +40,10 @@ class Budget:
         spent_s = time.perf_counter() - self._start_s if self._check_s is None else self.checks * self._check_s
         return max(0.0, self._time_s - spent_s)
 
+    def part(self, share: float) -> Budget:
+        """Return a share of what is left, for a piece of the work; who uses it tells this one what it spent."""
+        return Budget(self.left_s * share, check_s=self._check_s, cancelled=self._cancelled)
+
     @property
     def by_clock(self) -> bool:
         """Whether the clock decides, not the number of checks."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,11 @@ from engine.shapes import Shape
 from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
 from robots.planning.arm_shapes import arm_shapes
-from robots.planning.coal_shapes import pin, rigid_of, shape_of
+from robots.planning.coal_shapes import pin, rigid_of
+from robots.planning.ready_shapes import ReadyShape, ready_links, ready_shape
 from robots.planning.scene import AttachedPart, PlanningScene, SceneArm
 from robots.port import Array
+from robots.sim.scene import ArmPlacement
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,20 +25,61 @@ class PlacedSolid:
     """A convex shape where it stands in the world, under the name that allowed pairs and reports use."""
 
     name: str
-    shape: Shape
+    ready: ReadyShape
     pose: Rigid
 
+    @property
+    def shape(self) -> Shape:
+        """The shape as data."""
+        return self.ready.shape
 
-def surroundings(scene: PlanningScene, arm: str) -> tuple[PlacedSolid, ...]:
+
+@dataclass(frozen=True, kw_only=True)
+class ArmAmong:
+    """One arm of a scene and everything else in it: what both checkers begin with."""
+
+    scene: PlanningScene
+    placed: SceneArm
+    model: RobotModel
+    held: tuple[AttachedPart, ...]
+    outside: tuple[PlacedSolid, ...]
+
+    @property
+    def name(self) -> str:
+        """The arm's name in the cell."""
+        return self.placed.name
+
+
+def arm_among(
+    scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
+) -> ArmAmong:
+    """Return an arm of a scene among the rest; `robot` loads models.
+
+    Raises:
+        CellError: there is no such arm, a model or a shape is wrong, or an arm's joints are not as many as it has.
+    """
+    placed = scene.arm(arm)
+    return ArmAmong(
+        scene=scene,
+        placed=placed,
+        model=robot(placed.placement),
+        held=tuple(part for part in scene.attached if part.arm == arm),
+        outside=surroundings(scene, arm, robot=robot),
+    )
+
+
+def surroundings(
+    scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
+) -> tuple[PlacedSolid, ...]:
     """Return everything in the scene that is neither `arm` nor held by it.
 
     Raises:
-        CellError: an arm's model cannot be loaded, or its joints are not as many as it has.
+        CellError: a model or a shape is wrong, or an arm's joints are not as many as it has.
     """
     found = [
         PlacedSolid(
             name=obstacle.name,
-            shape=solid.shape,
+            ready=ready_shape(solid.shape, obstacle.name),
             pose=Rigid.from_pose(obstacle.pose).then(Rigid.from_pose(solid.pose)),
         )
         for obstacle in scene.obstacles
@@ -44,7 +88,7 @@ def surroundings(scene: PlanningScene, arm: str) -> tuple[PlacedSolid, ...]:
     for other in scene.arms:
         if other.name != arm:
             held = tuple(part for part in scene.attached if part.arm == other.name)
-            found.extend(_arm_solids(other, held))
+            found.extend(_arm_solids(other, robot(other.placement), held))
     return tuple(found)
 
 
@@ -68,8 +112,7 @@ def held_frame(model: RobotModel, solver: Any, part: AttachedPart) -> Any:
     return solver.frames[solver.getFrameId(link)]
 
 
-def _arm_solids(arm: SceneArm, held: tuple[AttachedPart, ...]) -> list[PlacedSolid]:
-    model = arm.placement.robot()
+def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]) -> list[PlacedSolid]:
     shapes = arm_shapes(model, arm.tool_joints)
     base = Rigid.from_pose(arm.placement.base)
     data = shapes.solver.createData()
@@ -77,16 +120,25 @@ def _arm_solids(arm: SceneArm, held: tuple[AttachedPart, ...]) -> list[PlacedSol
     found = [
         PlacedSolid(
             name=f"{arm.name}/{link}",
-            shape=shape_of(shape.geometry),
+            ready=ready,
             pose=base.then(rigid_of(data.oMi[shape.parentJoint] * shape.placement)),
         )
-        for link, shape in zip(shapes.links, shapes.geometry.geometryObjects, strict=False)
+        for link, shape, ready in zip(
+            shapes.links,
+            shapes.geometry.geometryObjects,
+            ready_links(model, arm.tool_joints),
+            strict=True,
+        )
     ]
     for part in held:
         frame = held_frame(model, shapes.solver, part)
         at = base.then(rigid_of(data.oMi[frame.parentJoint] * frame.placement)).then(Rigid.from_pose(part.pose))
         found.extend(
-            PlacedSolid(name=part.name, shape=solid.shape, pose=at.then(Rigid.from_pose(solid.pose)))
+            PlacedSolid(
+                name=part.name,
+                ready=ready_shape(solid.shape, part.name),
+                pose=at.then(Rigid.from_pose(solid.pose)),
+            )
             for solid in part.solids
         )
     return found

@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol, Self
 
@@ -15,9 +16,22 @@ import msgspec
 
 from engine.clock import Clock
 from engine.errors import CellError, RobotError
+from engine.skills.planning_scene import CollisionReport
 from robots.planning.planner import ScenePlanner
-from robots.planning.request import PlanAnswer, PlanRequest
-from robots.planning.worker_messages import Answered, Ask, Failed, FromWorker, Ready, ToWorker, Withdraw
+from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
+from robots.planning.worker_messages import (
+    Answered,
+    Ask,
+    AskLook,
+    AskPlan,
+    AskWay,
+    Failed,
+    FromWorker,
+    Ready,
+    Reported,
+    ToWorker,
+    Withdraw,
+)
 from robots.sim.framing import FrameReader, framed
 
 _START = "from robots.planning.worker_main import main; main()"
@@ -25,12 +39,18 @@ _ROOT = str(Path(__file__).resolve().parents[2])
 # The first start on a machine compiles everything.
 _START_S = 300.0
 _OVERDUE_S = 5.0
+# What a request that is no search may take.
+_LOOK_S = 1.0
 INLINE_CHECK_S = 2e-5
 """What a check counts as in virtual time: 50,000 a second, as many as a slow machine does."""
+PLAN_FIXED_S = 0.004
+"""What of an answer in virtual time does not depend on the checks: both ends, timing, both ways to the process."""
+LOOK_FIXED_S = 0.002
+"""What a check of a way, or a look, takes in virtual time, both ways to the process among it."""
 
 
 class PlanService(Protocol):
-    """Who answers plan requests on an event loop."""
+    """Who answers planning requests on an event loop. All of them raise as `plan` does."""
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
         """Return a confirmed way, or why there is none.
@@ -41,11 +61,24 @@ class PlanService(Protocol):
         """
         ...
 
+    async def check_way(self, request: WayRequest) -> WayCheck:
+        """Return where an arm that follows a trajectory would touch something first."""
+        ...
+
+    async def look(self, request: LookRequest) -> CollisionReport:
+        """Return what an arm touches in a configuration and how near it is to what it must not touch."""
+        ...
+
 
 class InlinePlanner:
-    """Plans on the loop itself, by effort instead of by the clock: for virtual time, where answers must repeat."""
+    """Plans on the loop itself, by effort instead of by the clock: for virtual time, where answers must repeat.
 
-    def __init__(self) -> None:
+    With a clock, answers come after the time that their counted work stands for: `PLAN_FIXED_S` and what
+    all checks take, or `LOOK_FIXED_S`. Without one no time passes.
+    """
+
+    def __init__(self, clock: Clock | None = None) -> None:
+        self._clock = clock
         self._planner = ScenePlanner(check_s=INLINE_CHECK_S)
 
     async def __aenter__(self) -> Self:
@@ -55,21 +88,42 @@ class InlinePlanner:
         return None
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none; no time passes. Raises CellError as `PlanService` says."""
-        return self._planner.plan(request)
+        """Return a confirmed way, or why there is none. Raises CellError as `PlanService` says."""
+        answer = self._planner.plan(request)
+        await self._pass(PLAN_FIXED_S + self._planner.effort_s)
+        return answer
+
+    async def check_way(self, request: WayRequest) -> WayCheck:
+        """Return where an arm that follows a trajectory would touch something first. Raises CellError."""
+        found = self._planner.check_way(request)
+        await self._pass(LOOK_FIXED_S)
+        return found
+
+    async def look(self, request: LookRequest) -> CollisionReport:
+        """Return what an arm touches in a configuration and how near it is to the rest. Raises CellError."""
+        found = self._planner.look(request)
+        await self._pass(LOOK_FIXED_S)
+        return found
+
+    async def _pass(self, time_s: float) -> None:
+        if self._clock is not None:
+            await self._clock.sleep(time_s)
 
 
 class PlanningWorker:
     """The planning process and its requests, in turn; started by `async with`, again by the next request if it died.
 
-    Cancelling the task that awaits a plan withdraws the request: the process stops looking for a way at
-    the next piece of work. A request that stays unanswered well beyond its time ends the process.
+    Ways and configurations are looked at between the pieces of work of a plan, so that they do not wait for it
+    (but for PRM and PRMstar, which have none). Cancelling the task that awaits a plan withdraws the request: the
+    process stops looking for a way at the next piece of work. A request that stays unanswered well beyond its
+    time ends the process. A start takes seconds and goes on when a request that waits for it is cancelled:
+    `start` only sets it off, so that the process warms up beside other work.
     """
 
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._wire: _Wire | None = None
-        self._starting: asyncio.Lock = asyncio.Lock()
+        self._starting: asyncio.Task[_Wire] | None = None
         self._numbers = 0
         self._closed = False
 
@@ -79,12 +133,28 @@ class PlanningWorker:
         return self._process.pid if self._process is not None and self._process.poll() is None else 0
 
     async def __aenter__(self) -> Self:
-        await self._running()
+        try:
+            await self._running()
+        except BaseException:
+            # Nobody leaves what was not entered.
+            await self.__aexit__()
+            raise
         return self
 
     async def __aexit__(self, *_error: object) -> None:
         self._closed = True
+        starting, self._starting = self._starting, None
+        if starting is not None:
+            starting.cancel()
+            await asyncio.gather(starting, return_exceptions=True)
         self._end()
+
+    def start(self) -> None:
+        """Start the process if there is none, without waiting for it; to be closed by `async with` all the same."""
+        if not self._closed and (self._wire is None or self._wire.lost) and self._starting is None:
+            self._end()
+            self._starting = asyncio.ensure_future(self._start())
+            self._starting.add_done_callback(self._started_or_not)
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
         """Return a confirmed way, or why there is none.
@@ -93,10 +163,30 @@ class PlanningWorker:
             CellError: the scene has no such arm, or something in it is wrong.
             RobotError: the planning process ended or hangs; the next request finds a new one.
         """
+        found = await self._answer(lambda number: AskPlan(number=number, request=request), request.time_s)
+        assert isinstance(found, Answered)
+        assert not isinstance(found.answer, WayCheck)
+        return found.answer
+
+    async def check_way(self, request: WayRequest) -> WayCheck:
+        """Return where an arm that follows a trajectory would touch something first. Raises as `plan` does."""
+        found = await self._answer(lambda number: AskWay(number=number, request=request), _LOOK_S)
+        assert isinstance(found, Answered)
+        assert isinstance(found.answer, WayCheck)
+        return found.answer
+
+    async def look(self, request: LookRequest) -> CollisionReport:
+        """Return what an arm touches in a configuration and how near it is to the rest. Raises as `plan` does."""
+        found = await self._answer(lambda number: AskLook(number=number, request=request), _LOOK_S)
+        assert isinstance(found, Reported)
+        return found.answer
+
+    async def _answer(self, make: Callable[[int], Ask], time_s: float) -> Answered | Reported:
+        """Return what the process answers to a request, which has a number once it is sent."""
         wire = await self._running()
         self._numbers += 1
         number = self._numbers
-        answer = wire.ask(Ask(number=number, request=request))
+        answer = wire.ask(make(number), time_s)
         # Others before it in turn take their time too.
         allowed_s = wire.promised_s + _OVERDUE_S
         try:
@@ -112,17 +202,28 @@ class PlanningWorker:
             raise
         if isinstance(found, Failed):
             raise CellError(found.message, where=found.where or None, hint=found.hint or None)
-        return found.answer
+        return found
 
     async def _running(self) -> _Wire:
         """Return the wire to the process, which is started if there is none."""
         if self._closed:
             raise RobotError("the planning worker was closed", hint="enter a new one with `async with`")
-        async with self._starting:
-            if self._wire is None or self._wire.lost:
-                self._end()
-                self._wire = await self._start()
+        if self._wire is not None and not self._wire.lost:
             return self._wire
+        self.start()
+        starting = self._starting
+        assert starting is not None
+        # Others may wait for the same start.
+        await asyncio.wait([starting])
+        if starting.cancelled():
+            raise RobotError("the planning worker was closed", hint="enter a new one with `async with`")
+        return starting.result()
+
+    def _started_or_not(self, starting: asyncio.Task[_Wire]) -> None:
+        if not starting.cancelled() and starting.exception() is None:
+            self._wire = starting.result()
+        if self._starting is starting:
+            self._starting = None
 
     async def _start(self) -> _Wire:
         ours, theirs = socket.socketpair()
@@ -169,7 +270,10 @@ class PlanningWorker:
 
 def plan_service(clock: Clock) -> InlinePlanner | PlanningWorker:
     """Return who plans under a clock: inline in virtual time, else a process; to be entered with `async with`."""
-    return InlinePlanner() if clock.virtual else PlanningWorker()
+    return InlinePlanner(clock) if clock.virtual else PlanningWorker()
+
+
+_Answer = Answered | Reported | Failed
 
 
 class _Wire(asyncio.Protocol):
@@ -180,7 +284,7 @@ class _Wire(asyncio.Protocol):
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(FromWorker).decode
         self._transport: asyncio.Transport | None = None
-        self._asked: dict[int, tuple[asyncio.Future[Answered | Failed], float]] = {}
+        self._asked: dict[int, tuple[asyncio.Future[_Answer], float]] = {}
         self.ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self.lost = False
 
@@ -189,12 +293,12 @@ class _Wire(asyncio.Protocol):
         """The time that all requests which are not answered may take together."""
         return sum(time_s for _, time_s in self._asked.values())
 
-    def ask(self, ask: Ask) -> asyncio.Future[Answered | Failed]:
-        future: asyncio.Future[Answered | Failed] = asyncio.get_running_loop().create_future()
+    def ask(self, ask: Ask, time_s: float) -> asyncio.Future[_Answer]:
+        future: asyncio.Future[_Answer] = asyncio.get_running_loop().create_future()
         if self.lost:
             future.set_exception(_gone(self._how_it_ended()))
             return future
-        self._asked[ask.number] = (future, ask.request.time_s)
+        self._asked[ask.number] = (future, time_s)
         self._send(ask)
         return future
 

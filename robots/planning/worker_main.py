@@ -1,4 +1,4 @@
-"""The planning process: takes requests from a socket, one at a time, and looks for withdrawals while it plans."""
+"""The planning process: takes requests from a socket, plans one at a time, and looks at ways meanwhile."""
 
 from __future__ import annotations
 
@@ -15,7 +15,19 @@ from engine.shapes import Box, Obstacle
 from robots.planning.planner import ScenePlanner
 from robots.planning.request import JointGoal, PlanRequest
 from robots.planning.scene import PlanningScene, SceneArm
-from robots.planning.worker_messages import Answered, Ask, Failed, FromWorker, Ready, ToWorker
+from robots.planning.worker_messages import (
+    Answered,
+    Ask,
+    AskLook,
+    AskPlan,
+    AskWay,
+    Failed,
+    FromWorker,
+    Ready,
+    Reported,
+    ToWorker,
+    Withdraw,
+)
 from robots.sim.framing import FrameReader, framed
 from robots.sim.scene import ArmPlacement
 
@@ -34,8 +46,8 @@ class _Mailbox:
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(ToWorker).decode
         self._waiting: deque[Ask] = deque()
+        self._open: set[int] = set()
         self._withdrawn: set[int] = set()
-        self._answered = 0
 
     def next(self) -> Ask:
         """Return the next request, once there is one."""
@@ -43,10 +55,17 @@ class _Mailbox:
             self._read()
         return self._waiting.popleft()
 
-    def is_withdrawn(self, number: int) -> bool:
-        """Return whether a request is no longer wanted, reading what has arrived meanwhile."""
+    def quick_ones(self) -> list[AskWay | AskLook]:
+        """Return the requests that take milliseconds, reading what has arrived meanwhile; they are not waiting then."""
         while select.select([self._connection], [], [], 0.0)[0]:
             self._read()
+        found = [ask for ask in self._waiting if not isinstance(ask, AskPlan)]
+        if found:
+            self._waiting = deque(ask for ask in self._waiting if isinstance(ask, AskPlan))
+        return found
+
+    def is_withdrawn(self, number: int) -> bool:
+        """Return whether a request, as far as was read, is no longer wanted."""
         return number in self._withdrawn
 
     def send(self, message: FromWorker) -> None:
@@ -58,8 +77,8 @@ class _Mailbox:
 
     def done(self, number: int) -> None:
         """Forget about a request that was answered."""
+        self._open.discard(number)
         self._withdrawn.discard(number)
-        self._answered = number
 
     def _read(self) -> None:
         data = self._connection.recv(_READ_BYTES)
@@ -67,10 +86,10 @@ class _Mailbox:
             raise _ClientGone
         for frame in self._reader.feed(data):
             message = self._decode(frame)
-            if isinstance(message, Ask):
+            if not isinstance(message, Withdraw):
                 self._waiting.append(message)
-            elif message.number > self._answered:
-                # Numbers rise: the answer was not on its way already.
+                self._open.add(message.number)
+            elif message.number in self._open:
                 self._withdrawn.add(message.number)
 
 
@@ -83,20 +102,34 @@ def main() -> None:
         _warm(planner)
         mailbox.send(Ready())
         while True:
-            ask = mailbox.next()
-            mailbox.send(_answer(planner, mailbox, ask))
-            mailbox.done(ask.number)
+            _serve(planner, mailbox, mailbox.next())
     except _ClientGone:
         connection.close()
 
 
+def _serve(planner: ScenePlanner, mailbox: _Mailbox, ask: Ask) -> None:
+    mailbox.send(_answer(planner, mailbox, ask))
+    mailbox.done(ask.number)
+
+
 def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: Ask) -> FromWorker:
+    def is_withdrawn() -> bool:
+        # An arm under way must not wait for the plan of another.
+        for quick in mailbox.quick_ones():
+            _serve(planner, mailbox, quick)
+        return mailbox.is_withdrawn(ask.number)
+
     try:
-        answer = planner.plan(ask.request, cancelled=lambda: mailbox.is_withdrawn(ask.number))
+        match ask:
+            case AskPlan(number=number, request=request):
+                return Answered(number=number, answer=planner.plan(request, cancelled=is_withdrawn))
+            case AskWay(number=number, request=request):
+                return Answered(number=number, answer=planner.check_way(request))
+            case AskLook(number=number, request=request):
+                return Reported(number=number, answer=planner.look(request))
     except FlexcellError as error:
         where = str(error.where) if error.where is not None else ""
         return Failed(number=ask.number, message=error.message, where=where, hint=error.hint or "")
-    return Answered(number=ask.number, answer=answer)
 
 
 def _warm(planner: ScenePlanner) -> None:

@@ -4,14 +4,29 @@ from __future__ import annotations
 
 import msgspec
 
-from robots.planning.request import Plan, PlanRequest, Refusal
+from engine.skills.planning_scene import CollisionReport
+from robots.planning.request import LookRequest, Plan, PlanRequest, Refusal, WayCheck, WayRequest
 
 
-class Ask(msgspec.Struct, frozen=True, kw_only=True, tag="ask"):
+class AskPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
     """Plan this; `number` is the request's own."""
 
     number: int
     request: PlanRequest
+
+
+class AskWay(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
+    """Check this way."""
+
+    number: int
+    request: WayRequest
+
+
+class AskLook(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
+    """Look at this configuration."""
+
+    number: int
+    request: LookRequest
 
 
 class Withdraw(msgspec.Struct, frozen=True, kw_only=True, tag="withdraw"):
@@ -21,10 +36,17 @@ class Withdraw(msgspec.Struct, frozen=True, kw_only=True, tag="withdraw"):
 
 
 class Answered(msgspec.Struct, frozen=True, kw_only=True, tag="answered"):
-    """The answer to a request."""
+    """The answer to `AskPlan` or `AskWay`."""
 
     number: int
-    answer: Plan | Refusal
+    answer: Plan | Refusal | WayCheck
+
+
+class Reported(msgspec.Struct, frozen=True, kw_only=True, tag="reported"):
+    """The answer to `AskLook`."""
+
+    number: int
+    answer: CollisionReport
 
 
 class Failed(msgspec.Struct, frozen=True, kw_only=True, tag="failed"):
@@ -40,5 +62,6 @@ class Ready(msgspec.Struct, frozen=True, kw_only=True, tag="ready"):
     """The process has loaded and compiled everything."""
 
 
+Ask = AskPlan | AskWay | AskLook
 ToWorker = Ask | Withdraw
-FromWorker = Answered | Failed | Ready
+FromWorker = Answered | Reported | Failed | Ready

@@ -7,13 +7,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from robots.model.rigid import Rigid
+from robots.planning.allowed import may_touch_each
 from robots.planning.arm_spheres import arm_spheres, balls_around, bare_problem, rows
-from robots.planning.coal_shapes import coal_shape
-from robots.planning.problem import BALL, KIND, PLACE, PLANES, SIZE, SOLID_COLUMNS, TURN, Indices, Problem
-from robots.planning.scene import AttachedPart, PlanningScene
-from robots.planning.solids import convex_solid, to_frame
+from robots.planning.problem import (
+    BALL,
+    FREE,
+    GRID,
+    HIGH,
+    KIND,
+    LOW,
+    PLACE,
+    PLANES,
+    SIZE,
+    SOLID_COLUMNS,
+    TURN,
+    Indices,
+    Problem,
+)
+from robots.planning.ready_shapes import ready_shape
+from robots.planning.scene import OCCUPANCY, AttachedPart, PlanningScene
+from robots.planning.solids import to_frame
 from robots.planning.sphere_fit import LinkSolid, covering_spheres
-from robots.planning.surroundings import PlacedSolid, surroundings
+from robots.planning.surroundings import ArmAmong, PlacedSolid, arm_among
+from robots.planning.voxels import Voxels
 from robots.port import Array
 
 # Of the greatest motion bound, as for the exact check; no finer, the exact check comes after.
@@ -28,14 +44,18 @@ class Names:
     solids: tuple[str, ...]
 
 
-def problem_of(scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> tuple[Problem, Names]:
+def problem_of(
+    scene: PlanningScene, arm: str, *, margin_m: float = 0.0, among: ArmAmong | None = None
+) -> tuple[Problem, Names]:
     """Return the problem of moving an arm of a scene; its `margin_m` counts against obstacles and other arms.
+
+    `among` is what `arm_among` returns for them, if that is known already.
 
     Raises:
         CellError: there is no such arm, or a shape or model is wrong.
     """
-    placed = scene.arm(arm)
-    model = placed.placement.robot()
+    among = among or arm_among(scene, arm)
+    placed, model = among.placed, among.model
     body = arm_spheres(model, placed.tool_joints)
     problem = bare_problem(body, model)
     base = Rigid.from_pose(placed.placement.base)
@@ -44,21 +64,20 @@ def problem_of(scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> tupl
     ]
     names, joints = [f"{arm}/{link}" for link in body.links], body.link_joint.tolist()
     pairs, pair_gap = [*body.pairs], body.pair_gap.tolist()
-    for part in scene.attached:
-        if part.arm == arm:
-            joint, group = _held(part, body.frames[part.link or model.tool_link])
-            others = [i for i, other in enumerate(joints) if other != joint]
-            pairs += [(i, len(names)) for i in others]
-            pair_gap += [0.0] * len(others)
-            names.append(part.name)
-            joints.append(joint)
-            spheres.append(group)
-    kept = [i for i, (a, b) in enumerate(pairs) if not scene.may_touch(names[a], names[b])]
+    for part in among.held:
+        joint, group = _held(part, body.frames[part.link or model.tool_link])
+        others = [i for i, other in enumerate(joints) if other != joint]
+        pairs += [(i, len(names)) for i in others]
+        pair_gap += [0.0] * len(others)
+        names.append(part.name)
+        joints.append(joint)
+        spheres.append(group)
+    allowed = may_touch_each(scene, names, names)
+    kept = [i for i, (a, b) in enumerate(pairs) if not allowed[a, b]]
     placements = body.chain.copy()
     placements[0, :, :3] = base.rotation @ placements[0, :, :3]
     placements[0, :, 3] = base.rotation @ placements[0, :, 3] + base.xyz
-    outside = surroundings(scene, arm)
-    return _with_solids(scene, outside, names, margin_m, problem)._replace(
+    return _with_solids(scene, among.outside, names, margin_m, problem)._replace(
         placements=rows(placements),
         bound=_with_held(problem.bound, joints, spheres, body.link_joint),
         step_m=min(max(_STEP_SHARE * float(problem.bound.max()), _LEAST_STEP_M), _MOST_STEP_M),
@@ -68,31 +87,52 @@ def problem_of(scene: PlanningScene, arm: str, *, margin_m: float = 0.0) -> tupl
         spheres=np.vstack(spheres),
         pairs=np.array([pairs[i] for i in kept], dtype=np.int64).reshape(-1, 2),
         pair_gap=np.array([pair_gap[i] for i in kept]),
-    ), Names(links=tuple(names), solids=tuple(solid.name for solid in outside))
+    ), Names(links=tuple(names), solids=tuple(solid.name for solid in among.outside))
+
+
+def with_voxels(
+    problem: Problem, names: Names, scene: PlanningScene, voxels: Voxels | None, *, margin_m: float = 0.0
+) -> tuple[Problem, Names]:
+    """Return a problem without voxels with those that cameras see; what moves keeps `margin_m` from them."""
+    if voxels is None:
+        return problem, names
+    low, high = voxels.grid[LOW:HIGH], voxels.grid[HIGH:]
+    row = np.zeros((1, SOLID_COLUMNS))
+    row[0, KIND] = GRID
+    row[0, BALL:PLANES] = np.append((low + high) / 2.0, np.linalg.norm(high - low) / 2.0)
+    gaps = np.where(may_touch_each(scene, names.links, (OCCUPANCY,)), -np.inf, margin_m)
+    return problem._replace(
+        solids=np.vstack((problem.solids, row)),
+        solid_gap=np.hstack((problem.solid_gap, gaps)),
+        voxels=voxels.field,
+        voxel_grid=voxels.grid,
+    ), Names(links=names.links, solids=(*names.solids, OCCUPANCY))
+
+
+def voxels_alone(problem: Problem) -> Problem:
+    """Return the problem in which nothing counts but the voxels that `with_voxels` has added last."""
+    return problem._replace(
+        solids=problem.solids[-1:],
+        solid_gap=np.ascontiguousarray(problem.solid_gap[:, -1:]),
+        pairs=problem.pairs[:0],
+        pair_gap=problem.pair_gap[:0],
+        orientation=FREE,
+    )
 
 
 def _with_solids(
     scene: PlanningScene, placed: tuple[PlacedSolid, ...], links: list[str], margin_m: float, problem: Problem
 ) -> Problem:
-    solids = [convex_solid(solid.shape) for solid in placed]
+    solids = [one.ready.solid for one in placed]
     numbers = np.empty((len(placed), SOLID_COLUMNS))
     plane = 0
     for row, one, solid in zip(numbers, placed, solids, strict=True):
-        # Checks the sizes, and names what is wrong.
-        coal_shape(one.shape, one.name)
         row[KIND], row[PLANES], row[PLANES + 1] = solid.kind, plane, plane + len(solid.planes)
-        row[TURN:PLACE], row[PLACE:SIZE], row[SIZE:BALL] = one.pose.rotation.ravel(), one.pose.xyz, solid.size
-        row[BALL:PLANES] = np.append(to_frame(one.pose, solid.centre[None])[0], solid.radius_m)
+        rotation = one.pose.rotation
+        row[TURN:PLACE], row[PLACE:SIZE], row[SIZE:BALL] = rotation.ravel(), one.pose.xyz, solid.size
+        row[BALL : PLANES - 1], row[PLANES - 1] = rotation @ solid.centre + one.pose.xyz, solid.radius_m
         plane += len(solid.planes)
-    gaps = np.full((len(links), len(placed)), margin_m)
-    verdicts: dict[tuple[str, str], bool] = {}
-    for row, link in enumerate(links):
-        for column, one in enumerate(placed):
-            pair = (link, one.name)
-            if pair not in verdicts:
-                verdicts[pair] = scene.may_touch(*pair)
-            if verdicts[pair]:
-                gaps[row, column] = -np.inf
+    gaps = np.where(may_touch_each(scene, links, [one.name for one in placed]), -np.inf, margin_m)
     return problem._replace(
         solids=numbers,
         planes=np.vstack([np.empty((0, 4)), *(solid.planes for solid in solids)]),
@@ -105,7 +145,7 @@ def _held(part: AttachedPart, frame: tuple[int, Rigid]) -> tuple[int, Array]:
     joint, link = frame
     at = link.then(Rigid.from_pose(part.pose))
     for solid in part.solids:
-        coal_shape(solid.shape, part.name)
+        ready_shape(solid.shape, part.name)
     solids = [LinkSolid(shape=solid.shape, pose=Rigid.from_pose(solid.pose)) for solid in part.solids]
     return joint, _moved(at, covering_spheres(solids))
 

@@ -14,6 +14,7 @@ from engine.messages import Pose
 from robots.model.robot_model import RobotModel
 from robots.sim.arm_spec import arm_spec
 from robots.sim.grip.tool_indices import ToolIndices, tool_indices
+from robots.sim.people.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
 from robots.sim.physics import mujoco
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 
@@ -56,6 +57,7 @@ class CellModel:
     part_dof: Indices
     """Addresses of the parts' velocities, six a part."""
     body_names: tuple[str, ...]
+    people: tuple[PersonIndices, ...] = ()
 
 
 def build_cell(scene: Scene) -> CellModel:
@@ -72,6 +74,7 @@ def build_cell(scene: Scene) -> CellModel:
     models = {arm.name: arm.robot() for arm in scene.arms}
     for arm in scene.arms:
         _add_arm(spec, arm, models[arm.name], scene.fixtures)
+    _add_people(spec, scene)
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -79,6 +82,7 @@ def build_cell(scene: Scene) -> CellModel:
     ferrous = tuple(part.name for part in scene.parts if part.magnetic)
     arms = tuple(_arm_indices(compiled, arm.name, models[arm.name], ferrous=ferrous) for arm in scene.arms)
     frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
+    frames += tuple(body for person in scene.people for body in body_names(person.name))
     parts = tuple(part.name for part in scene.parts)
     return CellModel(
         scene=scene,
@@ -90,6 +94,7 @@ def build_cell(scene: Scene) -> CellModel:
         part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts for i in range(7)),
         part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts for i in range(6)),
         body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
+        people=tuple(person_indices(compiled, person) for person in scene.people),
     )
 
 
@@ -181,6 +186,14 @@ def _add_arm(spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[Fi
     shoulder = spec.joint(f"{arm.name}/{model.arm_joints[0]}").parent.name
     for fixture in fixtures:
         spec.add_exclude(bodyname1=shoulder, bodyname2=fixture.name)
+
+
+def _add_people(spec: Any, scene: Scene) -> None:
+    if not scene.people:
+        return
+    for person in scene.people:
+        add_person(spec, person)
+    let_people_touch(spec, scene.fixtures)
 
 
 def _links(model: Any, arm: str) -> list[str]:

@@ -8,9 +8,10 @@ from pathlib import Path
 import msgspec
 
 from engine.document.cell import CellDocument, Fixture, RobotEntry
+from engine.document.cell_senses import Person
 from engine.errors import CellError
 from robots.sim.jitter import jittered
-from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Rgba, Scene
+from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, Scene
 
 Resolve = Callable[[str], Path]
 
@@ -34,6 +35,7 @@ def scene_of(document: CellDocument, *, seed: int | None = None, resolve: Resolv
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),
+        people=tuple(_person(name, person) for name, person in document.people.items()),
     )
 
 
@@ -95,6 +97,18 @@ def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
             )
         )
     return bodies
+
+
+def _person(name: str, person: Person) -> PersonBody:
+    return PersonBody(
+        name=name,
+        shoulder=person.shoulder,
+        hand_rests=person.hand_rests,
+        upper_arm_m=person.upper_arm_m,
+        forearm_m=person.forearm_m,
+        radius_m=person.radius_m,
+        rgba=_rgba(person.color),
+    )
 
 
 def _rgba(color: str) -> Rgba:

@@ -76,6 +76,15 @@ class Push(Command, frozen=True, kw_only=True, tag="push"):
     at_m: Vector3 = (0.0, 0.0, 0.0)
 
 
+class MoveHand(Command, frozen=True, kw_only=True, tag="move_hand"):
+    """Let the hand of a person go to a place (world); it goes back after `stay_s` there, or stays."""
+
+    person: str
+    hand_m: Vector3
+    speed_m_s: float
+    stay_s: float | None = None
+
+
 class Restore(Command, frozen=True, kw_only=True, tag="restore"):
     """Go to where an image of this world was made, at rest; `numbers` are float64 as in `ImageLayout`."""
 
@@ -95,4 +104,6 @@ class Shutdown(Command, frozen=True, kw_only=True, tag="shutdown"):
     """Bring everything to rest, then end the world's process."""
 
 
-AnyCommand = ArmCommand | ToolCommand | Hold | Resume | Cancel | StopAll | ResetParts | Push | Restore | Shutdown
+AnyCommand = (
+    ArmCommand | ToolCommand | Hold | Resume | Cancel | StopAll | ResetParts | Push | MoveHand | Restore | Shutdown
+)

@@ -13,10 +13,11 @@ class ImageLayout:
 
     First the steps done, then the physics as MuJoCo hands it out, then for each arm its set point
     and whether it has stopped by itself (1 or 0), and for each tool what it does, as
-    `robots.sim.grip.Mechanics` says it.
+    `robots.sim.grip.Mechanics` says it; last what people do and have touched, as
+    `robots.sim.people.people_in_loop` writes it.
     """
 
-    def __init__(self, arms: tuple[ArmSummary, ...], *, state_size: int) -> None:
+    def __init__(self, arms: tuple[ArmSummary, ...], *, state_size: int, people_size: int = 0) -> None:
         self.steps = 0
         self.physics = slice(1, 1 + state_size)
         at = self.physics.stop
@@ -30,4 +31,5 @@ class ImageLayout:
             if arm.tool is not None:
                 self.tools[arm.name] = slice(at, at + TOOL_FIELDS)
                 at += TOOL_FIELDS
-        self.size = at
+        self.people = slice(at, at + people_size)
+        self.size = self.people.stop

@@ -120,6 +120,14 @@ class Physics:
         """Return the two geometries of each contact of the last step."""
         return [(a, b) for a, b in self._data.contact.geom.tolist()] if self._data.ncon else []
 
+    def contact_geoms(self) -> NDArray[np.int32]:
+        """Return the same as an array, (m, 2), valid until the next step."""
+        return self._data.contact.geom
+
+    def contact_depth_m(self, contact: int) -> float:
+        """Return how deep two geometries were in one another at a contact of the last step, negative for a gap."""
+        return -float(self._data.contact.dist[contact])
+
     def normal_force_n(self, contact: int) -> float:
         """Return the normal force of a contact of the last step."""
         mujoco.mj_contactForce(self._model, self._data, contact, self._wrench)

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import msgspec
 
-from engine.messages import Pose
+from engine.document.cell_senses import arm_reach_m
+from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
 
@@ -80,6 +81,27 @@ class PartBody(msgspec.Struct, frozen=True, kw_only=True):
     rgba: Rgba = GREY
 
 
+class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
+    """A person's arm: `shoulder` stays, the middle of the hand, a ball, begins at `hand_rests`.
+
+    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the middle of the hand. It is moved,
+    whatever is in its way, passes through fixtures and other people, and collides with robots and parts.
+    """
+
+    name: str
+    shoulder: Vector3
+    hand_rests: Vector3
+    upper_arm_m: float = 0.32
+    forearm_m: float = 0.36
+    radius_m: float = 0.05
+    rgba: Rgba = GREY
+
+    @property
+    def reach_m(self) -> tuple[float, float]:
+        """Least and greatest distance of the hand from the shoulder."""
+        return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)
+
+
 class Scene(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that a simulated world is built from; equal scenes give equal worlds, bit for bit."""
 
@@ -88,3 +110,4 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True):
     arms: tuple[ArmPlacement, ...] = ()
     fixtures: tuple[FixtureBody, ...] = ()
     parts: tuple[PartBody, ...] = ()
+    people: tuple[PersonBody, ...] = ()

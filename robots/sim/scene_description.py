@@ -1,4 +1,4 @@
-"""What a cell looks like: the drawable bodies of its arms, fixtures and parts."""
+"""What a cell looks like: the drawable bodies of its arms, fixtures, parts and people."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from scipy.spatial.transform import Rotation
 from engine.messages import Pose, SceneDescription, Vector3, VisualGeometry
 from robots.model.visual_mesh import LinkVisual, link_visuals
 from robots.sim.cell_model import tray_boxes
+from robots.sim.people.person_drawing import person_geometries
 from robots.sim.scene import FixtureBody, PartBody, Scene
 
 
 def describe_scene(scene: Scene, *, cache: Path | None = None) -> SceneDescription:
     """Return everything that can be drawn; meshes come from `cache` (the user's folder by default) when there.
 
-    Frames are those of `FramePoses`: `<arm>/<link>` and part names; fixtures are fixed to `world`.
+    Frames are those of `FramePoses`: `<arm>/<link>`, `<person>/<body>` and part names; fixtures are fixed to `world`.
     """
     geometries = [
         _mesh(arm.name, index, visual)
@@ -25,6 +26,7 @@ def describe_scene(scene: Scene, *, cache: Path | None = None) -> SceneDescripti
     for fixture in scene.fixtures:
         geometries += _fixture(fixture)
     geometries += [_part(part) for part in scene.parts]
+    geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
     return SceneDescription(geometries=tuple(geometries))
 
 

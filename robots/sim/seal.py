@@ -24,7 +24,7 @@ _NUMBER = np.dtype("<f8")
 class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     """A world at one instant: its numbers as an `ImageLayout` has them, what each gripper was told to grasp,
     the settings of each arm, why those that have stopped by themselves did, and the digital outputs of those
-    that have some.
+    that have some. `memos` are what devices of the world have to know again, by their names, in their own words.
     """
 
     numbers: bytes
@@ -32,6 +32,7 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
     settings: dict[str, ArmSettings]
     reflexes: dict[str, str]
     outputs: dict[str, tuple[bool, ...]]
+    memos: dict[str, bytes] = {}
 
     @classmethod
     def of(
@@ -41,10 +42,11 @@ class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
         settings: dict[str, ArmSettings],
         reflexes: dict[str, str],
         outputs: dict[str, tuple[bool, ...]],
+        memos: dict[str, bytes] | None = None,
     ) -> WorldImage:
         """Return the image with these numbers."""
         data = numbers.astype(_NUMBER, copy=False).tobytes()
-        return cls(numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs)
+        return cls(numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs, memos=memos or {})
 
     def array(self) -> Array:
         """Return the numbers."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.document.cell import Cell
@@ -10,10 +12,15 @@ from robots.arm.arm_server import ArmServer
 from robots.arm.outputs import Outputs
 from robots.model.robot_model import RobotModel
 from robots.sim.cell_scene import scene_of
-from robots.sim.scene import ArmPlacement
+from robots.sim.scene import ArmPlacement, Scene
 from robots.sim.tool_servers import tool_server
 from robots.sim.world import SimRobot, SimWorld
 from robots.sim.world import new_world as new_sim_world
+from robots.vision.cell_cameras import cell_cameras
+from robots.workspace.live_scene import LiveScene
+from robots.workspace.planners import Planners
+from robots.workspace.workspace import Workspace
+from robots.workspace.world_look import WorldLook
 
 
 def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> SimWorld:
@@ -25,12 +32,25 @@ def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> 
     scene = scene_of(cell.document, seed=seed, resolve=cell.resolve)
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
-        return tuple(_arm(cell, world, placement, bus.clock) for placement in scene.arms)
+        cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
+        workspace = Workspace(
+            partial(_live_scene, scene, world), planners=Planners(bus.clock), clock=bus.clock, occupancy=cameras
+        )
+        arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
+        return (*((cameras,) if cameras is not None else ()), workspace, *arms)
 
     return new_sim_world(scene, virtual=virtual, make_robots=make_robots)
 
 
-def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock) -> ArmServer:
+def _live_scene(scene: Scene, world: SimWorld) -> LiveScene:
+    # Coal is loaded by who needs a scene, not by every cell that is opened.
+    from robots.planning.cell_scene import planning_scene
+
+    parts = tuple(part.name for part in scene.parts)
+    return LiveScene(planning_scene(scene), parts=parts, look=WorldLook(world, scene))
+
+
+def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, workspace: Workspace) -> ArmServer:
     model = placement.robot()
     return ArmServer(
         name=placement.name,
@@ -40,6 +60,7 @@ def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock) -> 
         clock=clock,
         gripper=tool_server(world, placement.name, model.tool),
         outputs=_outputs(cell, world, placement.name, model),
+        workspace=workspace,
     )
 
 

@@ -18,6 +18,7 @@ from robots.sim.commands import (
     CloseHand,
     CloseTo,
     Hold,
+    MoveHand,
     Push,
     ResetParts,
     Restore,
@@ -32,6 +33,7 @@ from robots.sim.grip.mechanics import Drive, Mechanics
 from robots.sim.grip.tools import new_mechanics
 from robots.sim.hands import Hands
 from robots.sim.image_layout import TOOL_FIELDS, ImageLayout
+from robots.sim.people.people_in_loop import PeopleInLoop
 from robots.sim.physics import Physics
 from robots.sim.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
 from robots.sim.tool_summary import tool_summary
@@ -65,10 +67,11 @@ class Simulation:
             for arm in cell.arms
         }
         self._hands = Hands(physics)
+        self._people = PeopleInLoop(cell, physics, step_s=self.step_s)
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, Mechanics] = {name: tool for name, tool in tools.items() if tool is not None}
         arms = _arm_summaries(cell)
-        self.image_layout = ImageLayout(arms, state_size=physics.state_size)
+        self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
         self.summary = _summary(cell, arms, image_size=self.image_layout.size)
         self.layout = SnapshotLayout(self.summary)
 
@@ -85,6 +88,10 @@ class Simulation:
     def control(self, arm: str) -> ArmControl:
         """Return what controls an arm, for tests and measurements."""
         return self._arms[arm].control
+
+    def touching(self, arm: str) -> str:
+        """Say in words what an arm touches after the last step, empty for nothing; for tests and measurements."""
+        return self._contacts.describe(self._arms[arm].indices)
 
     def apply(self, command: AnyCommand) -> None:
         """Take a command; it acts from the next step on. Unknown motion numbers are ignored."""
@@ -104,6 +111,8 @@ class Simulation:
                     device.cancel(command.motion)
             case Push():
                 self._hands.push(command)
+            case MoveHand():
+                self._people.send(command)
             case ResetParts():
                 self._qpos[self._cell.part_qpos] = self._start_poses
                 self._qvel[self._cell.part_dof] = 0.0
@@ -116,6 +125,7 @@ class Simulation:
     def step(self) -> list[AnyMotionEvent]:
         """Let one step pass and return what happened to the motions."""
         events: list[AnyMotionEvent] = []
+        self._people.place()
         self._physics.start_step()
         for tool in self._tools.values():
             events.extend(tool.step(self.step_s))
@@ -132,6 +142,7 @@ class Simulation:
             arm.drive(self._inertia_torque, step_s=self.step_s)
         self._hands.step(self.step_s)
         self._physics.finish_step()
+        self._people.count()
         self.steps += 1
         return events
 
@@ -147,6 +158,7 @@ class Simulation:
         xyz, wxyz = self._physics.body_poses(self._cell.frame_bodies)
         values[layout.positions] = xyz.reshape(-1)
         values[layout.quaternions] = wxyz.reshape(-1)
+        self._people.write_report(values[layout.people])
 
     def write_image(self, image: Array) -> None:
         """Write everything that the future depends on into an array of `image_layout`'s size."""
@@ -159,9 +171,10 @@ class Simulation:
         for name, tool in self._tools.items():
             command = tool.command()
             image[layout.tools[name]] = (*command, *(0.0,) * (TOOL_FIELDS - len(command)))
+        self._people.write_image(image[layout.people])
 
     def _restore(self, image: Array) -> None:
-        """Stand still where an image was made; what was gripped stays gripped."""
+        """Stand still where an image was made; what was gripped stays gripped, and people go on with what they did."""
         layout = self.image_layout
         self.steps = int(image[layout.steps])
         self._hands.let_go()
@@ -170,6 +183,7 @@ class Simulation:
             arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
         for name, tool in self._tools.items():
             tool.take_over(tuple(image[layout.tools[name]].tolist()))
+        self._people.take_over(image[layout.people])
 
     def state_hash(self) -> str:
         """Return the SHA-256 of everything that the future of the physics depends on."""
@@ -214,4 +228,5 @@ def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, image_size: int) 
         bodies=cell.body_names,
         model=fingerprint(cell.model),
         image_size=image_size,
+        people=tuple(person.name for person in cell.people),
     )

@@ -9,6 +9,7 @@ import numpy as np
 
 from engine.messages import Quaternion, Vector3
 from robots.port import ArmSample, Array, GripperSample, HandSample, MagnetSample
+from robots.sim.people.person_report import PersonSample, person_sample, report_size
 from robots.sim.tool_summary import ToolSummary
 
 # Motion number, progress, three measures of the device, then the contacts.
@@ -37,6 +38,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     bodies: tuple[str, ...]
     model: str
     image_size: int
+    people: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +81,9 @@ class SnapshotLayout:
         frames = len(summary.frames)
         self.positions = slice(at, at + 3 * frames)
         self.quaternions = slice(at + 3 * frames, at + 7 * frames)
-        self.size = at + 7 * frames
+        at += 7 * frames
+        self.people = slice(at, at + report_size(len(summary.people), body_count=len(summary.bodies)))
+        self.size = self.people.stop
 
     def new_array(self) -> Array:
         """Return an array of the right size, zero."""
@@ -135,6 +139,11 @@ class Snapshot:
         """The measurement of the magnet on an arm."""
         (on, pull, _), (contact,) = self._tool(name)
         return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
+
+    def person(self, name: str) -> PersonSample:
+        """What one of the people does and has touched."""
+        summary = self._layout.summary
+        return person_sample(self._values[self._layout.people], summary.people, name, bodies=summary.bodies)
 
     def tool_progress(self, name: str, motion: int) -> float | None:
         """The progress of a tool's motion, None when the tool does not carry out this one."""

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import math
 from collections.abc import Callable, Mapping
+from contextlib import AsyncExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Protocol, Self, runtime_checkable
 
 from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
@@ -19,9 +20,10 @@ from robots.gripper.grip_judgement import Grip
 from robots.port import ArmPort, GripperPort, HandPort, MagnetPort, MotionEnd
 from robots.sim.commands import Push, StopAll
 from robots.sim.commands import ResetParts as ResetPartsCommand
-from robots.sim.host import Host
+from robots.sim.host import Host, StepHook
 from robots.sim.lockstep_host import LockstepHost
 from robots.sim.motion_board import MotionBoard
+from robots.sim.people.person_services import PersonServices
 from robots.sim.process_host import ProcessHost
 from robots.sim.publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
 from robots.sim.scene import ArmPlacement, Scene
@@ -46,6 +48,19 @@ class SimRobot(Robot, Protocol):
         ...
 
 
+@runtime_checkable
+class Remembers(Protocol):
+    """A robot or device that knows more than that, in words of its own."""
+
+    def memo(self) -> bytes:
+        """What it must know again after a restore; empty for nothing."""
+        ...
+
+    def remember(self, memo: bytes) -> None:
+        """Know again what `memo` of an earlier life says; raises RobotError where it cannot be read."""
+        ...
+
+
 RobotMaker = Callable[["SimWorld"], tuple[SimRobot, ...]]
 
 
@@ -59,7 +74,8 @@ class SimWorld:
     it attaches itself to a `VirtualLoop` while it is open.
 
     `make_robots` puts the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
-    before the world is opened and work while it is open.
+    before the world is opened and work while it is open. Those of the made that are on no arm are devices of
+    the world itself, such as what watches it: they are entered, registered and left along with the world.
     """
 
     def __init__(
@@ -87,7 +103,11 @@ class SimWorld:
         self._joint_steps = max(1, round(1.0 / (JOINT_RATE_HZ * scene.step_s)))
         self._frame_steps = max(1, round(1.0 / (FRAME_RATE_HZ * scene.step_s)))
         self._hooked_steps = 0
+        self._hooks: list[tuple[StepHook, Callable[[], bool]]] = []
+        self.people = PersonServices(self.name, scene.people, host)
         self._robots = make_robots(self)
+        self._devices = tuple(robot for robot in self._robots if robot.name not in self._arms)
+        self._opened_devices = AsyncExitStack()
 
     @property
     def name(self) -> str:
@@ -107,8 +127,16 @@ class SimWorld:
         return self._host
 
     def robots(self) -> tuple[Robot, ...]:
-        """The simulated robots and grippers, not yet connected."""
-        return self._robots
+        """The simulated robots, not yet connected."""
+        return tuple(robot for robot in self._robots if robot.name in self._arms)
+
+    def devices(self) -> tuple[Robot, ...]:
+        """The devices of the world itself, entered, registered and left along with it."""
+        return self._devices
+
+    def each_step(self, hook: StepHook, *, busy: Callable[[], bool]) -> None:
+        """Call `hook` after every step in lockstep, from now on; time passes while `busy` says so."""
+        self._hooks.append((hook, busy))
 
     def arm_names(self) -> tuple[str, ...]:
         """The arms of this world, in document order."""
@@ -144,7 +172,8 @@ class SimWorld:
         settings = {name: port.settings for name, port in self._arm_ports.items()}
         reflexes = {name: reason for name, port in self._arm_ports.items() if (reason := port.reflex_reason)}
         outputs = {name: port.values for name, port in self._outputs.items()}
-        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs)
+        memos = {robot.name: memo for robot in self._robots if isinstance(robot, Remembers) and (memo := robot.memo())}
+        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs, memos)
         return sealed(image, model=self._host.summary.model)
 
     async def restore(self, snapshot: bytes) -> None:
@@ -171,6 +200,8 @@ class SimWorld:
             self._outputs[name].recall(values)
         for robot in self._robots:
             robot.recall(image.grips)
+            if isinstance(robot, Remembers):
+                robot.remember(image.memos.get(robot.name, b""))
 
     def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Let a hand push at a body from now on, in world axes, at a point of its frame; replaces its last push.
@@ -197,6 +228,9 @@ class SimWorld:
         self._bus = bus
         bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
         bus.advertise_service(PushBody, self._push_body, namespace=self.name)
+        self.people.register(bus)
+        for device in self._devices:
+            device.register(bus)
         if not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
 
@@ -238,6 +272,13 @@ class SimWorld:
             self._host.begin(loop.time())
             if isinstance(loop, VirtualLoop):
                 loop.attach(self)
+        try:
+            for device in self._devices:
+                await self._opened_devices.enter_async_context(device)
+        except BaseException:
+            # Whatever stopped a device from opening, cancellation included, the world must not be left open.
+            await self.__aexit__(None, None, None)
+            raise
         return self
 
     async def __aexit__(
@@ -245,6 +286,7 @@ class SimWorld:
     ) -> None:
         try:
             await self._stop_publishing()
+            await self._opened_devices.aclose()
             if self._status is DeviceStatus.READY:
                 await self.stop()
         finally:
@@ -264,7 +306,9 @@ class SimWorld:
     @property
     def busy(self) -> bool:
         """True while a motion is under way or a topic is read (lockstep)."""
-        return self._lockstep().busy or (self._publisher is not None and self._publisher.read)
+        if self._lockstep().busy or (self._publisher is not None and self._publisher.read):
+            return True
+        return any(busy() for _, busy in self._hooks)
 
     def advance(self, until_s: float) -> float:
         """Step towards `until_s`; returns early, with the time reached, once somebody was told something."""
@@ -283,6 +327,8 @@ class SimWorld:
                 told = publisher.publish_joints()
             if self._hooked_steps % self._frame_steps == 0:
                 told = publisher.publish_frames() or told
+        for hook, _ in self._hooks:
+            told = hook() or told
         return told
 
     async def _publish_in_real_time(self) -> None:

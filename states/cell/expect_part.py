@@ -11,12 +11,10 @@ from msgspec import Meta
 from engine.cause import under
 from engine.errors import StateError
 from engine.event import Cause
-from engine.messages import FramePoses, PartPoses, Vector3
+from engine.messages import FramePoses, Vector3
 from engine.nearness import near_names
 from engine.state import Context, Outcome, State
-
-PARTS_TOPIC = "cell/parts"
-FRAMES_TOPIC = "cell/frames"
+from states.frames import FRAMES_TOPIC, PARTS_TOPIC, part_in_world
 
 Pair = tuple[float, float]
 Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
@@ -61,11 +59,10 @@ class ExpectPart(State, frozen=True, kw_only=True):
 
     async def run(self, ctx: Context) -> Outcome:
         """Read the newest measured poses of the parts."""
-        poses = (await ctx.latest(PARTS_TOPIC, PartPoses)).poses
-        if self.part not in poses:
-            because = Cause(message=f"no such part is in the cell; {near_names(self.part, poses)}", where=PARTS_TOPIC)
-            return self._elsewhere(ctx, because)
-        xyz = poses[self.part].xyz
+        place = await part_in_world(ctx, self.part)
+        if isinstance(place, Cause):
+            return self._elsewhere(ctx, place)
+        xyz = place.xyz
         fault = _outside(self.region, xyz) if self.region else await self._away(ctx, xyz)
         return self._elsewhere(ctx, Cause(message=fault, where=PARTS_TOPIC)) if fault else Outcome("there")
 

@@ -19,6 +19,7 @@ from engine.messages import JointState, PartPoses, Pose
 from engine.plan import new_plan
 from engine.registry import load_states
 from engine.run import Run, RunResult
+from engine.supervision import Supervision
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 SAMPLE_S = 0.05
@@ -44,6 +45,7 @@ class Application:
     seed: int | None = None
     parameters: dict[str, object] = field(default_factory=dict[str, object])
     meanwhile: Meanwhile | None = None
+    supervision: Supervision | None = None
     log: list[Event] = field(default_factory=list[Event])
     seen: list[Seen] = field(default_factory=list[Seen])
 
@@ -75,6 +77,7 @@ class Application:
                 parameters=self.parameters,
                 inputs={},
                 seed=self.seed or 0,
+                supervision=self.supervision,
                 journal=NullJournal().begin("application", behavior="", document="", started_unix_s=0.0),
             )
             run.watch(self.log.append)

@@ -11,7 +11,13 @@ from tests.behaviors.application import Application, shipped_cell
 
 
 @pytest.mark.parametrize(
-    ("name", "cell"), [("pick_and_place", "ur10"), ("plate_transfer", "irb4600"), ("test_cylinder", "servo_arm")]
+    ("name", "cell"),
+    [
+        ("pick_and_place", "ur10"),
+        ("plate_transfer", "irb4600"),
+        ("plate_transfer_shared", "irb4600_shared"),
+        ("test_cylinder", "servo_arm"),
+    ],
 )
 def test_the_same_seed_gives_the_same_events_and_the_same_place_to_the_last_bit(
     tmp_path: Path, name: str, cell: str

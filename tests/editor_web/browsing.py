@@ -58,12 +58,12 @@ def opened_page(
     assert not (said and quiet), said
 
 
-def require_accessible(page: Page, what: str) -> None:
-    """axe-core finds nothing on the page as it is."""
+def require_accessible(page: Page, what: str, *, part: str = "") -> None:
+    """axe-core finds nothing on the page as it is, or in the part of it that a selector names."""
     # Colours fade for a moment when something changes.
     page.evaluate("() => Promise.all(document.getAnimations().map((a) => a.finished.catch(() => null)))")
     page.evaluate(f"() => {{ {AXE.read_text(encoding='utf-8')} }}")
-    result: dict[str, Any] = page.evaluate("() => axe.run(document)")
+    result: dict[str, Any] = page.evaluate("(part) => axe.run(part || document)", part)
     found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
     assert found == [], f"{what}: {found}"
 

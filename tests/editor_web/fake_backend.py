@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable, Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from editor_web.operation import Attached, InterruptedRun
@@ -13,6 +14,7 @@ from engine.bus.access import BusAccess
 from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
 from engine.control import Breakpoint, Control
+from engine.editing import Documents
 from engine.errors import BusError, ControlError, FlexcellError
 from engine.event import (
     Entered,
@@ -33,11 +35,17 @@ from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSF
 from tests.editor_web.fake_scene import frames_at, new_scene
 
 
-class EmptyBus:
-    """A bus with nobody on it."""
+class TopicBus:
+    """A bus with topics and nobody who answers."""
+
+    def __init__(self, topics: Mapping[str, object]) -> None:
+        self._topics = topics
 
     async def listing(self) -> tuple[BusEntry, ...]:
-        return ()
+        return tuple(
+            BusEntry(kind="topic", name=name, type=type(message).__name__, detail="")
+            for name, message in self._topics.items()
+        )
 
     async def echo(self, topic: str) -> AsyncGenerator[str, None]:
         raise BusError("no such topic", where=topic)
@@ -56,9 +64,15 @@ class EmptyBus:
 class FakeBackend:
     """Implements `editor_web.backend.Backend`; leaves take `step_s`, `single_pick` fails at its grasp."""
 
-    def __init__(self, *, step_s: float = 0.2, behaviors: tuple[Behavior, ...] = (BROKEN, SINGLE, TRANSFER)) -> None:
+    def __init__(
+        self,
+        *,
+        step_s: float = 0.2,
+        behaviors: tuple[Behavior, ...] = (BROKEN, SINGLE, TRANSFER),
+        documents: Documents | None = None,
+    ) -> None:
         self.cell_name = "dual_panda"
-        self.known_bus: BusAccess = EmptyBus()
+        self.documents = documents or Documents(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
         self.step_s = step_s
         self._behaviors = {b.id: b for b in behaviors}
@@ -69,7 +83,9 @@ class FakeBackend:
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._callbacks: list[Callable[[str, Event], None]] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
+        self.known_bus: BusAccess = TopicBus(self._topics)
         self._topic_callbacks: dict[str, list[Callable[[object], None]]] = {}
+        self.listeners_changed = asyncio.Event()
 
     @property
     def bus(self) -> BusAccess:
@@ -137,9 +153,10 @@ class FakeBackend:
     def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Callable[[], None]:
         callbacks = self._topic_callbacks.setdefault(topic, [])
         callbacks.append(callback)
+        self.listeners_changed.set()
         if topic in self._topics:
             callback(self._topics[topic])
-        return lambda: callbacks.remove(callback)
+        return lambda: self._forget(callbacks, callback)
 
     def control(self, run_id: str) -> Control:
         raise ControlError("this fake has no control", where=run_id)
@@ -173,6 +190,14 @@ class FakeBackend:
         self._topics[topic] = message
         for callback in list(self._topic_callbacks.get(topic, [])):
             callback(message)
+
+    def _forget(self, callbacks: list[Callable[[object], None]], callback: Callable[[object], None]) -> None:
+        callbacks.remove(callback)
+        self.listeners_changed.set()
+
+    def listeners(self, topic: str) -> int:
+        """How many are called back with the messages of a topic."""
+        return len(self._topic_callbacks.get(topic, ()))
 
     def emit(self, run_id: str, kind: type[Event], /, **fields: object) -> None:
         """Append one event to a run from outside."""

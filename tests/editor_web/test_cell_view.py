@@ -6,8 +6,9 @@ import asyncio
 import struct
 import urllib.error
 import urllib.request
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
+from typing import Any
 
 import httpx
 import msgspec
@@ -17,12 +18,22 @@ import zstandard
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
-from editor_web.cell_view import KEY_HEADER, CellView
+from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, Group
 from engine.errors import FlexcellError
 from engine.messages import SceneDescription
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
+from tests.editor_web.fake_sights import (
+    camera,
+    depth,
+    description,
+    frames_with_a_person,
+    occupancy,
+    planning_scene,
+    scene_with_a_person,
+    way,
+)
 
 VISER = Subprotocol("viser-v1.1.1")
 
@@ -32,11 +43,11 @@ async def opened(backend: FakeBackend) -> AsyncGenerator[CellView]:
     """An open view of a backend's cell."""
     view = CellView(backend, shadows=False)
     await asyncio.to_thread(view.open)
-    view.subscribe()
+    await view.subscribe()
     try:
         yield view
     finally:
-        view.unsubscribe()
+        await view.unsubscribe()
         await asyncio.to_thread(view.close)
 
 
@@ -164,3 +175,139 @@ async def test_a_viewer_that_was_away_gets_the_newest_poses_and_not_all_that_it_
             while newest not in (data := unpacked(await socket.recv())):
                 missed += data.count(b"/cell/left.fore")
         assert missed < 500
+
+
+def sighted() -> FakeBackend:
+    """A backend of a cell with cameras, a person, obstacles and a planned way."""
+    backend = FakeBackend()
+    backend.publish("left/description", description("left"))
+    backend.publish("right/description", description("right"))
+    backend.publish("cell/scene", scene_with_a_person())
+    backend.publish("cell/frames", frames_with_a_person(0.0))
+    backend.publish("cell/planning_scene", planning_scene())
+    backend.publish("cell/occupancy", occupancy())
+    backend.publish("left/planned_path", way("left"))
+    backend.publish("above/camera_info", camera())
+    backend.publish("above/depth", depth())
+    return backend
+
+
+@asynccontextmanager
+async def looking(view: CellView, *, page: str = "") -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
+    """A page that is connected to a view, and has told viser of its camera as a browser does."""
+    async with websockets.asyncio.client.connect(
+        f"ws://127.0.0.1:{view.port}/",
+        subprotocols=[VISER],
+        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: page},
+        max_size=None,
+        proxy=None,
+    ) as socket:
+        await socket.send(CAMERA)
+        yield socket
+
+
+def camera_message() -> bytes:
+    """What viser's page says first: where it looks from."""
+    fields: dict[str, Any] = {
+        "type": "ViewerCameraMessage",
+        "wxyz": (1.0, 0.0, 0.0, 0.0),
+        "position": (1.0, 1.0, 1.0),
+        "fov": 0.8,
+        "near": 0.01,
+        "far": 1000.0,
+        "image_height": 480,
+        "image_width": 640,
+        "look_at": (0.0, 0.0, 0.0),
+        "up_direction": (0.0, 0.0, 1.0),
+    }
+    return msgspec.msgpack.encode(fields)
+
+
+CAMERA = camera_message()
+
+
+async def until(backend: FakeBackend, condition: Callable[[], bool]) -> None:
+    """Wait until the topics of a backend are followed so."""
+    async with asyncio.timeout(20):
+        while not condition():
+            await backend.listeners_changed.wait()
+            backend.listeners_changed.clear()
+
+
+async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
+    """Each in its group; the bodies of people are none of the cell's."""
+    async with opened(sighted()) as view, looking(view) as socket:
+        await read(
+            socket,
+            "/voxels/occupied",
+            "/ways/left/line",
+            "/ways/left/ghost/fore/",
+            "/obstacles/post/0",
+            "/people/anna.hand/",
+            "/cell/left.fore/",
+            "/cameras/above",
+            "/frames/world",
+        )
+
+
+async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them() -> None:
+    """For cameras take images only while somebody does."""
+    backend = sighted()
+    costly = ("cell/occupancy", "above/depth")
+
+    def followed() -> list[bool]:
+        return [backend.listeners(topic) > 0 for topic in costly]
+
+    async with opened(backend) as view:
+        assert followed() == [False, False]
+        async with looking(view, page="one"):
+            await until(backend, lambda: followed() == [True, False])
+            view.show("one", frozenset[Group]({"cameras"}))
+            await until(backend, lambda: followed() == [False, True])
+            async with looking(view, page="two"):
+                await until(backend, lambda: followed() == [True, True])
+                view.show("two", frozenset())
+                await until(backend, lambda: followed() == [False, True])
+        await until(backend, lambda: followed() == [False, False])
+        assert view.shown == frozenset()
+    assert [backend.listeners(topic) for topic in ("cell/frames", "left/planned_path")] == [0, 0]
+
+
+async def test_a_topic_that_is_made_later_is_followed_with_the_next_page() -> None:
+    """As that of an arm which plans for the first time."""
+    backend = FakeBackend()
+    async with opened(backend) as view:
+        backend.publish("left/planned_path", way("left"))
+        assert backend.listeners("left/planned_path") == 0
+        async with looking(view):
+            await until(backend, lambda: backend.listeners("left/planned_path") == 1)
+
+
+async def test_each_page_shows_what_it_wants(serve: Serve) -> None:
+    """What it said before its view was loaded counts, and only for itself."""
+    async with serve(sighted(), cell_view=True) as served, served.live() as live:
+        await live.send({"k": "show", "page": "mine", "groups": ["cameras"]})
+        await live.until("snapshot")
+        await until(served.backend, lambda: served.backend.listeners("left/planned_path") > 0)
+        async with websockets.asyncio.client.connect(
+            f"{served.origin.replace('http', 'ws', 1)}/cell/mine",
+            subprotocols=[VISER],
+            additional_headers=served.cookie,
+            origin=websockets.Origin(served.origin),
+            max_size=None,
+            proxy=None,
+        ) as socket:
+            await socket.send(CAMERA)
+            await until(served.backend, lambda: served.backend.listeners("above/depth") == 1)
+            assert served.backend.listeners("cell/occupancy") == 0
+            await live.send({"k": "show", "page": "mine", "groups": ["voxels"]})
+            await until(served.backend, lambda: served.backend.listeners("cell/occupancy") == 1)
+            await until(served.backend, lambda: served.backend.listeners("above/depth") == 0)
+
+
+@pytest.mark.parametrize("name", ["UPPER", "a%20b", "x" * 41, "a.b"])
+async def test_a_page_of_a_name_that_is_none_is_refused(serve: Serve, name: str) -> None:
+    """It would go into a header."""
+    async with serve(cell_view=True) as served:
+        assert (await served.http.get(f"/cell/{name}/")).status_code == 404
+        assert (await served.http.get("/cell/a1/")).status_code == 200

@@ -8,13 +8,16 @@ from pathlib import Path
 
 from editor_web.live import LiveClient, LiveHub
 from editor_web.live_frames import Delta, Snapshot
+from editor_web.live_robots import RobotBoard
 from engine.bus import SkillBus
 from engine.cell import OpenCell
 from engine.journal import Journal
 from engine.messages import JointState
 from engine.session import Session
 from engine.skills.arm_control import SetSpeedOverride
+from engine.skills.planning import PathPreview
 from tests.editor_web.fake_arm import FakeArm
+from tests.editor_web.fake_sights import way
 
 
 @asynccontextmanager
@@ -50,6 +53,31 @@ async def test_a_page_gets_all_arms_first_and_then_those_that_changed(tmp_path: 
         line = delta(client).robots["left"]
         assert (line.mode, line.activity, line.error, line.speed_override) == ("reflex", "", "pushed", 0.25)
         assert client.frame() is None
+
+
+async def test_the_way_of_an_arm_is_told_with_what_blocks_it_and_since_when(tmp_path: Path) -> None:
+    """Another reason is the same wait; a way that is over is none."""
+    with Journal.open(tmp_path) as journal:
+        async with OpenCell(None) as cell, Session(cell, project=tmp_path, catalogue={}, journal=journal) as session:
+            ways = cell.bus.topic("left/planned_path", PathPreview)
+            FakeArm(cell.bus, "left")
+            now_s = 100.0
+            board = RobotBoard(session, changed=lambda name: None, unix_s=lambda: now_s)
+            await board.open()
+            ways.publish(way("left", "moving"))
+            now_s = 107.0
+            ways.publish(way("left", "blocked", reason="a hand"))
+            now_s = 109.0
+            ways.publish(way("left", "blocked", reason="an arm"))
+            line = board.lines["left"].way
+            assert line is not None
+            assert (line.state, line.reason, line.since_s) == ("blocked", "an arm", 107.0)
+            assert 1.0 < line.length_m < 1.5
+            await cell.bus.call(SetSpeedOverride(share=0.25), to="left")
+            assert board.lines["left"].way == line
+            ways.publish(way("left", "none"))
+            assert board.lines["left"].way is None
+            board.close()
 
 
 async def test_what_says_the_same_again_wakes_nobody(tmp_path: Path) -> None:

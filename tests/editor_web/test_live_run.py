@@ -8,13 +8,14 @@ import msgspec
 import pytest
 
 from editor_web.event_words import CauseLine, log_line
-from editor_web.live_run import LOG_LINES, LiveRun, NodeLive
+from editor_web.live_run import LOG_LINES, LiveRun, NodeLive, PlanLive
 from engine.event import (
     AnyEvent,
     Cause,
     Entered,
     Event,
     Exited,
+    GoalFinished,
     Logged,
     RunEnded,
     RunStarted,
@@ -29,6 +30,10 @@ def entered(seq: int, path: str, visit: int = 1, time_s: float = 0.0) -> Event:
 
 def exited(seq: int, path: str, outcome: str = "done", *, time_s: float = 0.0, cause: Cause | None = None) -> Event:
     return Exited(seq=seq, time_s=time_s, path=path, visit=1, outcome=outcome, cause=cause)
+
+
+def arrived(seq: int, result: dict[str, object]) -> Event:
+    return GoalFinished(seq=seq, time_s=float(seq), path="root/plan", goal="g", status="succeeded", result=result)
 
 
 def folded(*events: Event) -> LiveRun:
@@ -103,6 +108,27 @@ def test_an_event_that_was_folded_already_changes_nothing() -> None:
     live = folded(entered(1, "root"), exited(2, "root"))
     assert live.apply(entered(1, "root")) is None
     assert live.nodes["root"].status == "done"
+
+
+def test_a_way_that_was_planned_belongs_to_the_visit_that_planned_it() -> None:
+    """Of all results of goals only a way is one."""
+    plan: dict[str, object] = {
+        "robot": "left",
+        "waypoints": [[0.0], [1.0]],
+        "speed": 0.3,
+        "duration_s": 2.5,
+        "tool_path": [[0.0, 0.0, 0.0], [0.3, 0.4, 0.0], [0.3, 0.4, 1.0]],
+        "found_by": "fast",
+        "planning_s": 0.01,
+    }
+    live = folded(entered(1, "root/plan"), arrived(2, {"joints": [1.0]}))
+    assert live.nodes["root/plan"].plan is None
+    live.apply(arrived(3, plan))
+    assert live.nodes["root/plan"].plan == PlanLive(
+        robot="left", duration_s=2.5, length_m=1.5, found_by="fast", planning_s=0.01
+    )
+    live.apply(entered(4, "root/plan", visit=2))
+    assert live.nodes["root/plan"].plan is None
 
 
 def test_the_log_is_bounded() -> None:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from contextlib import AsyncExitStack
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from editor_web.access import Access, load_access
 from editor_web.server import Dashboard, dashboard
+from engine.bus import SkillBus
 from engine.cell import OpenCell
 from engine.event import Event
 from engine.journal import Journal
 from engine.registry import load_states
 from engine.session import Session
+from engine.state import State
 from tests.editor_web.fake_arm import FakeArm
 from tests.engine.fake_states import CATALOGUE
 
@@ -68,8 +70,17 @@ root:
 class Workshop:
     """`with Workshop(…) as shop`: a project with two behaviors, a bus with one arm, the page at `shop.running.url`."""
 
-    def __init__(self, *, host: str, project: Path) -> None:
+    def __init__(
+        self,
+        *,
+        host: str,
+        project: Path,
+        states: Mapping[str, type[State]] = {},
+        furnish: Callable[[SkillBus], None] = lambda bus: None,
+        cell_view: bool = False,
+    ) -> None:
         self.project = project
+        self._states, self._furnish, self._cell_view = states, furnish, cell_view
         (project / "behaviors").mkdir(exist_ok=True)
         for behavior_id, text in ((SHIFT_ID, SHIFT), (NAP_ID, NAP)):
             (project / behavior_id).write_text(text, encoding="utf-8")
@@ -122,7 +133,7 @@ class Workshop:
         """What has happened in a run."""
         return self.on_loop(lambda: list(self.session.events(run_id)))
 
-    def __enter__(self) -> Workshop:
+    def __enter__(self) -> Self:
         self._thread.start()
         self.call(self._up())
         return self
@@ -136,12 +147,19 @@ class Workshop:
     async def _up(self) -> None:
         journal = self._open.enter_context(Journal.open(self.project / ".flexcell"))
         cell = await self._open.enter_async_context(OpenCell(None))
-        catalogue = {**load_states(), **CATALOGUE}
+        catalogue = {**load_states(), **CATALOGUE, **self._states}
+        self._furnish(cell.bus)
         session = await self._open.enter_async_context(
             Session(cell, project=self.project, catalogue=catalogue, journal=journal)
         )
         arm = FakeArm(cell.bus, "left")
         running = await self._open.enter_async_context(
-            dashboard(session, token_file=self.project / "tokens", host=self._host, cell_view=False, shadows=False)
+            dashboard(
+                session,
+                token_file=self.project / "tokens",
+                host=self._host,
+                cell_view=self._cell_view,
+                shadows=False,
+            )
         )
         self._parts = session, arm, running

@@ -33,7 +33,7 @@ PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "d
 CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
 TRIGGERS = "\ntriggers:"
-PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:")
+PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:")
 SHOWN = {
@@ -87,6 +87,7 @@ def test_a_part_of_a_cell_makes_a_world(tmp_path: Path, text: str) -> None:
     scene = scene_of(cell.document, seed=None, resolve=cell.resolve)
     assert {arm.name for arm in scene.arms} == set(cell.document.robots)
     assert {part.name for part in scene.parts} == set(cell.document.parts)
+    assert {person.name for person in scene.people} == set(cell.document.people)
 
 
 @shown(*STORES)

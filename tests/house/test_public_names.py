@@ -15,6 +15,7 @@ FACES = [
     "engine.bus",
     "engine.check",
     "engine.document",
+    "engine.editing",
     "engine.journal",
     "engine.recording",
     "engine.replay",

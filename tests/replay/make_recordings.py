@@ -17,6 +17,8 @@ RECORDINGS = {
     "two_arm_transfer": "behaviors/reconcycle/two_arm_transfer.yaml",
     "pick_and_place": "behaviors/pick_and_place/pick_and_place.yaml",
     "plate_transfer": "behaviors/plate_transfer/plate_transfer.yaml",
+    "plate_transfer_shared": "behaviors/plate_transfer_shared/plate_transfer_shared.yaml",
+    "plate_transfer_fixed": "behaviors/plate_transfer_shared/plate_transfer_fixed.yaml",
     "test_cylinder": "behaviors/test_cylinder/test_cylinder.yaml",
 }
 SLOW = ("--record-rate", "2", "--record-topic", "*/joint_state", "--record-topic", "cell/frames")

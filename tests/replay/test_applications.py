@@ -16,15 +16,24 @@ from engine.replay import recorded_behavior
 
 FOLDER = Path(__file__).parent
 BEHAVIORS = FOLDER.parents[1] / "behaviors"
-APPLICATIONS = {"pick_and_place": "ur10", "plate_transfer": "irb4600", "test_cylinder": "servo_arm"}
+APPLICATIONS = [
+    ("pick_and_place", "pick_and_place", "ur10", "ur10"),
+    ("plate_transfer", "plate_transfer", "irb4600", "irb4600"),
+    ("plate_transfer_shared", "plate_transfer_shared", "irb4600_shared", "irb4600"),
+    ("plate_transfer_shared", "plate_transfer_fixed", "irb4600", "irb4600"),
+    ("test_cylinder", "test_cylinder", "servo_arm", "servo_arm"),
+]
 
 
-@pytest.mark.parametrize(("name", "cell"), APPLICATIONS.items())
-def test_the_recording_is_small_and_that_of_the_present_behavior(name: str, cell: str) -> None:
+@pytest.mark.parametrize(("folder", "name", "cell", "entries"), APPLICATIONS)
+def test_the_recording_is_small_and_that_of_the_present_behavior(
+    folder: str, name: str, cell: str, entries: str
+) -> None:
     file = FOLDER / f"{name}.mcap"
     assert file.stat().st_size < 150_000
     recording = load_recording(file)
     again = f"make it again: python tests/replay/make_recordings.py {name}"
-    assert recorded_behavior(recording).meaning == load_behavior(BEHAVIORS / name / f"{name}.yaml").meaning, again
+    assert recorded_behavior(recording).meaning == load_behavior(BEHAVIORS / folder / f"{name}.yaml").meaning, again
     assert (recording.description.clock, recording.description.seed) == ("virtual", 1)
-    assert {f"{name}/{name}.yaml", f"cells/{cell}.yaml", f"entries/{cell}.yaml"} <= set(recording.documents.texts)
+    documents = {f"{folder}/{name}.yaml", f"cells/{cell}.yaml", f"entries/{entries}.yaml"}
+    assert documents <= set(recording.documents.texts)

@@ -58,6 +58,11 @@ class FakeMotion:
         """True once it has a report."""
         return self._end.done()
 
+    @property
+    def running(self) -> bool:
+        """False while it is frozen by a hold or a cancel."""
+        return self._timer is not None
+
     async def report(self) -> MotionReport:
         """Wait for the end."""
         return await asyncio.shield(self._end)

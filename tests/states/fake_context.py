@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import msgspec
 
@@ -27,14 +27,15 @@ class FakeContext:
     """Answers by bus address.
 
     Args:
-        answers: Address → the answer of a service (an exception is raised) or the `ActionEnd` of a goal.
+        answers: Address → the answer of a service (an exception is raised) or the `ActionEnd` of a goal; of a
+            list, the first one left.
         topics: Topic → its latest message.
     """
 
     def __init__(
         self, answers: Mapping[str, object] | None = None, *, topics: Mapping[str, msgspec.Struct] | None = None
     ) -> None:
-        self._answers = dict(answers or {})
+        self.answers = dict(answers or {})
         self._topics = dict(topics or {})
         self.clock = LoopClock()
         self.path = "root/step"
@@ -73,9 +74,11 @@ class FakeContext:
     def _answer(self, request: Any, to: str) -> Any:
         address = f"{to}/{request.skill_name()}"
         self.sent.append((address, request))
-        if address not in self._answers:
+        if address not in self.answers:
             raise NoSuchSkill("nobody answers at this address", where=address)
-        answer = self._answers[address]
+        answer: Any = self.answers[address]
+        if isinstance(answer, list):
+            answer = cast("list[Any]", answer).pop(0)
         if isinstance(answer, Exception):
             raise answer
         return answer

@@ -24,6 +24,8 @@ fixtures:
   table: {shape: box, size_m: [1, 1, 0.1], color: "#aabbcc"}
 parts:
   can: {shape: cylinder, size_m: [0.05, 0.1], mass_kg: 0.2, jitter: {xy_m: 0.01}}
+people:
+  anna: {shoulder: [0, -0.8, 0.4], hand_rests: [0, -0.6, 0.1]}
 """
 
 WRONG: dict[str, tuple[str, str, str, str]] = {
@@ -51,6 +53,16 @@ WRONG: dict[str, tuple[str, str, str, str]] = {
     "unknown driver word": ("model: panda,", "model: panda, driver: real,", "real", "known: sim"),
     "driver without kind": ("model: panda,", "model: panda, driver: {host: x},", "{host", "has no `kind`"),
     "color word": ('"#aabbcc"', "red", "red", "#rrggbb"),
+    "person named as a robot": ("anna:", "left:", "left", "`left` is a person and a robot"),
+    "person named as a part": ("anna:", "can:", "can", "`can` is a person and a part"),
+    "person named as a fixture": ("anna:", "table:", "table", "`table` is a person and a fixture"),
+    "hand out of reach": (
+        "[0, -0.6, 0.1]",
+        "[0, -0.1, 0.1]",
+        "[0, -0.1",
+        "0.762 m from the shoulder (it reaches 0.050",
+    ),
+    "hand in the shoulder": ("[0, -0.6, 0.1]", "[0, -0.8, 0.41]", "[0, -0.8", "cannot rest 0.010 m"),
     "same name twice": ("can:", "table:", "table", "`table` is a fixture and a part"),
     "modules": ("parts:", "modules: []\nparts:", "modules", "this version does not run `modules`"),
 }
@@ -149,3 +161,12 @@ def test_a_placement_turns_about_fixed_axes_in_turn(
     pose = Placement(xyz=(1.0, 2.0, 3.0), rpy=rpy).pose()
     assert (pose.xyz, pose.frame) == ((1.0, 2.0, 3.0), "world")
     assert pose.xyzw == pytest.approx(xyzw)
+
+
+def test_a_person_needs_a_world(tmp_path: Path) -> None:
+    file = tmp_path / "cell.yaml"
+    file.write_text(
+        "flexcell: 1\ncell: a\npeople:\n  anna: {shoulder: [0, 0, 0], hand_rests: [0, 0, 0.3]}\n", encoding="utf-8"
+    )
+    with pytest.raises(DocumentError, match="person `anna` is simulated, and the cell has no world"):
+        load_cell(file)

@@ -88,6 +88,16 @@ def test_a_recording_with_damaged_bytes_is_refused_or_read(good: Path, scratch: 
         assert replace(read, path=good) == whole
 
 
+def test_a_wrong_bit_anywhere_is_refused_or_makes_no_difference(good: Path, scratch: Path) -> None:
+    """Also in what lies between the chunks, which have checksums of their own."""
+    content, whole = good.read_bytes(), load_recording(good)
+    for at in range(0, len(content), 3):
+        damaged = bytearray(content)
+        damaged[at] ^= 1 << at % 8
+        read = _read(bytes(damaged), scratch / "bit.mcap")
+        assert read is None or replace(read, path=good) == whole, at
+
+
 def test_of_a_live_recording_everything_up_to_the_cut_is_read(tmp_path: Path, scratch: Path) -> None:
     """At every byte: whole events only, in order, never fewer than before."""
     target = tmp_path / "r.mcap"

@@ -53,7 +53,7 @@ class Taught(Simulated):
     def press(self, button: str, *, value: bool = True) -> None:
         self.bus.topic(f"keypress/{button}", ButtonState).publish(ButtonState(value=value))
 
-    async def push(self, force_n: tuple[float, float, float]) -> None:
+    async def lead(self, force_n: tuple[float, float, float]) -> None:
         await self.bus.call(PushBody(body="left/panda_hand", force_n=force_n, duration_s=0.5), to="cell")
         await self.bus.clock.sleep(0.6)
 
@@ -77,8 +77,8 @@ async def test_buttons_teach_two_poses_and_a_motion(tmp_path: Path) -> None:
         await cell.bus.clock.sleep(0.3)
         assert (await cell.bus.call(ReadTeachStatus(), to="teach")).guided == ("left",)
         cell.press("next")
-        await cell.push((0.0, 14.0, -4.0))
-        await cell.push((0.0, -4.0, 8.0))
+        await cell.lead((0.0, 14.0, -4.0))
+        await cell.lead((0.0, -4.0, 8.0))
         cell.press("next", value=False)
         await cell.bus.clock.sleep(0.1)
         cell.press("play_pause", value=False)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from benchmarks.planning import measure, other_costs, peers, random_lines, table
+from benchmarks.planning import measure, peers, random_lines, table
+from benchmarks.planning_costs import other_costs, words
 from benchmarks.planning_scenes import cases
 
 
@@ -16,4 +17,6 @@ def test_a_small_run_has_a_line_for_every_planner_and_confirms_what_was_found() 
     assert printed.startswith("### IRB4600, free")
     assert all(f"| {line.planner} | 2/2 |" in printed for line in lines)
     assert [line.found for line in random_lines(2, ("fast",))] == [2]
-    assert all(ms > 0.0 for ms in other_costs(2).values())
+    costs = other_costs(2)
+    assert all(0.0 < p50 <= p95 for p50, p95 in costs.values())
+    assert all(f"| {what} |" in words(costs) for what in costs)

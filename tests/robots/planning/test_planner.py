@@ -90,6 +90,19 @@ def test_a_pose_is_reached_by_whichever_configuration_is_free() -> None:
     confirm(request, path)
 
 
+def test_the_arm_goes_around_something_rather_than_straight_to_a_far_configuration_of_the_goal() -> None:
+    """A pose beyond the box: another turn of an axis would be straight to, three radians away."""
+    start = IRB_BOX.start_rad
+    goal = IRB_BOX.goal
+    assert isinstance(goal, JointGoal)
+    near = goal.joints_rad[0]
+    far = (near[0], near[1], near[2], near[3], near[4], near[5] + 2.0 * np.pi)
+    alone_first = plan(IRB_BOX)
+    assert len(way(alone_first)) > 2
+    both = plan(IRB_BOX, goal=JointGoal(joints_rad=(far, (*start[:5], start[5] + 3.0), near)))
+    assert way(both)[-1].tolist() == list(near)
+
+
 def test_a_margin_is_kept_from_obstacles() -> None:
     request = msgspec.structs.replace(IRB_BOX, margin_m=0.1)
     confirm(request, way(plan(request)))

@@ -15,12 +15,13 @@ from benchmarks.planning_scenes import ARM, alone, cases
 from engine.clock import LoopClock, run_virtual
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
+from engine.sensing import OccupancyGrid
 from engine.shapes import Capsule, Obstacle
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.rigid import Rigid
-from robots.planning.request import JointGoal, Plan, PlanRequest, Refusal
-from robots.planning.worker import InlinePlanner, PlanningWorker, plan_service
+from robots.planning.request import JointGoal, LookRequest, Plan, PlanRequest, Refusal, WayRequest
+from robots.planning.worker import LOOK_FIXED_S, InlinePlanner, PlanningWorker, plan_service
 
 SHELF = cases()[-1].request
 
@@ -56,6 +57,21 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         with pytest.raises(CellError, match="no arm in the planning scene is called left"):
             await planner.plan(msgspec.structs.replace(SHELF, arm="left"))
 
+        # Ways and configurations are looked at there too, with what cameras see.
+        block = OccupancyGrid(
+            time_s=0.0, revision=1, corner_m=(0.4, -0.3, 0.3), voxel_m=0.1, shape=(2, 4, 2), occupied=b"\xff\xff"
+        )
+        ways = WayRequest(scene=SHELF.scene, arm=ARM, way=answer.timed, from_s=0.0, occupancy=block)
+        check = await planner.check_way(ways)
+        assert check.blocked_at_s is not None
+        assert {pair[1] for pair in check.pairs} == {"occupancy"}
+        assert (await planner.check_way(msgspec.structs.replace(ways, occupancy=None))).blocked_at_s is None
+        looks = LookRequest(scene=SHELF.scene, arm=ARM, joints_rad=SHELF.start_rad, occupancy=block)
+        look = await planner.look(looks)
+        assert "occupancy" in {pair.second for pair in look.touching}
+        with pytest.raises(CellError, match="give 7 joints"):
+            await planner.look(msgspec.structs.replace(looks, joints_rad=(0.0,)))
+
         # A request under way does not hold up the loop, and ends soon after it is withdrawn.
         longest_s = 0.0
         asked = asyncio.ensure_future(planner.plan(never_found()))
@@ -65,6 +81,12 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
             longest_s = max(longest_s, time.monotonic() - before)
         assert not asked.done()
         assert longest_s < 1.0
+
+        # Nor a look at the way of another arm; a request that cannot be is only its own failure.
+        assert (await planner.check_way(ways)).blocked_at_s is not None
+        with pytest.raises(CellError, match="give 7 joints"):
+            await planner.look(msgspec.structs.replace(looks, joints_rad=(0.0,)))
+        assert not asked.done()
         asked.cancel()
         with pytest.raises(asyncio.CancelledError):
             await asked
@@ -91,19 +113,74 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         await planner.plan(SHELF)
 
 
-def test_in_virtual_time_planning_is_inline_takes_no_time_and_repeats() -> None:
-    async def story() -> tuple[object, float]:
+def test_in_virtual_time_planning_is_inline_takes_the_time_of_its_work_and_repeats() -> None:
+    async def story() -> list[object]:
         clock = LoopClock()
         service = plan_service(clock)
         assert isinstance(service, InlinePlanner)
+        found: list[object] = []
         async with service as planner:
-            answer = await planner.plan(SHELF)
+            answer = await planner.plan(msgspec.structs.replace(SHELF, speed=1.0))
             assert isinstance(answer, Plan)
-            failed = await planner.plan(msgspec.structs.replace(never_found(), time_s=0.5))
+            found += [answer.waypoints_rad, clock.now_s()]
+            assert 0.004 < clock.now_s() < 0.1
+            assert answer.timed is not None
+            ways = WayRequest(scene=SHELF.scene, arm=ARM, way=answer.timed, from_s=0.0)
+            before_s = clock.now_s()
+            found.append(await planner.check_way(ways))
+            assert clock.now_s() - before_s == pytest.approx(LOOK_FIXED_S)
+            found.append(await planner.look(LookRequest(scene=SHELF.scene, arm=ARM, joints_rad=SHELF.start_rad)))
+            before_s = clock.now_s()
+            failed = await planner.plan(msgspec.structs.replace(never_found(), time_s=0.05))
             assert isinstance(failed, Refusal)
             assert failed.reason == "no_path_in_time"
-            return (answer.waypoints_rad, failed), clock.now_s()
+            assert clock.now_s() - before_s > 0.02
+            found += [failed, clock.now_s()]
+        return found
 
-    first, second = run_virtual(story()), run_virtual(story())
-    assert first == second
-    assert first[1] == 0.0
+    assert run_virtual(story()) == run_virtual(story())
+
+
+def test_without_a_clock_planning_takes_no_time() -> None:
+    async def story() -> float:
+        clock = LoopClock()
+        async with InlinePlanner() as planner:
+            assert isinstance(await planner.plan(SHELF), Plan)
+        return clock.now_s()
+
+    assert run_virtual(story()) == 0.0
+
+
+async def test_a_start_goes_on_when_who_waits_for_it_is_cancelled_and_ends_with_the_worker() -> None:
+    worker = PlanningWorker()
+    worker.start()
+    await asyncio.sleep(0)
+    impatient = asyncio.ensure_future(worker.plan(SHELF))
+    await asyncio.sleep(0.05)
+    first = worker.pid
+    assert first
+    impatient.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await impatient
+    worker.start()
+    assert isinstance(await worker.plan(SHELF), Plan)
+    assert worker.pid == first
+    await worker.__aexit__()
+
+    entering = asyncio.ensure_future(PlanningWorker().__aenter__())
+    await asyncio.sleep(0.05)
+    entering.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await entering
+
+    closed = PlanningWorker()
+    closed.start()
+    await asyncio.sleep(0.02)
+    last = closed.pid
+    waiting = asyncio.ensure_future(closed.plan(SHELF))
+    await asyncio.sleep(0)
+    await closed.__aexit__()
+    with pytest.raises(RobotError, match="closed"):
+        await waiting
+    with pytest.raises(ProcessLookupError):
+        os.kill(last, 0)

@@ -22,17 +22,20 @@ export class ServerError extends Error {
     readonly body: ErrorBody,
     /** What an interrupted run asks before it goes on. */
     readonly questions: readonly QuestionBody[] = [],
+    /** The whole answer, for refusals that say more. */
+    readonly answer: unknown = undefined,
   ) {
     super(body.message)
     this.name = 'ServerError'
   }
 }
 
-async function call<T>(path: string, init?: RequestInit): Promise<T> {
+/** Ask `/api/v1…`; a refusal is a ServerError. */
+export async function call<T>(path: string, init?: RequestInit): Promise<T> {
   const response = await fetch(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
   const text = await response.text()
   const body: unknown = text ? parse(text) : undefined
-  if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body))
+  if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body), body)
   return body as T
 }
 
@@ -60,7 +63,7 @@ export function wordsOf(error: unknown): string {
   return error instanceof Error ? error.message : String(error)
 }
 
-function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
+export function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
   return call<T>(path, {
     method,
     headers: { 'content-type': 'application/json', accept: 'application/json', ...headers },
@@ -68,7 +71,7 @@ function sent<T>(method: 'POST' | 'PUT', path: string, body: unknown, headers: R
   })
 }
 
-function post<T>(path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
+export function post<T>(path: string, body: unknown, headers: Record<string, string> = {}): Promise<T> {
   return sent<T>('POST', path, body, headers)
 }
 
@@ -76,7 +79,8 @@ function command(run: string, name: string, body: unknown = {}): Promise<Control
   return post<ControlBody>(`/runs/${encodeURIComponent(run)}/control/${name}`, body)
 }
 
-function idPath(id: string): string {
+/** An id as a part of an address; its slashes stay. */
+export function idPath(id: string): string {
   return id.split('/').map(encodeURIComponent).join('/')
 }
 

@@ -2,7 +2,8 @@
 import { create } from 'zustand'
 import { EMPTY, fold, isActive, type LiveState } from '../document/live'
 import { api, ServerError } from './client'
-import type { Frame, Operate, Watch } from './types'
+import { PAGE, useShown } from './shown'
+import type { Frame, Operate, Show, Watch } from './types'
 
 export type Connection = 'connecting' | 'live' | 'lost' | 'denied'
 
@@ -58,6 +59,11 @@ export function attached(run: string): Promise<void> {
   })
 }
 
+/** The server's clock now, seconds since 1970. */
+export function serverNow(): number {
+  return useLive.getState().serverZeroS + performance.now() / 1000
+}
+
 /** Open the connection and keep it open; returns how to end it. */
 export function connect(): () => void {
   let ended = false
@@ -68,6 +74,7 @@ export function connect(): () => void {
     socket = opened
     opened.onopen = () => {
       attempt = 0
+      sendShow()
       if (watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
     }
@@ -96,9 +103,11 @@ export function connect(): () => void {
     attempt += 1
   }
 
+  const unsubscribe = useShown.subscribe(sendShow)
   open()
   return () => {
     ended = true
+    unsubscribe()
     clearTimeout(retry)
     clearTimeout(silence)
     socket?.close()
@@ -132,6 +141,11 @@ function listenForSilence(on: WebSocket): void {
 
 function sendOperate(): void {
   const request: Operate = { k: 'operate', run: useLive.getState().operated }
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(request))
+}
+
+function sendShow(): void {
+  const request: Show = { k: 'show', page: PAGE, groups: useShown.getState().groups }
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(request))
 }
 

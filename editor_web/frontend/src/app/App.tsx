@@ -11,21 +11,25 @@ import { RunList } from '../features/runs/RunList'
 import { Header } from './Header'
 import { HomePage } from './HomePage'
 import { Interruption } from './Interruption'
-import { behaviorHref, goTo, runHref, useRoute, type Route } from './route'
+import { behaviorHref, editHref, goTo, runHref, useRoute, type Route } from './route'
 import { useFetched } from './useFetched'
 
 /** Brings the canvas with it, which the first page does not need. */
 const BehaviorPage = lazy(async () => ({ default: (await import('./BehaviorPage')).BehaviorPage }))
+const EditorPage = lazy(async () => ({ default: (await import('../features/editor/EditorPage')).EditorPage }))
 
 export function App() {
   const route = useRoute()
   const [menuOpen, menu] = useDisclosure(false)
   const runs = useLive((s) => s.runs)
+  // Whoever writes a file, here or elsewhere: the list is as the files are.
+  const written = useLive((s) => JSON.stringify(s.documents))
   const session = useFetched('session', api.session)
-  const behaviors = useFetched('behaviors', api.behaviors)
+  const behaviors = useFetched('behaviors', api.behaviors, `${location.pathname} ${written}`)
   const isNarrow = useMediaQuery('(max-width: 62em)', false, { getInitialValueInEffect: false })
   const shown = shownRun(route, runs)
-  const behaviorId = route.page === 'behavior' ? route.id : shown?.behavior
+  const isEditing = route.page === 'edit'
+  const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
   useEffect(connect, [])
   useEffect(() => watch(shown?.id ?? ''), [shown?.id])
@@ -42,7 +46,7 @@ export function App() {
   return (
     <AppShell
       header={{ height: 52 }}
-      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen } }}
+      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen, desktop: isEditing } }}
     >
       <a className="skip-link" href="#main">
         Skip to the content
@@ -64,12 +68,24 @@ export function App() {
           current={behaviorId}
           href={behaviorHref}
           onOpen={(id) => open(behaviorHref(id))}
+          onMade={session.value?.role === 'operator' ? (id) => open(editHref(id)) : undefined}
         />
         <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
       </AppShell.Navbar>
       <AppShell.Main id="main" className="app-main">
         <Interruption />
-        {behaviorId ? (
+        {isEditing ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <EditorPage
+              key={route.id}
+              id={route.id}
+              mayEdit={session.value?.role === 'operator'}
+              isNarrow={isNarrow ?? false}
+              onRun={() => open(behaviorHref(route.id))}
+              onOpen={(id) => open(editHref(id))}
+            />
+          </Suspense>
+        ) : behaviorId ? (
           <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
             <BehaviorPage
               key={behaviorId}
@@ -79,6 +95,7 @@ export function App() {
               session={session.value}
               isNarrow={isNarrow}
               onStarted={() => open(behaviorHref(behaviorId))}
+              onEdit={(node) => open(editHref(behaviorId, node))}
             />
           </Suspense>
         ) : (

@@ -1,6 +1,6 @@
 /** The page of a behavior: head, run control, graph, log, cell, parameters, outline and problems. */
 import { Button } from '@mantine/core'
-import { IconPlayerPlayFilled } from '@tabler/icons-react'
+import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { loadKept, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { api } from '../api/client'
@@ -14,6 +14,7 @@ import { isActive } from '../document/live'
 import { nodeAt, pathsTo } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
+import { ShowMenu } from '../features/cell/ShowMenu'
 import { ChangeReport } from '../features/control/ChangeReport'
 import { Holds } from '../features/control/Holds'
 import { FORCE_ID, NodeCard } from '../features/control/NodeCard'
@@ -29,6 +30,7 @@ import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
 import { EventLog } from '../features/log/EventLog'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
+import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { StopCell } from '../features/robots/StopCell'
 import { useFetched } from './useFetched'
@@ -43,6 +45,8 @@ export interface BehaviorPageProps {
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onStarted: () => void
+  /** Open the editor, at a node where one is chosen. */
+  readonly onEdit: (node: string) => void
 }
 
 export function BehaviorPage(props: BehaviorPageProps) {
@@ -60,7 +64,7 @@ export function BehaviorPage(props: BehaviorPageProps) {
   return <Loaded {...props} behavior={fetched.value} />
 }
 
-function Loaded({ behavior, run, active, session, isNarrow, onStarted }: BehaviorPageProps & { behavior: BehaviorBody }) {
+function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }: BehaviorPageProps & { behavior: BehaviorBody }) {
   const [selected, setSelected] = useState<string>()
   const [shown, setShown] = useState<Shown>()
   const [tab, setTab] = useState<Tab>(behavior.errors > 0 ? 'problems' : 'parameters')
@@ -131,12 +135,12 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted }: Behavio
       title="Cell"
       className="cell-panel"
       tools={
-        mayOperate && (
-          <>
-            <ResetParts isBusy={active.length > 0} />
-            <StopCell />
-          </>
-        )
+        <>
+          <span className="spacer" />
+          {session?.has_cell_view && <ShowMenu />}
+          {mayOperate && <ResetParts isBusy={active.length > 0} />}
+          {mayOperate && <StopCell />}
+        </>
       }
       foot={<RobotStrip />}
     >
@@ -187,6 +191,9 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted }: Behavio
         {run && <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />}
         {run && !isActive(run) && run.cause && <span className="page-cause" title={run.cause}>{run.cause}</span>}
         <span className="spacer" />
+        <Button variant="default" size="sm" leftSection={<IconPencil size={15} aria-hidden />} onClick={() => onEdit(selected ?? '')}>
+          Edit
+        </Button>
         <Button
           type="submit"
           form={FORM_ID}
@@ -200,6 +207,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted }: Behavio
       </header>
       <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
       <RefusalLine />
+      <BlockedWays />
       <Requests root={behavior.graph} commands={commands} onShow={show} />
       {isNarrow ? (
         <Narrow

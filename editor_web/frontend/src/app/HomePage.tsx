@@ -7,6 +7,8 @@ import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
 import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
+import { ShowMenu } from '../features/cell/ShowMenu'
+import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { StopCell } from '../features/robots/StopCell'
 import { Interrupted } from '../features/runs/Interrupted'
@@ -30,7 +32,7 @@ export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps
     <div className="home">
       <h1 className="visually-hidden">The cell</h1>
       {isUnknownRun && connection === 'live' && <p className="note">That run is not known to this server any more.</p>}
-      <Panel title="Cell" className="home-cell" tools={role === 'operator' && <StopCellTools />} foot={<RobotStrip />}>
+      <Panel title="Cell" className="home-cell" tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
         <CellFrame isServed={hasCellView} />
       </Panel>
       <Panel title="Latest runs" className="home-runs">
@@ -92,11 +94,21 @@ export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps
   )
 }
 
-function StopCellTools() {
+function CellTools({ hasView, mayOperate }: { hasView: boolean; mayOperate: boolean }) {
   return (
     <>
       <span className="spacer" />
-      <StopCell />
+      {hasView && <ShowMenu />}
+      {mayOperate && <StopCell />}
+    </>
+  )
+}
+
+function CellFoot() {
+  return (
+    <>
+      <BlockedWays />
+      <RobotStrip />
     </>
   )
 }

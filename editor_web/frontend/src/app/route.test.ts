@@ -1,10 +1,16 @@
 /** Addresses. */
 import { expect, it } from 'vitest'
-import { behaviorHref, routeOf } from './route'
+import { behaviorHref, editHref, routeOf } from './route'
 
 it('finds the way back from the address of a behavior, slashes and blanks included', () => {
   const id = 'behaviors/my cell/a%b.yaml'
   expect(routeOf(behaviorHref(id))).toEqual({ page: 'behavior', id })
+})
+
+it('finds the way back from the address of the editor', () => {
+  const id = 'behaviors/my cell/a%b.yaml'
+  expect(routeOf(editHref(id))).toEqual({ page: 'edit', id })
+  expect(editHref(id, 'root/a')).toMatch(/#root\/a$/)
 })
 
 it.each(['/', '/behaviors', '/runs/', '/nothing/here'])('shows the home page for %s', (address) => {

@@ -5,6 +5,7 @@ export type Route =
   | { readonly page: 'home' }
   | { readonly page: 'behavior'; readonly id: string }
   | { readonly page: 'run'; readonly id: string }
+  | { readonly page: 'edit'; readonly id: string }
 
 /** Read an address; what it does not know is the home page. */
 export function routeOf(pathname: string): Route {
@@ -12,6 +13,7 @@ export function routeOf(pathname: string): Route {
   const id = rest.map(decoded).join('/')
   if (page === 'behaviors' && id) return { page: 'behavior', id }
   if (page === 'runs' && id) return { page: 'run', id }
+  if (page === 'edit' && id) return { page: 'edit', id }
   return { page: 'home' }
 }
 
@@ -25,6 +27,11 @@ function decoded(part: string): string {
 
 export function behaviorHref(id: string): string {
   return `/behaviors/${id.split('/').map(encodeURIComponent).join('/')}`
+}
+
+/** The editor, at a node where one is given. */
+export function editHref(id: string, node = ''): string {
+  return `/edit/${id.split('/').map(encodeURIComponent).join('/')}${node ? `#${node}` : ''}`
 }
 
 export function runHref(id: string): string {

@@ -11,6 +11,7 @@ const node = (status: string, visits = 1): NodeLive => ({
   duration_s: 0,
   cause: '',
   followed: '',
+  plan: null,
 })
 const line = (seq: number): LogLine => ({ seq, time_s: 0, kind: 'log', level: 'info', path: '', text: '', causes: [] })
 const run = (id: string, started_at_s: number, status = 'running'): RunLine => ({
@@ -75,8 +76,8 @@ describe('fold', () => {
   })
 
   it('forgets everything when the server was restarted', () => {
-    const hello = { k: 'hello', version: 1, epoch: 'new', role: 'operator', server_time_s: 0 } as const
-    expect(fold({ ...started, epoch: 'old' }, hello, 30)).toEqual({ ...EMPTY, epoch: 'new', role: 'operator' })
+    const hello = { k: 'hello', version: 1, epoch: 'new', role: 'operator', server_time_s: 100 } as const
+    expect(fold({ ...started, epoch: 'old' }, hello, 30_000)).toEqual({ ...EMPTY, epoch: 'new', role: 'operator', serverZeroS: 70 })
   })
 
   it('keeps what it shows when the same server answers again', () => {

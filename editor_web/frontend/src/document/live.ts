@@ -7,6 +7,8 @@ export const LOG_LINES = 2000
 export interface LiveState {
   readonly epoch: string
   readonly role: string
+  /** The server's clock, seconds since 1970, when the page's own steady clock was at 0. */
+  readonly serverZeroS: number
   readonly run: string
   readonly seq: number
   /** The run's clock at `atMs` of the page's own steady clock; it goes on from there while `ticking`. */
@@ -20,11 +22,14 @@ export interface LiveState {
   /** What can be done with the watched run; null when it is over. */
   readonly control: ControlLive | null
   readonly robots: Readonly<Record<string, RobotLine>>
+  /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
+  readonly documents: Readonly<Record<string, string | null>>
 }
 
 export const EMPTY: LiveState = {
   epoch: '',
   role: '',
+  serverZeroS: 0,
   run: '',
   seq: 0,
   nowS: 0,
@@ -36,17 +41,20 @@ export const EMPTY: LiveState = {
   dropped: 0,
   control: null,
   robots: {},
+  documents: {},
 }
 
 /** Fold one frame in; `gap` means that something was missed and a snapshot must be asked for. */
 export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 'gap' {
   switch (frame.k) {
     case 'hello':
-      return { ...(state.epoch === frame.epoch ? state : EMPTY), epoch: frame.epoch, role: frame.role }
+      return { ...(state.epoch === frame.epoch ? state : EMPTY), epoch: frame.epoch, role: frame.role, serverZeroS: frame.server_time_s - atMs / 1000 }
     case 'snapshot':
       return fromSnapshot(state, frame, atMs)
     case 'delta':
       return frame.run !== state.run || frame.after !== state.seq ? 'gap' : withDelta(state, frame, atMs)
+    case 'documents':
+      return { ...state, documents: { ...state.documents, ...frame.changed } }
     case 'ping':
       return state
   }

@@ -7,15 +7,18 @@ import type { BehaviorSummaryBody } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { StatusIcon } from '../../components/StatusIcon'
 import { isActive } from '../../document/live'
+import { NewBehavior } from './NewBehavior'
 
 export interface BehaviorListProps {
   readonly behaviors: readonly BehaviorSummaryBody[]
   readonly current: string | undefined
   readonly href: (id: string) => string
   readonly onOpen: (id: string) => void
+  /** A new behavior was made; undefined for those who may look only. */
+  readonly onMade: ((id: string) => void) | undefined
 }
 
-export function BehaviorList({ behaviors, current, href, onOpen }: BehaviorListProps) {
+export function BehaviorList({ behaviors, current, href, onOpen, onMade }: BehaviorListProps) {
   const [text, setText] = useState('')
   const runs = useLive((s) => s.runs)
   const active = new Set(runs.filter(isActive).map((run) => run.behavior))
@@ -23,7 +26,10 @@ export function BehaviorList({ behaviors, current, href, onOpen }: BehaviorListP
   const found = behaviors.filter((b) => `${b.id} ${b.name} ${b.description}`.toLowerCase().includes(wanted))
   return (
     <nav className="behavior-list" aria-label="Behaviors">
-      <h2 className="side-title">Behaviors</h2>
+      <div className="side-head">
+        <h2 className="side-title">Behaviors</h2>
+        {onMade && <NewBehavior onMade={onMade} />}
+      </div>
       <TextInput
         size="xs"
         aria-label="Find a behavior"

@@ -2,6 +2,7 @@
 import { useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
+import { PAGE } from '../../api/shown'
 import { Empty } from '../../components/Empty'
 
 export function CellFrame({ isServed }: { isServed: boolean }) {
@@ -16,5 +17,5 @@ export function CellFrame({ isServed }: { isServed: boolean }) {
   }
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
-  return <iframe key={`${scheme}${generation}`} className="cell-frame" title="3D view of the cell" src={`/cell/${query}`} />
+  return <iframe key={`${scheme}${generation}`} className="cell-frame" title="3D view of the cell" src={`/cell/${PAGE}/${query}`} />
 }

@@ -8,13 +8,13 @@ export function ResetParts({ isBusy }: { isBusy: boolean }) {
   const { reset, said } = useReset()
   return (
     <>
-      <span className="spacer" />
       <span role="status" className="quiet">
         {said}
       </span>
       <Button
         size="compact-sm"
         variant="default"
+        title="Reset parts"
         leftSection={<IconRestore size={14} aria-hidden />}
         disabled={isBusy}
         onClick={reset}

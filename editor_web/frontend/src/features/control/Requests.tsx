@@ -1,10 +1,11 @@
 /** What the run asks its operator; a question that has become void is gone. */
-import { IconMessageQuestion } from '@tabler/icons-react'
+import { IconMessageQuestion, IconRoute } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody, WaitingLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { requestsOf } from '../../document/commands'
 import { nodeAt } from '../../document/tree'
+import { isProposed, plansOf, planWords } from '../../document/ways'
 import type { Commands } from './useCommands'
 
 /** Where the key `a` goes. */
@@ -56,6 +57,7 @@ function Request({ request, outcomes, commands, onShow }: RequestProps) {
         </button>{' '}
         wants to end with <strong>{outcome}</strong>
         {required && <span className="quiet">, which requires {required}</span>}
+        <Planned path={path} />
       </span>
       <span className="request-answers">
         <CommandButton {...common} label={`Agree: ${outcome}`} tone="strong" onPress={() => void commands.answer(path)} />
@@ -66,4 +68,18 @@ function Request({ request, outcomes, commands, onShow }: RequestProps) {
       </span>
     </li>
   )
+}
+
+/** The way that an answer is about, which the 3D view shows until an arm goes it. */
+function Planned({ path }: { path: string }) {
+  const nodes = useLive((s) => s.nodes)
+  const robots = useLive((s) => s.robots)
+  return plansOf(nodes, path).map((plan) => (
+    <span key={plan.robot} className="request-plan">
+      <IconRoute size={15} aria-hidden />
+      <span>
+        <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(robots[plan.robot]) ? 'shown in the 3D view' : 'not in the 3D view any more'}
+      </span>
+    </span>
+  ))
 }

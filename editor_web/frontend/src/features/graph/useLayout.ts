@@ -3,7 +3,7 @@ import { useEffect, useState } from 'react'
 import type { GraphNodeBody } from '../../api/types'
 import { zoom, type Size } from '../../document/geometry'
 import { layOut, type Direction, type Layout, type Style } from '../../document/layout'
-import { loadElk } from './elk'
+import { loadElk } from '../../components/elk'
 
 export interface LaidOut {
   readonly root: GraphNodeBody

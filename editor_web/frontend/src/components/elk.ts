@@ -1,5 +1,5 @@
 /** The layout engine in its worker; both are loaded when the first graph is drawn. */
-import type { LayoutCall } from '../../document/layout'
+import type { LayoutCall } from '../document/layout'
 
 let engine: Promise<LayoutCall> | undefined
 

@@ -1,0 +1,186 @@
+"""Measures intrusions: `python -P benchmarks/intrusions.py [--runs N] [--control N] [--seed S] [--json FILE]`.
+
+The arm of one of two people gets into the way of an arm that moves between two places, at a random moment, at or
+near a random place of the way that is left, at 0.25 to 1.2 m/s, for 0.3 to 3 s or for ever. Physics runs in virtual
+time, cameras see what there is, and MuJoCo counts what the people touch. The control group goes the same ways with
+the same intrusions and does not look out: it must show contacts, or the others mean nothing.
+
+Left out is where the arm would itself get within its reaction and braking time from when the person comes into its
+way (ISO 13855: within the minimum distance), or has passed by then, and hands that do not get into the way.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from benchmarks.comparison import machine
+from benchmarks.intrusion_drawing import Intrusion, IntrusionDrawer, RecordedWay
+from benchmarks.intrusion_run import Ended, intruded_cell
+from engine.clock import run_virtual
+from engine.document.cell import Cell, load_cell
+from engine.messages import Pose
+from engine.skills.planning import MotionTarget
+from robots.sim.cell_model import build_cell
+from robots.sim.cell_scene import scene_of
+
+CELL = Path(__file__).resolve().parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
+REACTION_S = 0.25
+"""Two images at 15 Hz, what is made of them, and one check of the way."""
+
+_DOWN = (0.0, 1.0, 0.0, 0.0)
+_ENDS = (Pose(xyz=(1.1, -0.7, 1.0), xyzw=_DOWN), Pose(xyz=(1.1, 0.7, 1.0), xyzw=_DOWN))
+_TRIAL_S = 600.0
+
+Numbered = tuple[int, Intrusion]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """One intrusion, by its number in the drawing, and how the motion ended; `cpu_s` is what it took of the machine."""
+
+    group: str
+    number: int
+    intrusion: Intrusion
+    ended: Ended
+    cpu_s: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ways:
+    """The motion there and that back, undisturbed, and how long the arm takes to stop."""
+
+    there: RecordedWay
+    back: RecordedWay
+    stopping_s: float
+
+    def of(self, number: int) -> RecordedWay:
+        """Return the motion of an intrusion: there and back in turns."""
+        return self.back if number % 2 else self.there
+
+
+async def _ways(document: Cell, speed: float) -> Ways:
+    async with intruded_cell(document, speed=speed) as cell:
+        left = await cell.free(MotionTarget(pose=_ENDS[1]))
+        right = await cell.free(MotionTarget(pose=_ENDS[0]))
+        there = await cell.recorded(left)
+        back = await cell.recorded(right)
+        return Ways(there=there, back=back, stopping_s=await cell.stopping_s(there))
+
+
+async def _trials(
+    document: Cell, ways: Ways, intrusions: Sequence[Numbered], *, group: str, speed: float
+) -> list[Trial]:
+    """Carry out intrusions in a cell until one ends badly."""
+    done: list[Trial] = []
+    async with intruded_cell(document, speed=speed) as cell:
+        for number, intrusion in intrusions:
+            way = ways.of(number)
+            await cell.free(MotionTarget(joints=way.start))
+            began_s = time.process_time()
+            async with asyncio.timeout(_TRIAL_S):
+                ended = await cell.intruded(way, intrusion, adapts=group == "MoveFree")
+            trial = Trial(
+                group=group,
+                number=number,
+                intrusion=intrusion,
+                ended=ended,
+                cpu_s=time.process_time() - began_s,
+            )
+            done.append(trial)
+            print(_line(trial), flush=True)
+            if ended.end in ("failed", "stuck") or ended.contacts:
+                break
+    return done
+
+
+def _with_people_on_both_sides(cell: Cell) -> Cell:
+    """Return the cell with each person once more, mirrored at the plane y = 0."""
+    people = dict(cell.document.people)
+    for name, person in cell.document.people.items():
+        (sx, sy, sz), (hx, hy, hz) = person.shoulder, person.hand_rests
+        people[f"{name}_across"] = msgspec.structs.replace(person, shoulder=(sx, -sy, sz), hand_rests=(hx, -hy, hz))
+    return replace(cell, document=msgspec.structs.replace(cell.document, people=people))
+
+
+def _group(document: Cell, ways: Ways, drawn: Sequence[Numbered], *, group: str, speed: float) -> list[Trial]:
+    """Carry out all; after one that ended badly the next begins in a new cell."""
+    done: list[Trial] = []
+    while len(done) < len(drawn):
+        done += run_virtual(_trials(document, ways, drawn[len(done) :], group=group, speed=speed))
+    return done
+
+
+def _line(trial: Trial) -> str:
+    ended, intrusion = trial.ended, trial.intrusion
+    stay = "for ever" if intrusion.stay_s is None else f"{intrusion.stay_s:.1f} s"
+    said = (
+        f"{trial.group} {trial.number:3}: {ended.end} after {ended.duration_s:.1f} s, {ended.contacts} contacts "
+        f"({ended.in_motion} in motion), {ended.stops} stops, {ended.replans} replans; hand at "
+        f"{intrusion.after_s:.2f} s to {intrusion.near}, {intrusion.speed_m_s:.2f} m/s, {stay}; {trial.cpu_s:.1f} s CPU"
+    )
+    return f"{said}; {ended.reason}" if ended.reason else said
+
+
+def _table(groups: Sequence[tuple[str, Sequence[Trial]]]) -> str:
+    lines = [
+        "| group | intrusions | with a contact | contacts | of these in motion | greatest force N "
+        "| reached | waiting while blocked | failed | stuck | stops | other ways | waited p50 s |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for name, trials in groups:
+        ended = [trial.ended for trial in trials]
+        ends = {end: sum(one.end == end for one in ended) for end in ("reached", "waiting", "failed", "stuck")}
+        waited = float(np.median([one.waited_s for one in ended])) if ended else 0.0
+        lines.append(
+            f"| {name} | {len(ended)} | {sum(one.contacts > 0 for one in ended)} "
+            f"| {sum(one.contacts for one in ended)} | {sum(one.in_motion for one in ended)} "
+            f"| {max((one.greatest_force_n for one in ended), default=0.0):.0f} "
+            f"| {ends['reached']} | {ends['waiting']} | {ends['failed']} | {ends['stuck']} "
+            f"| {sum(one.stops for one in ended)} | {sum(one.replans for one in ended)} | {waited:.2f} |"
+        )
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Draw, run, print, and write the JSON file if asked to."""
+    parser = argparse.ArgumentParser(description="Measures what happens when a person reaches into an arm's way.")
+    parser.add_argument("--runs", type=int, default=200, help="intrusions into motions that look out (default 200)")
+    parser.add_argument("--control", type=int, default=20, help="of these, also into motions that do not (default 20)")
+    parser.add_argument("--seed", type=int, default=0, help="of the drawing (default 0)")
+    parser.add_argument("--only", type=int, nargs="*", help="carry out these numbers of the drawing only")
+    parser.add_argument("--speed", type=float, default=0.3, help="share of the joint speed limits (default 0.3)")
+    parser.add_argument("--cell", type=Path, default=CELL, help="a cell of one arm with people on one side")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write every trial to FILE")
+    options = parser.parse_args()
+    document = _with_people_on_both_sides(load_cell(options.cell))
+    ways = run_virtual(_ways(document, options.speed))
+    drawer = IntrusionDrawer(build_cell(scene_of(document.document)), stopping_s=REACTION_S + ways.stopping_s)
+    random = np.random.default_rng(options.seed)
+    drawn = [(number, drawer.draw(ways.of(number), random)) for number in range(options.runs)]
+    if options.only:
+        drawn = [one for one in drawn if one[0] in options.only]
+    print(
+        f"{document.name}: the way there takes {ways.there.duration_s:.2f} s, back {ways.back.duration_s:.2f} s; the "
+        f"arm stops within {ways.stopping_s:.2f} s, reacts within {REACTION_S:.2f} s (taken); of {drawer.drawn} places "
+        f"drawn that are in reach, {drawer.too_near} left out as within the minimum distance or passed. {machine()}.\n",
+        flush=True,
+    )
+    control = _group(document, ways, drawn[: options.control], group="JointTrapVel", speed=options.speed)
+    free = _group(document, ways, drawn, group="MoveFree", speed=options.speed)
+    print(f"\n{_table((('JointTrapVel (control)', control), ('MoveFree', free)))}")
+    if options.json is not None:
+        everything = {"machine": machine(), "trials": [asdict(trial) for trial in (*control, *free)]}
+        options.json.write_text(json.dumps(everything, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,143 @@
+"""What planning costs besides the search: prepared scenes, trajectories, what cameras see, checks of ways."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TypeVar
+
+import msgspec
+import numpy as np
+
+from benchmarks.planning_scenes import ARM, box, cases
+from engine.messages import Pose
+from engine.sensing import OccupancyGrid
+from engine.shapes import Cylinder, Obstacle
+from robots.planning.planner import ScenePlanner
+from robots.planning.request import LookRequest, Plan, PlanRequest, WayRequest
+from robots.planning.scene import PlanningScene, SceneArm
+from robots.planning.voxels import voxels_of
+from robots.sim.scene import ArmPlacement
+
+_T = TypeVar("_T")
+_SHAPE, _VOXEL_M = (64, 90, 60), 0.02
+_CORNER_M = (-0.4, -0.9, 0.0)
+
+
+def other_costs(runs: int) -> dict[str, tuple[float, float]]:
+    """Return CPU milliseconds, p50 and p95, of everything besides the search (a Panda before its shelf if not said)."""
+    shelf = msgspec.structs.replace(cases()[-1].request, speed=1.0)
+    planner = ScenePlanner()
+    two = two_pandas(0)
+    planner.prepared(two, ARM)
+    way = _planned(planner, shelf)
+    shorter = _planned(planner, cases()[-2].request)
+    look = LookRequest(scene=shelf.scene, arm=ARM, joints_rad=shelf.start_rad)
+    grids = [scatter(seed) for seed in range(runs)]
+
+    def seeing(seed: int) -> WayRequest:
+        return msgspec.structs.replace(way, occupancy=grids[seed])
+
+    def replan(seed: int) -> PlanRequest:
+        return msgspec.structs.replace(shelf, occupancy=grids[seed], seed=seed)
+
+    return {
+        "arm and scene, both new to the planner": _spent(runs, lambda _: ScenePlanner(), _prepare(two)),
+        "two Pandas, 20 parts: one part moved": _spent(runs, two_pandas, lambda s: planner.prepared(s, ARM)),
+        "two Pandas, 20 parts: the other arm moved": _spent(
+            runs,
+            lambda k: two.with_joints("other", [0.01 * k, -0.8, 0.0, -2.3, 0.0, 1.6, 0.8]),
+            lambda s: planner.prepared(s, ARM),
+        ),
+        "answer with trajectory": _spent(runs, lambda k: msgspec.structs.replace(shelf, seed=k), planner.plan),
+        "new voxels, 64 x 90 x 60: distances": _spent(runs, lambda k: grids[k], lambda g: voxels_of(g).field),
+        "new voxels: octree": _spent(runs, lambda k: voxels_of(grids[k]), lambda v: v.octree),
+        "check of a way, scene and way known": _spent(runs, lambda _: way, planner.check_way),
+        "check of a way, new voxels, distances among it": _spent(runs, seeing, planner.check_way),
+        "check of a way, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_way),
+        "check of a way, UR10 around a box, voxels known": _spent(
+            runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_way
+        ),
+        "first check of a way that was not planned here": _spent(runs, lambda k: _other_way(way, k), planner.check_way),
+        "answer with trajectory, new voxels, all of it": _spent(runs, replan, planner.plan),
+        "look": _spent(runs, lambda _: look, planner.look),
+    }
+
+
+def two_pandas(moved: int) -> PlanningScene:
+    """Return two Pandas at a table with 20 parts, the first of which is a millimetre on for each `moved`."""
+    placements = (
+        ArmPlacement(name=name, model="panda", base=Pose(xyz=(x, 0.0, 0.0)))
+        for name, x in ((ARM, -0.5), ("other", 0.5))
+    )
+    scene = PlanningScene(arms=tuple(SceneArm(placement=placement) for placement in placements))
+    parts = [
+        box(f"part_{k}", (0.04, 0.04, 0.1), (0.1 * k - 0.5, 0.4 + (0.001 * moved if k == 0 else 0.0), 0.05))
+        if k % 2
+        else Obstacle.of(
+            f"part_{k}",
+            Cylinder(radius_m=0.03, length_m=0.1),
+            Pose(xyz=(0.1 * k - 0.5, -0.4 - (0.001 * moved if k == 0 else 0.0), 0.05)),
+        )
+        for k in range(20)
+    ]
+    return scene.with_obstacles(box("table", (2.4, 1.6, 0.04), (0.0, 0.0, -0.05)), *parts)
+
+
+def scatter(seed: int) -> OccupancyGrid:
+    """Return a map with some thousand voxels taken in clumps at the sides of a cell, none where the way leads."""
+    random = np.random.default_rng(seed)
+    taken = np.zeros(_SHAPE, dtype=np.uint8)
+    for _ in range(40):
+        x, y, z = (int(random.integers(0, side - 5)) for side in _SHAPE)
+        if y < 8 or y > 76 or x < 3:
+            taken[x : x + 5, y : y + 5, z : z + 5] = 1
+    taken[0, 0, 0] = 1
+    return OccupancyGrid(
+        time_s=float(seed),
+        revision=seed,
+        corner_m=_CORNER_M,
+        voxel_m=_VOXEL_M,
+        shape=_SHAPE,
+        occupied=np.packbits(taken).tobytes(),
+    )
+
+
+def words(costs: dict[str, tuple[float, float]]) -> str:
+    """Return costs as Markdown."""
+    rows = [f"| {what} | {p50:.2f} | {p95:.2f} |" for what, (p50, p95) in costs.items()]
+    return "\n".join(["### Besides the search", "", "| | CPU ms, p50 | p95 |", "|---|---:|---:|", *rows])
+
+
+def _planned(planner: ScenePlanner, request: PlanRequest) -> WayRequest:
+    answer = planner.plan(msgspec.structs.replace(request, speed=1.0))
+    assert isinstance(answer, Plan)
+    assert answer.timed is not None
+    return WayRequest(scene=request.scene, arm=ARM, way=answer.timed, from_s=0.0)
+
+
+def _prepare(scene: PlanningScene) -> Callable[[ScenePlanner], object]:
+    return lambda planner: planner.prepared(scene, ARM)
+
+
+def _known(planner: ScenePlanner, request: WayRequest) -> WayRequest:
+    planner.check_way(request)
+    return request
+
+
+def _other_way(request: WayRequest, number: int) -> WayRequest:
+    rows = np.frombuffer(request.way.position_rad) + 1e-9 * (number + 1)
+    return msgspec.structs.replace(request, way=msgspec.structs.replace(request.way, position_rad=rows.tobytes()))
+
+
+def _spent(runs: int, prepare: Callable[[int], _T], work: Callable[[_T], object]) -> tuple[float, float]:
+    # What the first one loads or compiles is none of its cost.
+    work(prepare(0))
+    spent: list[float] = []
+    for k in range(runs):
+        given = prepare(k)
+        start = time.process_time_ns()
+        work(given)
+        spent.append((time.process_time_ns() - start) / 1e6)
+    p50, p95 = np.percentile(spent, [50, 95]).tolist()
+    return p50, p95

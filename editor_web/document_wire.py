@@ -1,0 +1,300 @@
+"""The JSON of the editor: documents as texts with what they draw, their versions, and what can be put into them."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from editor_web.wire import ErrorBody, FindingBody, GraphNodeBody, Wire
+from engine.document.yaml_source import MAX_BYTES
+
+Text = Annotated[str, Field(max_length=MAX_BYTES)]
+Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+Path = Annotated[str, Field(max_length=4000)]
+Id = Annotated[str, Field(max_length=300)]
+Point = tuple[float, float]
+
+
+class RuleBody(Wire):
+    """One condition of a concurrency container: the outcome, and which child must have ended how."""
+
+    outcome: str
+    when: dict[str, str]
+
+
+class DocumentNodeBody(GraphNodeBody):
+    """One node as written: beside what a run shows, all that a form edits, raw; lines and columns count from 1.
+
+    `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are
+    the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to.
+    """
+
+    children: tuple[DocumentNodeBody, ...]  # pyright: ignore[reportIncompatibleVariableOverride]
+    label: str
+    description: str
+    line: int
+    column: int
+    end_line: int
+    state: str | None
+    reference: str | None
+    document: str | None
+    parameters: dict[str, object]
+    inputs: dict[str, str]
+    outputs: dict[str, str]
+    targets: dict[str, str]
+    exits: tuple[str, ...]
+    autonomy: dict[str, str]
+    timeout: dict[str, object] | None
+    retry: dict[str, object] | None
+    guard: dict[str, object] | None
+    on_error: str | None
+    resume: str | None
+    success: tuple[str, ...]
+    every: object
+    notes: str
+    position: Point | None
+    rules: tuple[RuleBody, ...]
+    otherwise: str | None
+    userdata: dict[str, object]
+    settings: dict[str, object]
+
+
+class DocumentInfoBody(Wire):
+    """What the document itself declares, as written."""
+
+    name: str
+    description: str
+    cell: str | None
+    parameters: dict[str, dict[str, object]]
+    userdata: dict[str, object]
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+
+
+class DraftedBody(Wire):
+    """What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read."""
+
+    hash: str
+    graph: DocumentNodeBody | None
+    document: DocumentInfoBody | None
+    findings: tuple[FindingBody, ...]
+
+
+class DocumentBody(DraftedBody):
+    """A document as it is on disk; `saved_at` is the time of its last change, seconds since 1970."""
+
+    id: str
+    text: str
+    saved_at: float
+
+
+class RefusalBody(Wire):
+    """Why no edit was made: `index` says which of them could not be."""
+
+    message: str
+    hint: str
+    index: int
+
+
+class EditedBody(DraftedBody):
+    """The text after the edits, and the nodes that they made or changed; the text as it was where refused."""
+
+    text: str
+    changed: tuple[str, ...]
+    refused: RefusalBody | None
+
+
+class CopiedBody(Wire):
+    """Nodes as YAML, to be pasted anywhere."""
+
+    yaml: str
+
+
+class TextBody(Wire):
+    """A text that is being edited."""
+
+    text: Text
+
+
+class EditsBody(TextBody):
+    """A text and the edits to make in it, all or none; they are those of `engine.editing.edit`."""
+
+    edits: Annotated[list[dict[str, object]], Field(max_length=500)]
+
+
+class CopyBody(TextBody):
+    """A text and the nodes to copy from it."""
+
+    paths: Annotated[list[Path], Field(max_length=1000)]
+
+
+class SaveBody(TextBody):
+    """A text to write, and the hash of the one it was made from."""
+
+    base_hash: Hash
+
+
+class SavedBody(Wire):
+    """What is on disk now."""
+
+    hash: str
+    saved_at: float
+
+
+class MergeConflictBody(Wire):
+    """Lines that both sides changed differently; `line` is where they stand in the text that was to be saved."""
+
+    line: int
+    base: str
+    ours: str
+    theirs: str
+
+
+class ConflictBody(ErrorBody):
+    """The document has changed on disk; `merged` has both changes, and is null where they contradict each other."""
+
+    theirs: str
+    theirs_hash: str
+    merged: str | None
+    conflicts: tuple[MergeConflictBody, ...]
+
+
+class NewDocumentBody(Wire):
+    """A document to make from a template: machine, sequence or concurrency."""
+
+    id: Id
+    name: Annotated[str, Field(max_length=128)] = ""
+    template: Annotated[str, Field(max_length=40)] = "machine"
+
+
+class NewIdBody(Wire):
+    """Where a document is put, or its copy."""
+
+    id: Id
+
+
+class VersionBody(Wire):
+    """One version of a document; `saved_at` is when it was first seen."""
+
+    hash: str
+    saved_at: float
+    current: bool
+
+
+class VersionTextBody(VersionBody):
+    """A version with its text."""
+
+    text: str
+
+
+class FieldChangeBody(Wire):
+    """One thing that differs; null where it was not, or is no longer, there."""
+
+    field: str
+    before: object
+    after: object
+
+
+class NodeChangeBody(Wire):
+    """A node that was added, removed, changed or moved between two versions; the path `document` is the document."""
+
+    path: str
+    change: str
+    before_path: str | None
+    fields: tuple[FieldChangeBody, ...]
+
+
+class DifferenceBody(Wire):
+    """What differs between two versions; `layout_only` when nothing but positions on the canvas does."""
+
+    changes: tuple[NodeChangeBody, ...]
+    layout_only: bool
+
+
+class KeyWriterBody(Wire):
+    """A node that writes a key, or a container that declares it; the path is empty for the document itself."""
+
+    path: str
+    origin: str
+    name: str
+
+
+class KeyReaderBody(Wire):
+    """A node that reads a key: `defined` is always, maybe (`way` says how it is not), never, or unreachable."""
+
+    path: str
+    by: str
+    name: str
+    required: bool
+    defined: str
+    sources: tuple[str, ...]
+    way: str
+
+
+class KeyFlowBody(Wire):
+    """One key with all that write and read it."""
+
+    key: str
+    writers: tuple[KeyWriterBody, ...]
+    readers: tuple[KeyReaderBody, ...]
+
+
+class KeyBody(Wire):
+    """A parameter or userdata key, with its JSON Schema."""
+
+    name: str
+    required: bool
+    default: object
+    json_schema: dict[str, object] = Field(validation_alias="schema", serialization_alias="schema")
+
+
+class StateBody(Wire):
+    """A state that can be put into a behavior."""
+
+    name: str
+    group: str
+    summary: str
+    doc: str
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+    parameters: tuple[KeyBody, ...]
+    inputs: tuple[KeyBody, ...]
+    outputs: tuple[KeyBody, ...]
+
+
+class ContainerBody(Wire):
+    """A kind of node that holds others; `only_in_tree` says where it may stand."""
+
+    kind: str
+    title: str
+    doc: str
+    only_in_tree: bool
+
+
+class ReferableBody(Wire):
+    """A behavior that another may refer to."""
+
+    id: str
+    name: str
+    description: str
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+    parameters: tuple[KeyBody, ...]
+
+
+class EntryBody(Wire):
+    """A named entry of the cell's store."""
+
+    kind: str
+    name: str
+    tags: tuple[str, ...]
+
+
+class CatalogueBody(Wire):
+    """Everything that can be put into a behavior."""
+
+    states: tuple[StateBody, ...]
+    containers: tuple[ContainerBody, ...]
+    behaviors: tuple[ReferableBody, ...]
+    entries: tuple[EntryBody, ...]

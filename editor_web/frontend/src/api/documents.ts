@@ -1,0 +1,32 @@
+/** Editing over HTTP: documents, drafts, edits of texts, saving, and what can be put into a behavior. */
+import { call, idPath, post, sent, ServerError } from './client'
+import type {
+  CatalogueBody,
+  ConflictBody,
+  CopiedBody,
+  DocumentBody,
+  DraftedBody,
+  Edit,
+  EditedBody,
+  NewDocumentBody,
+  SavedBody,
+} from './types'
+
+function at(id: string, rest = ''): string {
+  return `/documents/${idPath(id)}${rest}`
+}
+
+export const documents = {
+  open: (id: string) => call<DocumentBody>(at(id)),
+  make: (body: NewDocumentBody) => post<DocumentBody>('/documents', body),
+  draft: (id: string, text: string) => post<DraftedBody>(at(id, '/draft'), { text }),
+  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditedBody>(at(id, '/edits'), { text, edits }),
+  copy: (id: string, text: string, paths: readonly string[]) => post<CopiedBody>(at(id, '/copy'), { text, paths }),
+  save: (id: string, text: string, baseHash: string) => sent<SavedBody>('PUT', at(id), { text, base_hash: baseHash }),
+  catalogue: () => call<CatalogueBody>('/catalogue'),
+}
+
+/** What stands on disk instead, when saving was refused because of it. */
+export function conflictOf(error: unknown): ConflictBody | undefined {
+  return error instanceof ServerError && error.status === 409 ? (error.answer as ConflictBody) : undefined
+}

@@ -1,0 +1,325 @@
+/**
+ * Where everything of the editor's canvas goes. Pure, apart from the call of the layout engine.
+ *
+ * A machine is laid out by itself until one of its children has a position of its own; then all its
+ * children stay where they were put. Boxes are relative to the frame they stand in, routes to the
+ * outermost one; a route that is missing is drawn from port to port by the canvas.
+ */
+import { chainOf, layOutChain } from '../chain'
+import { moved, type Box, type Point, type Size } from '../geometry'
+import type { LayoutCall } from '../layout'
+import { arrowId, outcomeId } from '../layout'
+import { adopt, empty, put, sized, type Content } from './content'
+import { byEngine, entryOf, portOf } from './engineLayout'
+import {
+  FRAME_HEAD,
+  frameWidth,
+  leafSize,
+  PILL_HEIGHT,
+  pillsOf,
+  pillWidth,
+  rowsHeight,
+  tableHeight,
+  twigSize,
+} from './measure'
+import { isFrame, isMachine, isTreePart, waysOf, type EditNode } from './model'
+
+export interface ArrangeOptions {
+  /** Is the inside of the container at this path shown? */
+  readonly isOpen: (path: string) => boolean
+  /** Outcomes of a container that nothing leads to yet, by its path. */
+  readonly declared: (node: EditNode) => readonly string[]
+  /** A chain longer than this goes on in a further row. */
+  readonly rowLimit: number
+  readonly call: LayoutCall
+}
+
+export interface Arrangement {
+  readonly size: Size
+  readonly boxes: ReadonlyMap<string, Box>
+  /** What stands on the canvas itself, not in a frame. */
+  readonly outer: ReadonlySet<string>
+  readonly routes: ReadonlyMap<string, readonly Point[]>
+  /** What to add to the positions of a container's children to get their boxes. */
+  readonly origins: ReadonlyMap<string, Point>
+}
+
+const PADDING = 16
+const GAP = 14
+const PILL_GAP = 10
+/** Room on an arrow, to put something there. */
+const ARROW_ROOM = 36
+const LEVEL_GAP = 46
+const SIBLING_GAP = 22
+
+/** Lay out what is inside `scope`. */
+export async function arrange(scope: EditNode, options: ArrangeOptions): Promise<Arrangement> {
+  const content = await inside(scope, options, true)
+  const { routes, origins } = content
+  const table = tableHeight(scope)
+  let { width, height } = content
+  if (table > 0) {
+    width = Math.max(width, 360)
+    content.own.set(rulesId(scope.path), { x: 0, y: height + 20, width, height: table })
+    height += 20 + table
+  }
+  return {
+    boxes: new Map([...content.deep, ...content.own]),
+    outer: new Set(content.own.keys()),
+    routes,
+    origins,
+    size: { width, height },
+  }
+}
+
+/** The id of the table of rules below a concurrency container that fills the canvas. */
+export function rulesId(path: string): string {
+  return `${path}#rules`
+}
+
+/** One node with all it shows. */
+async function unit(node: EditNode, parent: EditNode, options: ArrangeOptions): Promise<Content> {
+  if (isTreePart(node.kind) && node.kind !== 'tree') return sized(twigSize(node))
+  if (!isFrame(node) || !options.isOpen(node.path)) return sized(leafSize(node, parent))
+  const content = await inside(node, { ...options, rowLimit: options.rowLimit - 2 * PADDING }, false)
+  const rows = rowsHeight(waysOf(parent, node).length)
+  const table = tableHeight(node)
+  const frame = empty(
+    Math.max(content.width + 2 * PADDING, frameWidth(node), table > 0 ? 300 : 0),
+    FRAME_HEAD + content.height + PADDING + table + rows,
+  )
+  const corner = { x: PADDING, y: FRAME_HEAD }
+  adopt(frame, content, corner)
+  frame.origins.set(node.path, moved(content.origins.get(node.path) ?? { x: 0, y: 0 }, corner))
+  return frame
+}
+
+async function inside(node: EditNode, options: ArrangeOptions, isScope: boolean): Promise<Content> {
+  if (isTreePart(node.kind)) return tree(node, options)
+  const units = await Promise.all(node.children.map((child) => unit(child, node, options)))
+  if (isMachine(node.kind)) return machine(node, units, options, isScope)
+  return regions(node, units)
+}
+
+/** Children side by side are stacked, each as wide as the widest. */
+function regions(node: EditNode, units: readonly Content[]): Content {
+  if (units.length === 0) return empty(220, 60)
+  const content = empty()
+  const widest = Math.max(...units.map((each) => each.width))
+  node.children.forEach((child, index) => {
+    const own = units[index]
+    if (!own) return
+    const isOpen = own.own.size > 0
+    const box = { x: 0, y: content.height, width: isOpen ? own.width : widest, height: own.height }
+    put(content, child.path, box, own)
+    content.height += own.height + GAP
+  })
+  content.width = widest
+  content.height -= GAP
+  return content
+}
+
+/** The top of a tree is drawn above its children, in their order, which means something. */
+async function tree(node: EditNode, options: ArrangeOptions): Promise<Content> {
+  const tops = node.kind === 'tree' ? node.children : [node]
+  const content = empty()
+  for (const top of tops) {
+    const branch = await twig(top, node, options)
+    adopt(content, branch, { x: content.width, y: 0 })
+    content.width += branch.width
+    content.height = Math.max(content.height, branch.height)
+  }
+  return content
+}
+
+async function twig(node: EditNode, parent: EditNode, options: ArrangeOptions): Promise<Content> {
+  const own = await unit(node, parent, options)
+  const content = empty(own.width, own.height)
+  const isBranch =
+    isTreePart(node.kind) && node.kind !== 'tree' && options.isOpen(node.path) && node.children.length > 0
+  if (!isBranch) {
+    put(content, node.path, { x: 0, y: 0, width: own.width, height: own.height }, own)
+    return content
+  }
+  const branches: Content[] = []
+  for (const child of node.children) branches.push(await twig(child, node, options))
+  const breadth = branches.reduce((sum, each) => sum + each.width, 0) + SIBLING_GAP * (branches.length - 1)
+  content.width = Math.max(own.width, breadth)
+  let x = (content.width - breadth) / 2
+  const centers: number[] = []
+  branches.forEach((branch, index) => {
+    const child = node.children[index]
+    adopt(content, branch, { x, y: own.height + LEVEL_GAP })
+    const box = child && content.own.get(child.path)
+    centers.push(box ? box.x + box.width / 2 : x)
+    content.height = Math.max(content.height, own.height + LEVEL_GAP + branch.height)
+    x += branch.width + SIBLING_GAP
+  })
+  const middle = ((centers[0] ?? 0) + (centers[centers.length - 1] ?? 0)) / 2
+  const left = Math.min(Math.max(0, middle - own.width / 2), content.width - own.width)
+  put(content, node.path, { x: left, y: 0, width: own.width, height: own.height }, own)
+  return content
+}
+
+async function machine(
+  node: EditNode,
+  units: readonly Content[],
+  options: ArrangeOptions,
+  isScope: boolean,
+): Promise<Content> {
+  const { drawn, gathered } = pillsOf(node, options.declared(node))
+  if (node.children.length === 0) return withGathered(node, empty(240, 70), gathered)
+  const isManual = node.children.some((child) => child.position !== null)
+  const flow = isManual ? placed(node, units, drawn, isScope) : await laidOut(node, units, drawn, options)
+  return withGathered(node, flow, gathered)
+}
+
+/** Outcomes that several arrows lead to, or none, stand in a line below: those arrows are written at their ports. */
+function withGathered(node: EditNode, flow: Content, gathered: readonly string[]): Content {
+  if (gathered.length === 0) return flow
+  const bottoms = node.children
+    .map((child) => flow.own.get(child.path))
+    .flatMap((box) => (box ? [box.y + box.height] : []))
+  const lefts = node.children.map((child) => flow.own.get(child.path)).flatMap((box) => (box ? [box.x] : []))
+  const y = Math.max(flow.height, ...bottoms) + 18
+  let x = Math.min(...(lefts.length > 0 ? lefts : [0]))
+  for (const outcome of gathered) {
+    const width = pillWidth(outcome) + 24
+    flow.own.set(outcomeId(node.path, outcome), { x, y, width, height: PILL_HEIGHT })
+    x += width + PILL_GAP
+  }
+  flow.width = Math.max(flow.width, x - PILL_GAP)
+  flow.height = y + PILL_HEIGHT
+  return flow
+}
+
+/** Children at the positions they were given; those without one stand below. */
+function placed(node: EditNode, units: readonly Content[], drawn: readonly string[], isScope: boolean): Content {
+  const content = empty()
+  const at = node.children.map((child) => child.position)
+  const known = at.flatMap((each) => (each ? [each] : []))
+  const left = Math.min(...known.map(([x]) => x))
+  const top = Math.min(...known.map(([, y]) => y))
+  // In a frame the children stand in its upper left corner; on the open canvas, exactly where they were put.
+  const origin = isScope ? { x: 0, y: 0 } : { x: -left, y: -top }
+  content.origins.set(node.path, origin)
+  node.children.forEach((child, index) => {
+    const own = units[index]
+    const position = at[index]
+    if (own && position)
+      put(
+        content,
+        child.path,
+        { x: position[0] + origin.x, y: position[1] + origin.y, width: own.width, height: own.height },
+        own,
+      )
+  })
+  const below = Math.max(...[...boxesOf(content, node)].map((box) => box.y + box.height)) + 30
+  let x = isScope ? left : 0
+  node.children.forEach((child, index) => {
+    const own = units[index]
+    if (!own || at[index]) return
+    put(content, child.path, { x, y: below, width: own.width, height: own.height }, own)
+    x += own.width + 40
+  })
+  const right = Math.max(...boxesOf(content, node).map((box) => box.x + box.width))
+  let bottom = -Infinity
+  for (const outcome of drawn) {
+    const source = node.transitions.find((t) => t.target === outcome)?.source
+    const child = node.children.find((each) => each.name === source)
+    const box = child && content.own.get(child.path)
+    const y = Math.max(bottom + PILL_GAP, box ? box.y + box.height - PILL_HEIGHT : 0)
+    content.own.set(outcomeId(node.path, outcome), { x: right + 54, y, width: pillWidth(outcome), height: PILL_HEIGHT })
+    bottom = y + PILL_HEIGHT
+  }
+  const all = [...content.own].filter(([id]) => id.startsWith(`${node.path}#`)).map(([, box]) => box)
+  const every = [...boxesOf(content, node), ...all]
+  content.width = Math.max(...every.map((box) => box.x + box.width))
+  content.height = Math.max(...every.map((box) => box.y + box.height))
+  return content
+}
+
+function boxesOf(content: Content, node: EditNode): readonly Box[] {
+  return node.children.flatMap((child) => content.own.get(child.path) ?? [])
+}
+
+async function laidOut(
+  node: EditNode,
+  units: readonly Content[],
+  drawn: readonly string[],
+  options: ArrangeOptions,
+): Promise<Content> {
+  const shown = node.transitions.filter(
+    (t) => drawn.includes(t.target) || node.children.some((child) => child.name === t.target),
+  )
+  const chain = chainOf(node, shown, drawn)
+  return chain ? inRows(node, units, chain, options.rowLimit) : byEngine(node, units, drawn, options)
+}
+
+type Chain = NonNullable<ReturnType<typeof chainOf>>
+
+function inRows(node: EditNode, units: readonly Content[], chain: Chain, limit: number): Content {
+  const sizes = new Map(node.children.map((child, index) => [child.name, { path: child.path, own: units[index] }]))
+  const names = [chain[0]?.source ?? node.children[0]?.name ?? '', ...chain.map((t) => t.target)]
+  const items = names.map((name) => {
+    const child = sizes.get(name)
+    if (!child?.own)
+      return { id: outcomeId(node.path, name), width: pillWidth(name), height: PILL_HEIGHT, own: undefined, lift: 0 }
+    const { width, height } = child.own
+    const lift = isSmall(child.own) ? entryOf(node, name, child.own) - height / 2 : 0
+    // A row is in line where its arrows are, not in the middle of its nodes.
+    return { id: child.path, width, height: height + 2 * Math.abs(lift), own: child.own, lift }
+  })
+  const rows = layOutChain(items, chain, () => ARROW_ROOM, limit)
+  const content = empty(rows.width, rows.height)
+  for (const { id, own, lift } of items) {
+    const box = rows.boxes.get(id)
+    const height = own?.height ?? PILL_HEIGHT
+    if (box) put(content, id, { ...box, y: box.y + (box.height - height) / 2 - lift, height }, own ?? empty())
+  }
+  chain.forEach((arrow, index) => {
+    const from = content.own.get(items[index]?.id ?? '')
+    const to = content.own.get(items[index + 1]?.id ?? '')
+    const source = node.children.find((child) => child.name === arrow.source)
+    if (from && to && source) {
+      content.routes.set(
+        arrowId(node.path, arrow.source, arrow.outcome),
+        course(
+          from,
+          to,
+          portOf(node, source, arrow.outcome, from),
+          entryOf(node, names[index + 1] ?? '', to),
+          rows.boxes,
+        ),
+      )
+    }
+  })
+  return content
+}
+
+/** A frame that is open is too tall for that. */
+function isSmall(own: Content): boolean {
+  return own.own.size === 0
+}
+
+/** From a port to the next item: with one bend in a row, around its end to the start of the next one. */
+function course(from: Box, to: Box, port: number, entry: number, boxes: ReadonlyMap<string, Box>): readonly Point[] {
+  const start = { x: from.x + from.width, y: from.y + port }
+  const end = { x: to.x, y: to.y + entry }
+  if (to.x > from.x) {
+    const bend = (start.x + end.x) / 2
+    return start.y === end.y ? [start, end] : [start, { x: bend, y: start.y }, { x: bend, y: end.y }, end]
+  }
+  const row = [...boxes.values()].filter((box) => box.y < from.y + from.height && box.y + box.height > from.y)
+  const between = Math.max(...row.map((box) => box.y + box.height)) + 17
+  const right = start.x + 14
+  const left = end.x - 16
+  return [
+    start,
+    { x: right, y: start.y },
+    { x: right, y: between },
+    { x: left, y: between },
+    { x: left, y: end.y },
+    end,
+  ]
+}

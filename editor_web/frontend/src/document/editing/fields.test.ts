@@ -1,0 +1,51 @@
+/** From JSON Schema to fields. */
+import { expect, it } from 'vitest'
+import { editFieldOf, fieldProblem, limitsText, typedValue } from './fields'
+
+const key = (schema: Record<string, unknown>, more = {}) =>
+  editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
+
+it('knows numbers with limits and unit, also where none is allowed', () => {
+  const field = key({
+    anyOf: [{ description: 'Travel time', unit: 's', type: 'number', exclusiveMinimum: 0 }, { type: 'null' }],
+  })
+  expect(field).toMatchObject({ kind: 'number', unit: 's', description: 'Travel time', isNullable: true, minimum: 0 })
+  expect(limitsText(field)).toBe('> 0 s')
+  expect([
+    fieldProblem(field, 0),
+    fieldProblem(field, 1),
+    fieldProblem(field, '${t}'),
+    fieldProblem(field, null),
+  ]).toEqual(['Must be > 0 s', undefined, undefined, undefined])
+})
+
+it('knows vectors, choices, and targets that are named entries', () => {
+  const number = { type: 'number' }
+  expect(key({ type: 'array', prefixItems: [number, number, number], unit: 'm' })).toMatchObject({
+    kind: 'vector',
+    parts: ['x', 'y', 'z'],
+    unit: 'm',
+  })
+  expect(key({ enum: ['a', 'b'] })).toMatchObject({ kind: 'choice', choices: ['a', 'b'] })
+  const target = {
+    $defs: { Target: { type: 'object', properties: { entry: { type: 'string', entry: 'pose' } } } },
+    description: 'Where',
+    anyOf: [{ $ref: '#/$defs/Target' }, { type: 'null' }],
+  }
+  expect(key(target)).toMatchObject({ kind: 'entry', entryKind: 'pose', isPlainEntry: false, description: 'Where' })
+  expect(key({ type: 'string', entry: 'dmp' })).toMatchObject({ kind: 'entry', entryKind: 'dmp', isPlainEntry: true })
+})
+
+it('asks for a value where one is required', () => {
+  expect(fieldProblem(key({ type: 'string' }, { required: true }), undefined)).toBe('A value is required')
+})
+
+it.each([
+  ['number', '0.5', 0.5],
+  ['number', '${speed}', '${speed}'],
+  ['text', '12', '12'],
+  ['data', '[1, 2]', [1, 2]],
+  ['number', ' ', undefined],
+] as const)('takes for a %s what is typed as %s', (kind, typed, value) => {
+  expect(typedValue({ kind }, typed)).toEqual(value)
+})

@@ -1,0 +1,169 @@
+/** From a state's JSON Schema to the fields of the editor's form, and values to and from what is typed. Pure. */
+
+export type Schema = Readonly<Record<string, unknown>>
+
+export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'data'
+
+export interface EditField {
+  readonly name: string
+  readonly kind: EditFieldKind
+  readonly description: string
+  readonly unit: string
+  readonly required: boolean
+  readonly isNullable: boolean
+  readonly minimum: number | undefined
+  readonly maximum: number | undefined
+  /** The limit itself is not allowed. */
+  readonly isOpenBelow: boolean
+  readonly choices: readonly string[]
+  /** Names of the numbers of a vector. */
+  readonly parts: readonly string[]
+  /** Kind of the named entries that fit; the whole value is the name where `isPlainEntry`. */
+  readonly entryKind: string
+  readonly isPlainEntry: boolean
+  readonly fallback: unknown
+}
+
+export interface KeyLike {
+  readonly name: string
+  readonly required: boolean
+  readonly default: unknown
+  readonly schema: Schema
+}
+
+/** Describe one parameter of a state as a field. */
+export function editFieldOf(key: KeyLike): EditField {
+  const definitions = record(key.schema['$defs'])
+  const { schema, isNullable } = resolved(key.schema, definitions)
+  const said = { ...schema, ...withoutShape(key.schema) }
+  const properties = record(schema['properties'])
+  const entry = record(properties['entry'])
+  const choices = Array.isArray(schema['enum']) ? schema['enum'].map(String) : []
+  const parts = partsOf(schema)
+  const plainEntry = text(said['entry'])
+  const isTarget = 'entry' in properties
+  return {
+    name: key.name,
+    kind: kindOf(schema, {
+      isEntry: plainEntry !== '' || isTarget,
+      hasChoices: choices.length > 0,
+      isVector: parts.length > 0,
+    }),
+    description: text(said['description']),
+    unit: text(said['unit']),
+    required: key.required,
+    isNullable,
+    minimum: numeric(schema['minimum']) ?? numeric(schema['exclusiveMinimum']),
+    maximum: numeric(schema['maximum']) ?? numeric(schema['exclusiveMaximum']),
+    isOpenBelow: schema['exclusiveMinimum'] !== undefined,
+    choices,
+    parts,
+    entryKind: plainEntry || text(entry['entry']),
+    isPlainEntry: plainEntry !== '' && !isTarget,
+    fallback: key.default,
+  }
+}
+
+function withoutShape(schema: Schema): Record<string, unknown> {
+  return Object.fromEntries(Object.entries(schema).filter(([key]) => ['description', 'unit', 'entry'].includes(key)))
+}
+
+interface Resolved {
+  readonly schema: Schema
+  readonly isNullable: boolean
+}
+
+/** Follow references, and take the first alternative that is not `null`; what stands beside it counts too. */
+function resolved(schema: Schema, definitions: Schema): Resolved {
+  const reference = text(schema['$ref']).replace('#/$defs/', '')
+  if (reference) return resolved(record(definitions[reference]), definitions)
+  const options = Array.isArray(schema['anyOf']) ? schema['anyOf'].map(record) : []
+  if (options.length === 0) return { schema, isNullable: schema['type'] === 'null' }
+  const real = options
+    .filter((option) => option['type'] !== 'null')
+    .map((option) => resolved(option, definitions).schema)
+  const target = real.find((option) => 'entry' in record(option['properties']))
+  const chosen = real.length === 1 ? real[0] : target
+  return { schema: { ...(chosen ?? {}), ...withoutShape(schema) }, isNullable: real.length < options.length }
+}
+
+function kindOf(schema: Schema, is: { isEntry: boolean; hasChoices: boolean; isVector: boolean }): EditFieldKind {
+  if (is.isEntry) return 'entry'
+  if (is.hasChoices) return 'choice'
+  if (is.isVector) return 'vector'
+  const type = schema['type']
+  if (type === 'number' || type === 'integer' || type === 'boolean') return type
+  return type === 'string' ? 'text' : 'data'
+}
+
+function partsOf(schema: Schema): readonly string[] {
+  const items = Array.isArray(schema['prefixItems']) ? schema['prefixItems'].map(record) : []
+  if (schema['type'] !== 'array' || items.length === 0 || items.length > 4) return []
+  if (!items.every((item) => item['type'] === 'number' || item['type'] === 'integer')) return []
+  return ['x', 'y', 'z', 'w'].slice(0, items.length)
+}
+
+function record(value: unknown): Schema {
+  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Schema) : {}
+}
+
+function text(value: unknown): string {
+  return typeof value === 'string' ? value : ''
+}
+
+function numeric(value: unknown): number | undefined {
+  return typeof value === 'number' ? value : undefined
+}
+
+/** `0.05 – 1 m/s`, `> 0 s`. */
+export function limitsText({ minimum, maximum, isOpenBelow, unit }: EditField): string {
+  const range =
+    minimum !== undefined && maximum !== undefined
+      ? `${minimum} – ${maximum}`
+      : minimum !== undefined
+        ? `${isOpenBelow ? '>' : '≥'} ${minimum}`
+        : maximum !== undefined
+          ? `≤ ${maximum}`
+          : ''
+  return [range, unit].filter(Boolean).join(' ')
+}
+
+/** Is it written with `${…}`, and so only known when the node is entered? */
+export function isTemplate(value: unknown): boolean {
+  return typeof value === 'string' && value.includes('${')
+}
+
+/** What is wrong with a value, or nothing; templates are checked by the server. */
+export function fieldProblem(field: EditField, value: unknown): string | undefined {
+  if (value === undefined) return field.required ? 'A value is required' : undefined
+  if (isTemplate(value) || (value === null && field.isNullable)) return undefined
+  if (field.kind !== 'number' && field.kind !== 'integer') return undefined
+  if (typeof value !== 'number' || !Number.isFinite(value)) return 'This is not a number'
+  if (field.kind === 'integer' && !Number.isInteger(value)) return 'This must be a whole number'
+  const { minimum, maximum, isOpenBelow } = field
+  const isLow = minimum !== undefined && (isOpenBelow ? value <= minimum : value < minimum)
+  return isLow || (maximum !== undefined && value > maximum) ? `Must be ${limitsText(field)}` : undefined
+}
+
+/** A value as one line of text to be edited. */
+export function shownValue(value: unknown): string {
+  if (value === undefined || value === null) return ''
+  return typeof value === 'string' ? value : JSON.stringify(value)
+}
+
+/** What typed text means for a field: numbers, data in JSON, everything else as it is; empty text is no value. */
+export function typedValue(field: Pick<EditField, 'kind'>, typed: string): unknown {
+  const trimmed = typed.trim()
+  if (trimmed === '') return undefined
+  if (isTemplate(trimmed) || field.kind === 'text' || field.kind === 'choice') return trimmed
+  return looseValue(trimmed)
+}
+
+/** Text as the plain value it looks like: a number, true, JSON; else text. */
+export function looseValue(typed: string): unknown {
+  try {
+    return JSON.parse(typed) as unknown
+  } catch {
+    return typed
+  }
+}

@@ -1,0 +1,66 @@
+/** Undo and redo: the texts of a document, one after the other, each with the words of what made it. Pure. */
+import type { Draft } from './model'
+
+export interface Step {
+  /** What was done to get here, `Rename grasp`. */
+  readonly label: string
+  readonly draft: Draft
+  /** Steps of the same burst, typing in one place, are one. */
+  readonly burst: string
+}
+
+export interface History {
+  readonly steps: readonly Step[]
+  readonly at: number
+}
+
+const LIMIT = 1000
+
+export function newHistory(draft: Draft): History {
+  return { steps: [{ label: 'Opened', draft, burst: '' }], at: 0 }
+}
+
+export function presentOf(history: History): Step {
+  const step = history.steps[history.at]
+  if (!step) throw new Error('a history has at least one step')
+  return step
+}
+
+/** Go on with another draft; what was undone is gone. Within one `burst` the last step is replaced. */
+export function pushed(history: History, label: string, draft: Draft, burst = ''): History {
+  const now = presentOf(history)
+  if (draft.text === now.draft.text) return replaced(history, draft)
+  const goesOn = burst !== '' && now.burst === burst && history.at > 0
+  const kept = history.steps.slice(Math.max(0, history.at + 1 - LIMIT), history.at + (goesOn ? 0 : 1))
+  const steps = [...kept, { label, draft, burst }]
+  return { steps, at: steps.length - 1 }
+}
+
+/** The same text, with what the server now says of it. */
+export function replaced(history: History, draft: Draft): History {
+  return { ...history, steps: history.steps.map((step, index) => (index === history.at ? { ...step, draft } : step)) }
+}
+
+/** End a burst, so that what is typed next is a step of its own. */
+export function settled(history: History): History {
+  return {
+    ...history,
+    steps: history.steps.map((step, index) => (index === history.at ? { ...step, burst: '' } : step)),
+  }
+}
+
+export function canUndo(history: History): boolean {
+  return history.at > 0
+}
+
+export function canRedo(history: History): boolean {
+  return history.at < history.steps.length - 1
+}
+
+export function undone(history: History): History {
+  return canUndo(history) ? { ...history, at: history.at - 1 } : history
+}
+
+export function redone(history: History): History {
+  return canRedo(history) ? { ...history, at: history.at + 1 } : history
+}

@@ -1,0 +1,166 @@
+/** The document as the editor sees it: nodes with everything that can be edited, and where each stands in the text. Pure. */
+import type { DocumentInfoBody, DocumentNodeBody, FindingBody } from '../../api/types'
+
+/** One node; what is inside a referenced behavior is drawn, not edited here. */
+export type EditNode = DocumentNodeBody
+
+/** What is known of one text of the document. */
+export interface Draft {
+  readonly text: string
+  /** The last graph that could be read; of an earlier text while `isStale`. */
+  readonly root: EditNode | undefined
+  readonly findings: readonly FindingBody[]
+  /** True while the text cannot be read, so that `root` belongs to an earlier one. */
+  readonly isStale: boolean
+  /** What stands beside the nodes: name, parameters, outcomes; undefined until the text could be read once. */
+  readonly document: DocumentInfoBody | undefined
+}
+
+export const ROOT = 'root'
+
+/** All nodes, parents before children. */
+export function allNodes(root: EditNode): readonly EditNode[] {
+  return [root, ...root.children.flatMap(allNodes)]
+}
+
+/** The node at a path. */
+export function nodeOf(root: EditNode | undefined, path: string): EditNode | undefined {
+  let node = root
+  if (!node || (path !== node.path && !path.startsWith(`${node.path}/`))) return undefined
+  while (node && node.path !== path) {
+    node = node.children.find((child) => path === child.path || path.startsWith(`${child.path}/`))
+  }
+  return node
+}
+
+export function parentPath(path: string): string {
+  return path.slice(0, Math.max(0, path.lastIndexOf('/')))
+}
+
+export function nameOfPath(path: string): string {
+  return path.slice(path.lastIndexOf('/') + 1)
+}
+
+/** The paths from the root down to `path`, both included. */
+export function pathsTo(path: string): readonly string[] {
+  const parts = path.split('/')
+  return parts.map((_, index) => parts.slice(0, index + 1).join('/'))
+}
+
+const TREE_PARTS: ReadonlySet<string> = new Set([
+  'tree',
+  'sequence',
+  'selector',
+  'parallel',
+  'inverter',
+  'one_shot',
+  'repeat',
+  'cooldown',
+  'remap',
+  'condition',
+  'retry',
+  'timeout',
+  'guard',
+])
+const COMPOSITES: ReadonlySet<string> = new Set(['sequence', 'selector', 'parallel'])
+
+/** Is its inside drawn as a tree of lines instead of a frame? */
+export function isTreePart(kind: string): boolean {
+  return TREE_PARTS.has(kind)
+}
+
+/** Can it have any number of children, in an order that means something? */
+export function isComposite(kind: string): boolean {
+  return COMPOSITES.has(kind)
+}
+
+/** Do its children follow one another along transitions? */
+export function isMachine(kind: string): boolean {
+  return kind === 'machine' || kind === 'priority'
+}
+
+const HOLDERS: ReadonlySet<string> = new Set(['machine', 'priority', 'concurrency', 'sequence', 'selector', 'parallel'])
+
+/** Can its inside be shown, in place or by going into it? */
+export function isFrame(node: EditNode): boolean {
+  if (isMachine(node.kind) || node.kind === 'concurrency' || node.kind === 'tree' || node.kind === 'foreach')
+    return true
+  return !isTreePart(node.kind) && node.children.length > 0
+}
+
+/** Has it room for one more child? A behavior that is referred to is edited in its own file. */
+export function isHolder(node: EditNode): boolean {
+  if (HOLDERS.has(node.kind)) return true
+  return (isTreePart(node.kind) || node.kind === 'foreach') && node.children.length === 0
+}
+
+/** Is it inside a behavior that is referred to, and so not of this document? */
+export function isForeign(root: EditNode, path: string): boolean {
+  return pathsTo(path)
+    .slice(0, -1)
+    .some((above) => nodeOf(root, above)?.kind === 'behavior')
+}
+
+/** The container that an addition goes into when `path` is chosen: the node itself where it holds others, else its parent. */
+export function holderOf(root: EditNode, path: string): EditNode | undefined {
+  const node = nodeOf(root, path)
+  if (!node || path === '') return undefined
+  if (isHolder(node) && !isForeign(root, path)) return node
+  return holderOf(root, parentPath(path))
+}
+
+/** A name that no child of `parent` has yet: `grasp`, `grasp_2`, … */
+export function freeName(parent: EditNode | undefined, wanted: string): string {
+  const taken = new Set(parent?.children.map((child) => child.name) ?? [])
+  const base = wanted.replace(/[^A-Za-z0-9_-]/g, '_').replace(/^-+/, '') || 'node'
+  if (!taken.has(base)) return base
+  let number = 2
+  while (taken.has(`${base}_${number}`)) number += 1
+  return `${base}_${number}`
+}
+
+/** A name for a new node that runs `state`: `motion.MoveJoints` → `move_joints`. */
+export function nameFor(state: string): string {
+  const last = state.split(/[.:/]/).pop() ?? state
+  return last.replace(/([a-z0-9])([A-Z])/g, '$1_$2').toLowerCase()
+}
+
+/** What stands in the way of a name, or nothing. */
+export function nameProblem(parent: EditNode | undefined, name: string, present = ''): string | undefined {
+  if (!/^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$/.test(name)) return 'Use letters, digits, _ and -, at most 64'
+  if (name !== present && parent?.children.some((child) => child.name === name)) return `There is a ${name} already`
+  return undefined
+}
+
+/** A way out of a node, and where it leads; undefined where nothing is connected. */
+export interface Way {
+  readonly outcome: string
+  readonly target: string | undefined
+  /** An outcome of the node, or a timeout, guard or error that leads away. */
+  readonly isOutcome: boolean
+}
+
+/** The ways out of a child of a machine, its own outcomes first; none elsewhere. */
+export function waysOf(parent: EditNode | undefined, node: EditNode): readonly Way[] {
+  if (!parent || !isMachine(parent.kind)) return []
+  const own = parent.transitions.filter((t) => t.source === node.name)
+  const targets = new Map(own.map((t) => [t.outcome, t.target]))
+  const outcomes = inOrder(node, own).map((outcome) => ({ outcome, target: targets.get(outcome), isOutcome: true }))
+  const known = new Set(node.outcomes)
+  const others = own
+    .filter((t) => !known.has(t.outcome))
+    .map((t) => ({ outcome: t.outcome, target: t.target, isOutcome: false }))
+  return [...outcomes, ...others]
+}
+
+/** A state's outcomes as it declares them; those of a container as they are connected. */
+function inOrder(node: EditNode, ways: readonly { readonly outcome: string }[]): readonly string[] {
+  if (node.kind === 'state') return node.outcomes
+  const connected = ways.map((way) => way.outcome).filter((outcome) => node.outcomes.includes(outcome))
+  return [...new Set([...connected, ...node.outcomes])]
+}
+
+/** Does this outcome say that something went wrong? It is drawn apart. */
+export function isFailure(outcome: string): boolean {
+  return /fail|error|abort|missed|lost|broken/.test(outcome)
+}

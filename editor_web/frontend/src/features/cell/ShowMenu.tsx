@@ -1,0 +1,41 @@
+/** What the 3D view of this page shows. */
+import { Checkbox, Popover } from '@mantine/core'
+import { IconEye } from '@tabler/icons-react'
+import { useState } from 'react'
+import { GROUPS, setShown, useShown, type Group } from '../../api/shown'
+
+const WORDS: Record<Group, readonly [label: string, description: string]> = {
+  voxels: ['Voxels', 'Where the cameras see something unknown'],
+  ways: ['Planned ways', 'Blue when proposed, green under way, red while blocked'],
+  obstacles: ['Planning scene', 'Obstacles that were put there, and what arms hold'],
+  people: ['People', 'Their arms in a simulated cell'],
+  cameras: ['Cameras', 'Where they stand and how far away is what they see'],
+  frames: ['Frames', 'Axes of the world, the tools and the parts'],
+}
+
+export function ShowMenu() {
+  const [isOpen, setOpen] = useState(false)
+  const shown = useShown((s) => s.groups)
+  return (
+    <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
+      <Popover.Target>
+        <button type="button" className="command" title="What the 3D view shows" onClick={() => setOpen(!isOpen)}>
+          <IconEye size={15} aria-hidden />
+          <span className="command-label">Show</span>
+        </button>
+      </Popover.Target>
+      <Popover.Dropdown className="show-menu">
+        {GROUPS.map((group) => (
+          <Checkbox
+            key={group}
+            size="sm"
+            label={WORDS[group][0]}
+            description={WORDS[group][1]}
+            checked={shown.includes(group)}
+            onChange={(event) => setShown(group, event.currentTarget.checked)}
+          />
+        ))}
+      </Popover.Dropdown>
+    </Popover>
+  )
+}

@@ -1,0 +1,388 @@
+/** The canvas: what is drawn, what dragging, dropping and wiring on it mean. */
+import '@xyflow/react/dist/style.css'
+import { useElementSize } from '@mantine/hooks'
+import { IconPlus } from '@tabler/icons-react'
+import {
+  applyNodeChanges,
+  Background,
+  BackgroundVariant,
+  ConnectionMode,
+  MiniMap,
+  Panel,
+  ReactFlow,
+  SelectionMode,
+  useReactFlow,
+  type Connection,
+  type FinalConnectionState,
+  type NodeChange,
+} from '@xyflow/react'
+import { useCallback, useEffect, useMemo, useRef, useState, type DragEvent } from 'react'
+import { Empty } from '../../components/Empty'
+import { isForeign, isHolder, isMachine, nameOfPath, nodeOf, parentPath } from '../../document/editing/model'
+import { frameOf } from '../../document/editing/opening'
+import type { Point } from '../../document/geometry'
+import { add, choose, chooseArrow, connect, enter, moveInto, place, toggleOpen, type Addition } from './actions'
+import { askAdd, askFrom } from './asking'
+import { setCanvasPlaces } from './canvasPlaces'
+import { BranchLine, EditArrowHeads, WayLine } from './Lines'
+import { FrameCard, LeafCard, PillCard, RulesCard, TwigCard } from './Cards'
+import { canvasEdges, canvasNodes, type CanvasEdge, type CanvasNode } from './elements'
+import { openOther } from './commands'
+import { ADDITION } from './dragging'
+import { isAllSeen, viewportFor } from './viewport'
+import { SelectionBar } from './SelectionBar'
+import { editor, refused, rootOf, setEditor, useEditor } from './store'
+import { useArrangement, type Arranged } from './useArrangement'
+
+const NODE_TYPES = { leaf: LeafCard, frame: FrameCard, twig: TwigCard, pill: PillCard, rules: RulesCard }
+const EDGE_TYPES = { way: WayLine, branch: BranchLine }
+const SELECT_KEYS = ['Shift', 'Meta', 'Control']
+
+export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: boolean }) {
+  const { ref, width, height } = useElementSize()
+  const pane = width > 0 && height > 0 ? { width, height } : undefined
+  const { arranged, problem } = useArrangement(pane)
+  const root = useEditor(rootOf)
+  return (
+    <div className="edit-canvas" ref={ref} aria-busy={arranged?.root !== root}>
+      <EditArrowHeads />
+      {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
+      {arranged && <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} />}
+    </div>
+  )
+}
+
+interface DrawnProps {
+  readonly arranged: Arranged
+  readonly pane: string
+  readonly hasMap: boolean
+  readonly boxSelects: boolean
+}
+
+function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
+  const { fitView, getViewport, setViewport, screenToFlowPosition, getInternalNode, getZoom } = useReactFlow<
+    CanvasNode,
+    CanvasEdge
+  >()
+  const selection = useEditor((s) => s.selection)
+  const arrow = useEditor((s) => s.arrow)
+  const shown = useEditor((s) => s.shown)
+  const isStale = useEditor((s) => s.history.steps[s.history.at]?.draft.isStale ?? false)
+  const computed = useMemo(() => canvasNodes(arranged), [arranged])
+  const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
+  const [isWiring, setWiring] = useState(false)
+  const [isInPlace, setInPlace] = useState(false)
+  const element = useRef<HTMLDivElement>(null)
+  const handled = useRef<typeof shown>(undefined)
+  const isFitted = useRef(false)
+
+  useEffect(() => {
+    setCanvasPlaces(arranged.arrangement)
+    const chosen = new Set(selection)
+    setNodes(computed.map((node) => (chosen.has(node.id) ? { ...node, selected: true } : node)))
+  }, [arranged, computed, selection])
+
+  const edges = useMemo(
+    () => canvasEdges(arranged, selection).map((edge) => (edge.id === arrow ? { ...edge, selected: true } : edge)),
+    [arranged, selection, arrow],
+  )
+
+  useEffect(() => {
+    const frame = requestAnimationFrame(() => {
+      const [width = 0, height = 0] = pane.split('x').map(Number)
+      void setViewport(viewportFor(arranged.arrangement, { width, height })).then(() => setInPlace(true))
+      isFitted.current = true
+    })
+    return () => cancelAnimationFrame(frame)
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- what is edited does not move the view
+  }, [arranged.view, pane, setViewport])
+
+  // What an edit pushes out of sight is brought back, unless somebody has chosen what to see.
+  useEffect(() => {
+    const [width = 0, height = 0] = pane.split('x').map(Number)
+    if (isFitted.current && !isAllSeen(arranged.arrangement, getViewport(), { width, height })) {
+      void setViewport(viewportFor(arranged.arrangement, { width, height }))
+    }
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- a change of the pane has its own effect
+  }, [arranged, getViewport, setViewport])
+
+  // A node asked for is brought into view where it is not, and gets the keyboard.
+  useEffect(() => {
+    if (!shown || handled.current === shown) return
+    const { scope } = editor()
+    const isCurrent = arranged.root === rootOf(editor()) && arranged.view === scope
+    if (
+      isCurrent &&
+      shown.path !== scope &&
+      nodeOf(arranged.root, shown.path) &&
+      !computed.some((node) => node.id === shown.path)
+    ) {
+      // It is inside a container that is closed here: go there.
+      setEditor({ scope: parentPath(shown.path) })
+      return
+    }
+    const frame = requestAnimationFrame(() => {
+      const target = element.current?.querySelector<HTMLElement>(
+        `.react-flow__node[data-id="${CSS.escape(shown.path)}"]`,
+      )
+      if (!target) return
+      handled.current = shown
+      const around = element.current?.getBoundingClientRect()
+      const own = target.getBoundingClientRect()
+      const isInView =
+        around &&
+        own.left >= around.left &&
+        own.right <= around.right &&
+        own.top >= around.top &&
+        own.bottom <= around.bottom
+      if (!isInView || getZoom() < 0.4)
+        void fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1, duration: 200 })
+      if (
+        !document.activeElement ||
+        document.activeElement === document.body ||
+        element.current?.contains(document.activeElement)
+      )
+        target.focus({ preventScroll: true })
+    })
+    return () => cancelAnimationFrame(frame)
+  }, [shown, computed, arranged, fitView, getZoom])
+
+  const onNodesChange = useCallback((changes: NodeChange<CanvasNode>[]) => {
+    const picks = changes.filter((change) => change.type === 'select')
+    if (picks.length > 0) {
+      const now = new Set(editor().selection)
+      for (const pick of picks) {
+        if (pick.selected) now.add(pick.id)
+        else now.delete(pick.id)
+      }
+      choose([...now])
+    }
+    const others = changes.filter((change) => change.type !== 'select')
+    if (others.length > 0) setNodes((before) => applyNodeChanges(others, before))
+  }, [])
+
+  function onDragStop(_event: unknown, _node: CanvasNode, dragged: CanvasNode[]): void {
+    const root = rootOf(editor())
+    const moved = dragged.filter((node) => node.type !== 'pill' && node.type !== 'rules')
+    if (!root || moved.length === 0) return
+    const target = holderUnder(moved)
+    if (target) {
+      void moveInto(
+        moved.map((node) => node.id),
+        target,
+      )
+      setNodes([...computed])
+      return
+    }
+    const changed = moved.filter((node) => {
+      const before = arranged.arrangement.boxes.get(node.id)
+      return before && (Math.abs(before.x - node.position.x) > 2 || Math.abs(before.y - node.position.y) > 2)
+    })
+    const free = changed.filter((node) => isMachine(nodeOf(root, parentPath(node.id))?.kind ?? ''))
+    if (free.length > 0) void place(new Map(free.map((node) => [node.id, node.position])))
+    if (free.length < changed.length) setNodes([...computed])
+  }
+
+  /** The container under the middle of what was dragged, where it is another one than before. */
+  function holderUnder(moved: readonly CanvasNode[]): string | undefined {
+    const first = moved[0]
+    const box = first && absolute(first.id)
+    if (!first || !box) return undefined
+    const middle = { x: box.x + box.width / 2, y: box.y + 20 }
+    const at = frameAt(middle, (path) => moved.some((node) => path === node.id || path.startsWith(`${node.id}/`)))
+    const root = rootOf(editor())
+    const now = root && frameOf(arranged.scope, first.id).path
+    if (!root || at === now || isForeign(root, `${at}/x`)) return undefined
+    const holder = nodeOf(root, at)
+    return holder && isHolder(holder) ? at : undefined
+  }
+
+  function absolute(id: string): { x: number; y: number; width: number; height: number } | undefined {
+    const node = getInternalNode(id)
+    if (!node) return undefined
+    return { ...node.internals.positionAbsolute, width: node.width ?? 0, height: node.height ?? 0 }
+  }
+
+  /** The innermost open container at a place; the one that fills the canvas where there is none. */
+  function frameAt(at: Point, isLeftOut: (path: string) => boolean = () => false): string {
+    const hits = computed
+      .filter((node) => node.type === 'frame' && !isLeftOut(node.id))
+      .filter((node) => {
+        const box = absolute(node.id)
+        return box && at.x >= box.x && at.x <= box.x + box.width && at.y >= box.y && at.y <= box.y + box.height
+      })
+      .map((node) => node.id)
+    return hits.sort((a, b) => b.length - a.length)[0] ?? arranged.scope.path
+  }
+
+  /** A place of the canvas as a position in a container. */
+  function positionIn(path: string, at: Point): Point {
+    const box = path === arranged.scope.path ? { x: 0, y: 0 } : absolute(path)
+    const origin = arranged.arrangement.origins.get(path) ?? { x: 0, y: 0 }
+    return { x: at.x - (box?.x ?? 0) - origin.x, y: at.y - (box?.y ?? 0) - origin.y }
+  }
+
+  function onConnect({ source, sourceHandle, target }: Connection): void {
+    if (!sourceHandle) return
+    void connect(
+      source,
+      sourceHandle,
+      target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target),
+    )
+  }
+
+  function isAllowed({ source, target }: { source: string; target: string }): boolean {
+    const machine = parentPath(source)
+    return target.startsWith(`${machine}#`) || parentPath(target) === machine
+  }
+
+  function onConnectEnd(event: MouseEvent | TouchEvent, state: FinalConnectionState): void {
+    setWiring(false)
+    if (state.isValid || !state.fromNode || !state.fromHandle?.id || state.fromHandle.type !== 'source') return
+    const point = 'changedTouches' in event ? event.changedTouches[0] : event
+    if (!point) return
+    const screen = { x: point.clientX, y: point.clientY }
+    askFrom(
+      state.fromNode.id,
+      state.fromHandle.id,
+      screen,
+      positionIn(parentPath(state.fromNode.id), screenToFlowPosition(screen)),
+    )
+  }
+
+  function onDrop(event: DragEvent): void {
+    const given = event.dataTransfer.getData(ADDITION)
+    if (!given) return
+    event.preventDefault()
+    const what = JSON.parse(given) as Addition
+    const screen = { x: event.clientX, y: event.clientY }
+    const hit = document
+      .elementsFromPoint(screen.x, screen.y)
+      .find((each) => each.classList.contains('react-flow__edge-interaction'))
+    const edge = hit?.closest('.react-flow__edge')?.getAttribute('data-id')?.split('|')
+    if (edge?.length === 3) {
+      const [machine = '', source = '', outcome = ''] = edge
+      void add(what, { parent: machine, from: { path: `${machine}/${source}`, outcome, isInsert: true } })
+      return
+    }
+    const at = screenToFlowPosition(screen)
+    const parent = dropHolder(frameAt(at), screen)
+    if (parent) void add(what, { parent, at: positionIn(parent, at) })
+    else refused('Add', 'nothing can be put in here', 'Drop it on a container or a free place.')
+  }
+
+  /** What takes a dropped addition: the branch of a tree under the pointer, else the container around. */
+  function dropHolder(frame: string, screen: Point): string | undefined {
+    const root = rootOf(editor())
+    if (!root) return undefined
+    const under = document
+      .elementsFromPoint(screen.x, screen.y)
+      .map((each) => each.closest('.react-flow__node')?.getAttribute('data-id') ?? '')
+    const twig = under
+      .map((id) => nodeOf(root, id))
+      .find((node) => node && isHolder(node) && node.path.startsWith(frame))
+    const holder = twig ?? nodeOf(root, frame)
+    if (!holder || isForeign(root, `${holder.path}/x`)) return undefined
+    if (isHolder(holder)) return holder.path
+    const top = holder.kind === 'tree' ? holder.children[0] : undefined
+    return top && isHolder(top) ? top.path : undefined
+  }
+
+  return (
+    <ReactFlow<CanvasNode, CanvasEdge>
+      ref={element}
+      className={`${isInPlace ? 'is-in-place' : ''}${isWiring ? ' is-wiring' : ''}${isStale ? ' is-stale' : ''}`}
+      nodes={nodes}
+      edges={edges}
+      nodeTypes={NODE_TYPES}
+      edgeTypes={EDGE_TYPES}
+      onNodesChange={onNodesChange}
+      onEdgeClick={(_, edge) => edge.type === 'way' && chooseArrow(edge.id)}
+      onNodeClick={() => chooseArrow(undefined)}
+      onNodeDoubleClick={(_, node) => onDouble(node)}
+      onPaneClick={() => {
+        choose([])
+        chooseArrow(undefined)
+      }}
+      onNodeDragStop={onDragStop}
+      onSelectionDragStop={(event, moved) => onDragStop(event, moved[0] as CanvasNode, moved)}
+      onMoveStart={(event) => {
+        if (event) isFitted.current = false
+      }}
+      onConnectStart={() => setWiring(true)}
+      onConnect={onConnect}
+      onConnectEnd={onConnectEnd}
+      isValidConnection={({ source, target }) => isAllowed({ source, target })}
+      onReconnect={(edge, link) =>
+        edge.source === link.source && edge.sourceHandle === link.sourceHandle ? onConnect(link) : undefined
+      }
+      onPaneContextMenu={(event) => {
+        event.preventDefault()
+        const screen = { x: event.clientX, y: event.clientY }
+        const at = screenToFlowPosition(screen)
+        choose([])
+        setEditor({ palette: undefined })
+        askAdd(screen, positionIn(arranged.scope.path, at))
+      }}
+      onDragOver={(event) => {
+        if (!event.dataTransfer.types.includes(ADDITION)) return
+        event.preventDefault()
+        event.dataTransfer.dropEffect = 'copy'
+      }}
+      onDrop={onDrop}
+      connectionMode={ConnectionMode.Strict}
+      connectionRadius={26}
+      reconnectRadius={8}
+      selectionMode={SelectionMode.Partial}
+      selectionOnDrag={boxSelects}
+      panOnDrag={boxSelects ? [1, 2] : true}
+      multiSelectionKeyCode={SELECT_KEYS}
+      deleteKeyCode={null}
+      disableKeyboardA11y
+      edgesFocusable={false}
+      elevateNodesOnSelect={false}
+      nodeDragThreshold={4}
+      zoomOnDoubleClick={false}
+      minZoom={0.08}
+      maxZoom={2.5}
+      aria-label="Canvas of the behavior"
+    >
+      <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+      {hasMap && (
+        <MiniMap
+          pannable
+          zoomable
+          className="edit-map"
+          ariaLabel="Overview of the canvas"
+          nodeClassName={(node) => `map-${node.type ?? ''}`}
+        />
+      )}
+      <SelectionBar />
+      {arranged.scope.children.length === 0 && <Beginning />}
+    </ReactFlow>
+  )
+}
+
+/** What to do where there is nothing yet. */
+function Beginning() {
+  return (
+    <Panel position="top-center" className="beginning">
+      <p>
+        <strong>Nothing here yet.</strong> Drag a state from the library, or add one by its name.
+      </p>
+      <button type="button" className="command is-strong" onClick={() => askAdd()}>
+        <IconPlus size={15} aria-hidden /> Add a state <kbd>A</kbd>
+      </button>
+    </Panel>
+  )
+}
+
+function onDouble(node: CanvasNode): void {
+  if (node.type === 'frame') enter(node.id)
+  else if (node.type === 'twig') toggleOpen(node.id, node.data.isOpen)
+  else if (node.type === 'leaf') {
+    if (node.data.node.document) openOther(node.data.node.document)
+    else if (node.data.count > 0 || isHolder(node.data.node)) enter(node.id)
+    else setEditor({ renaming: node.id })
+  }
+}

@@ -1,0 +1,111 @@
+/** Above the canvas: where one is, and how it is seen. */
+import {
+  IconArrowsMaximize,
+  IconHierarchy3,
+  IconMap,
+  IconMinus,
+  IconPlus,
+  IconSelect,
+  IconSquarePlus,
+} from '@tabler/icons-react'
+import { useReactFlow } from '@xyflow/react'
+import type { ReactNode } from 'react'
+import { nodeOf, pathsTo } from '../../document/editing/model'
+import { focusNode, layOutAnew } from './actions'
+import { askAdd } from './asking'
+import { wholeCanvas } from './viewport'
+import { draftOf, rootOf, scopeOf, setEditor, useEditor } from './store'
+
+export interface CanvasBarProps {
+  readonly hasMap: boolean
+  readonly onMap: () => void
+  readonly boxSelects: boolean
+  readonly onBoxSelects: () => void
+}
+
+export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBarProps) {
+  const { setViewport, zoomIn, zoomOut } = useReactFlow()
+  const isStale = useEditor((s) => draftOf(s).isStale)
+  return (
+    <div className="canvas-bar">
+      <Way />
+      {isStale && (
+        <span className="stale-note" role="status">
+          The text cannot be read; this is how it was before.
+        </span>
+      )}
+      <span className="spacer" />
+      <Tool label="Add a state or container (A)" onPress={() => askAdd()}>
+        <IconSquarePlus size={17} />
+      </Tool>
+      <Tool label="Drag a box to choose" isPressed={boxSelects} onPress={onBoxSelects}>
+        <IconSelect size={17} />
+      </Tool>
+      <Tool label="Lay out by itself (L)" onPress={() => void layOutAnew()}>
+        <IconHierarchy3 size={17} />
+      </Tool>
+      <Tool label="Overview" isPressed={hasMap} onPress={onMap}>
+        <IconMap size={17} />
+      </Tool>
+      <Tool label="Zoom out (-)" onPress={() => void zoomOut({ duration: 120 })}>
+        <IconMinus size={17} />
+      </Tool>
+      <Tool label="Zoom in (+)" onPress={() => void zoomIn({ duration: 120 })}>
+        <IconPlus size={17} />
+      </Tool>
+      <Tool label="Show all (F)" onPress={() => void setViewport(wholeCanvas(), { duration: 200 })}>
+        <IconArrowsMaximize size={17} />
+      </Tool>
+    </div>
+  )
+}
+
+/** From the behavior down to what fills the canvas. */
+function Way() {
+  const scope = useEditor((s) => scopeOf(s)?.path ?? 'root')
+  const root = useEditor(rootOf)
+  const name = useEditor((s) => draftOf(s).document?.name ?? '')
+  return (
+    <nav aria-label="Shown container" className="breadcrumb edit-way">
+      <ol>
+        {pathsTo(scope).map((path) => (
+          <li key={path}>
+            <button
+              type="button"
+              aria-current={path === scope ? 'location' : undefined}
+              onClick={() => {
+                const inside = pathsTo(scope)[pathsTo(path).length]
+                setEditor({ scope: path, selection: inside ? [inside] : [], arrow: undefined })
+                if (inside) focusNode(inside)
+              }}
+            >
+              {path === 'root' ? name || 'root' : (nodeOf(root, path)?.name ?? path)}
+            </button>
+          </li>
+        ))}
+      </ol>
+    </nav>
+  )
+}
+
+interface ToolProps {
+  readonly label: string
+  readonly onPress: () => void
+  readonly isPressed?: boolean
+  readonly children: ReactNode
+}
+
+function Tool({ label, onPress, isPressed, children }: ToolProps) {
+  return (
+    <button
+      type="button"
+      className="bar-button"
+      aria-label={label}
+      title={label}
+      {...(isPressed === undefined ? {} : { 'aria-pressed': isPressed })}
+      onClick={onPress}
+    >
+      {children}
+    </button>
+  )
+}

@@ -1,0 +1,146 @@
+/** A box to choose from by typing: a field and a list below it, worked by the arrow keys. */
+import { useEffect, useId, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
+import { found } from '../../document/editing/search'
+import type { Point } from '../../document/geometry'
+
+export interface Choice {
+  readonly id: string
+  readonly title: string
+  /** In which part of the list it stands. */
+  readonly group: string
+  readonly detail?: string | undefined
+  readonly hint?: string | undefined
+  readonly icon?: ReactNode
+  /** Why it cannot be chosen now. */
+  readonly obstacle?: string | undefined
+  readonly run: () => void
+}
+
+export interface ChoiceBoxProps {
+  readonly label: string
+  readonly placeholder: string
+  readonly choices: readonly Choice[]
+  /** One more choice, made of what was typed. */
+  readonly fromText?: ((text: string) => Choice | undefined) | undefined
+  /** Where on the screen; in the upper middle without. */
+  readonly at?: Point | undefined
+  readonly onClose: () => void
+}
+
+const MOST = 60
+const WIDTH = 420
+const HEIGHT = 400
+
+export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }: ChoiceBoxProps) {
+  const [text, setText] = useState('')
+  const [index, setIndex] = useState(0)
+  const element = useRef<HTMLDialogElement>(null)
+  const list = useRef<HTMLUListElement>(null)
+  const id = useId()
+  const more = text.trim() ? fromText?.(text.trim()) : undefined
+  const fitting = found(choices, text, (choice) => [choice.title, choice.group, choice.detail ?? '']).slice(0, MOST)
+  // Grouped in the order in which the groups come up, best first.
+  const groups = [...new Set(fitting.map((choice) => choice.group))]
+  const shown = [
+    ...groups.flatMap((group) => fitting.filter((choice) => choice.group === group)),
+    ...(more ? [more] : []),
+  ]
+  const chosen = shown[Math.min(index, shown.length - 1)]
+
+  // Before anything else is typed.
+  useLayoutEffect(() => {
+    if (!element.current?.open) element.current?.showModal()
+  }, [])
+  useEffect(() => {
+    list.current?.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: 'nearest' })
+  }, [index, text])
+
+  function run(choice: Choice | undefined): void {
+    if (!choice || choice.obstacle) return
+    onClose()
+    choice.run()
+  }
+
+  function onKeyDown(event: KeyboardEvent): void {
+    const last = shown.length - 1
+    const moves: Record<string, number> = {
+      ArrowDown: index >= last ? 0 : index + 1,
+      ArrowUp: index <= 0 ? last : index - 1,
+      PageDown: Math.min(last, index + 8),
+      PageUp: Math.max(0, index - 8),
+    }
+    if (event.key in moves) {
+      event.preventDefault()
+      setIndex(Math.max(0, moves[event.key] ?? 0))
+    } else if (event.key === 'Enter') {
+      event.preventDefault()
+      run(chosen)
+    }
+    event.stopPropagation()
+  }
+
+  const style = at
+    ? {
+        left: Math.max(8, Math.min(at.x, innerWidth - WIDTH - 12)),
+        top: Math.max(8, Math.min(at.y, innerHeight - HEIGHT - 12)),
+      }
+    : undefined
+  return (
+    <dialog
+      ref={element}
+      className={`choice-box${at ? ' is-placed' : ''}`}
+      style={style}
+      aria-label={label}
+      onClose={onClose}
+      onClick={(event) => event.target === element.current && onClose()}
+    >
+      <div className="choice-body">
+        <input
+          className="choice-input"
+          role="combobox"
+          aria-expanded="true"
+          aria-controls={id}
+          aria-activedescendant={chosen ? `${id}-${chosen.id}` : undefined}
+          aria-label={label}
+          placeholder={placeholder}
+          autoComplete="off"
+          spellCheck={false}
+          value={text}
+          onChange={(event) => {
+            setText(event.currentTarget.value)
+            setIndex(0)
+          }}
+          onKeyDown={onKeyDown}
+        />
+        <ul className="choices" role="listbox" id={id} aria-label={label} ref={list}>
+          {shown.map((choice, position) => (
+            <li
+              key={choice.id}
+              id={`${id}-${choice.id}`}
+              role="option"
+              aria-selected={choice === chosen}
+              aria-disabled={choice.obstacle ? true : undefined}
+              className={`choice${choice === chosen ? ' is-chosen' : ''}`}
+              title={choice.obstacle}
+              onPointerMove={() => setIndex(position)}
+              onClick={() => run(choice)}
+            >
+              {choice.group !== shown[position - 1]?.group && <span className="choice-group">{choice.group}</span>}
+              <span className="choice-line">
+                {choice.icon && <span className="choice-icon">{choice.icon}</span>}
+                <span className="choice-title">{choice.title}</span>
+                {choice.detail && <span className="choice-detail">{choice.detail}</span>}
+                {choice.hint && <kbd>{choice.hint}</kbd>}
+              </span>
+            </li>
+          ))}
+        </ul>
+        {shown.length === 0 && (
+          <p className="choice-none" role="status">
+            Nothing fits.
+          </p>
+        )}
+      </div>
+    </dialog>
+  )
+}

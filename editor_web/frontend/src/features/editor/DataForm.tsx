@@ -1,0 +1,62 @@
+/** Where a state reads its inputs from, and under which userdata keys its outputs are written. */
+import type { KeyBody } from '../../api/types'
+import type { EditNode } from '../../document/editing/model'
+import { setField } from '../../document/editing/edits'
+import { perform } from './apply'
+import { Section } from './Section'
+import { TemplateInput } from './TemplateInput'
+import { useNames } from './useNames'
+
+export function DataForm({
+  node,
+  inputs,
+  outputs,
+}: {
+  node: EditNode
+  inputs: readonly KeyBody[]
+  outputs: readonly KeyBody[]
+}) {
+  const keys = useNames().map((name) => name.name)
+  const ins = [...new Set([...inputs.map((key) => key.name), ...Object.keys(node.inputs)])]
+  const outs = [...new Set([...outputs.map((key) => key.name), ...Object.keys(node.outputs)])]
+  if (ins.length + outs.length === 0) return null
+  const set = (field: 'in' | 'out', present: Readonly<Record<string, string>>, key: string, to: string) => {
+    const { [key]: _, ...rest } = present
+    const next = to ? { ...present, [key]: to } : rest
+    void perform(`${field === 'in' ? 'Input' : 'Output'} ${key} of ${node.name}`, [
+      setField(node.path, field, Object.keys(next).length > 0 ? next : null),
+    ])
+  }
+  return (
+    <Section title="Userdata">
+      {ins.map((key) => (
+        <div key={`in ${key}`} className="edit-line">
+          <span>
+            <span className="mono">{key}</span> from
+          </span>
+          <TemplateInput
+            label={`Input ${key} is read from`}
+            placeholder={inputs.find((each) => each.name === key)?.required ? key : 'its default'}
+            options={keys}
+            value={node.inputs[key] ?? ''}
+            onCommit={(typed) => set('in', node.inputs, key, typed)}
+          />
+        </div>
+      ))}
+      {outs.map((key) => (
+        <div key={`out ${key}`} className="edit-line">
+          <span>
+            <span className="mono">{key}</span> to
+          </span>
+          <TemplateInput
+            label={`Output ${key} is written to`}
+            placeholder="nowhere"
+            options={keys}
+            value={node.outputs[key] ?? ''}
+            onCommit={(typed) => set('out', node.outputs, key, typed)}
+          />
+        </div>
+      ))}
+    </Section>
+  )
+}

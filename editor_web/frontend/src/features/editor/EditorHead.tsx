@@ -1,0 +1,131 @@
+/** The head of the editor: which behavior, whether it is saved, and what can be done with all of it. */
+import {
+  IconArrowBackUp,
+  IconArrowForwardUp,
+  IconCode,
+  IconCommand,
+  IconDeviceFloppy,
+  IconKeyboard,
+  IconPlayerPlayFilled,
+} from '@tabler/icons-react'
+import { CommandButton } from '../../components/CommandButton'
+import { StatusIcon } from '../../components/StatusIcon'
+import { canRedo, canUndo } from '../../document/editing/history'
+import { redo, undo } from './apply'
+import { save } from './session'
+import { draftOf, isDirty, setEditor, useEditor } from './store'
+
+export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => void }) {
+  const id = useEditor((s) => s.id)
+  const name = useEditor((s) => draftOf(s).document?.name || s.id.split('/').pop() || '')
+  const dirty = useEditor(isDirty)
+  const back = useEditor((s) => (canUndo(s.history) ? s.history.steps[s.history.at]?.label : undefined))
+  const forth = useEditor((s) => (canRedo(s.history) ? s.history.steps[s.history.at + 1]?.label : undefined))
+  const isTextShown = useEditor((s) => s.isTextShown)
+  const noSave = mayEdit ? undefined : 'you may look only'
+  return (
+    <header className="page-head edit-head">
+      <div className="page-head-text">
+        <h1>
+          {name}
+          {dirty && (
+            <span className="dirty-mark" role="status">
+              not saved
+            </span>
+          )}
+        </h1>
+        <p className="quiet mono">{id}</p>
+      </div>
+      <span className="spacer" />
+      <div className="command-row">
+        <CommandButton
+          isCompact
+          label="Undo"
+          shortcut="Control+Z"
+          hint={back && `Undo: ${back}`}
+          obstacle={back === undefined ? 'nothing was changed' : undefined}
+          icon={<IconArrowBackUp size={16} aria-hidden />}
+          onPress={undo}
+          tone="quiet"
+        />
+        <CommandButton
+          isCompact
+          label="Redo"
+          shortcut="Control+Shift+Z"
+          hint={forth && `Redo: ${forth}`}
+          obstacle={forth === undefined ? 'nothing was undone' : undefined}
+          icon={<IconArrowForwardUp size={16} aria-hidden />}
+          onPress={redo}
+          tone="quiet"
+        />
+        <ProblemCount />
+        <CommandButton
+          isCompact
+          label="Text"
+          shortcut="Y"
+          hint="The document as text, beside the canvas"
+          isPressed={isTextShown}
+          icon={<IconCode size={16} aria-hidden />}
+          onPress={() => setEditor({ isTextShown: !isTextShown })}
+        />
+        <CommandButton
+          isCompact
+          label="Commands"
+          shortcut="Control+K"
+          hint="Every command, and every node to go to"
+          icon={<IconCommand size={16} aria-hidden />}
+          onPress={() => setEditor({ palette: { kind: 'commands' } })}
+        />
+        <CommandButton
+          isCompact
+          label="Keys"
+          shortcut="?"
+          icon={<IconKeyboard size={16} aria-hidden />}
+          onPress={() => setEditor({ isSheetShown: true })}
+          tone="quiet"
+        />
+        <CommandButton
+          label="Save"
+          shortcut="Control+S"
+          obstacle={noSave}
+          icon={<IconDeviceFloppy size={16} aria-hidden />}
+          onPress={() => void save()}
+          tone={dirty ? 'strong' : 'plain'}
+        />
+        <CommandButton
+          label="Run"
+          shortcut="Control+Enter"
+          hint="Saves, checks, and goes to the run page"
+          obstacle={noSave}
+          icon={<IconPlayerPlayFilled size={14} aria-hidden />}
+          onPress={onRun}
+          tone="strong"
+        />
+      </div>
+    </header>
+  )
+}
+
+function ProblemCount() {
+  const errors = useEditor((s) => draftOf(s).findings.filter((finding) => finding.severity === 'error').length)
+  const warnings = useEditor((s) => draftOf(s).findings.length) - errors
+  const words =
+    errors + warnings === 0
+      ? 'No problems'
+      : [errors > 0 && count(errors, 'error'), warnings > 0 && count(warnings, 'warning')].filter(Boolean).join(', ')
+  const status = errors > 0 ? 'failed' : warnings > 0 ? 'warning' : 'done'
+  return (
+    <button
+      type="button"
+      className={`command problem-count is-${status}`}
+      onClick={() => setEditor({ tab: 'problems' })}
+    >
+      <StatusIcon status={status} size={15} />
+      <span aria-live="polite">{words}</span>
+    </button>
+  )
+}
+
+function count(number: number, word: string): string {
+  return `${number} ${word}${number === 1 ? '' : 's'}`
+}

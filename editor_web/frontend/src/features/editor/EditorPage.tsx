@@ -1,0 +1,179 @@
+/** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
+import './styles/index.css'
+import { Tabs } from '@mantine/core'
+import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
+import { lazy, Suspense, useEffect, useRef, useState } from 'react'
+import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { useLive } from '../../api/live'
+import { Empty } from '../../components/Empty'
+import { Canvas } from './Canvas'
+import { CanvasBar } from './CanvasBar'
+import { setPageActs } from './commands'
+import { ConflictDialog } from './ConflictDialog'
+import { EditorHead } from './EditorHead'
+import { Inspector } from './Inspector'
+import { KeySheet } from './KeySheet'
+import { keepDraftNow } from './kept'
+import { LibraryPanel } from './LibraryPanel'
+import { NoticeLine } from './NoticeLine'
+import { Palettes } from './Palettes'
+import { lookAtDisk, openDocument, save } from './session'
+import { draftOf, editor, isDirty, refused, setEditor, useEditor } from './store'
+import { useEditorKeys } from './useEditorKeys'
+import { wholeCanvas } from './viewport'
+
+const YamlPane = lazy(async () => ({ default: (await import('./YamlPane')).YamlPane }))
+
+export interface EditorPageProps {
+  readonly id: string
+  /** May this person save? */
+  readonly mayEdit: boolean
+  readonly isNarrow: boolean
+  /** Go to the page where it is run. */
+  readonly onRun: () => void
+  /** Open another behavior. */
+  readonly onOpen: (id: string) => void
+}
+
+export function EditorPage(props: EditorPageProps) {
+  const { id } = props
+  const phase = useEditor((s) => (s.id === id ? s.phase : 'loading'))
+  const problem = useEditor((s) => s.problem)
+  const onDisk = useLive((s) => s.documents[id])
+  useEffect(() => {
+    void openDocument(id, location.hash.slice(1))
+  }, [id])
+  useEffect(() => {
+    if (onDisk !== undefined && onDisk !== editor().base.hash) void lookAtDisk()
+  }, [onDisk])
+  useLeaving()
+  if (phase === 'failed') return <Empty title="This behavior cannot be edited">{problem}</Empty>
+  if (phase === 'loading') return <div className="page-wait" role="status" aria-label="Loading" />
+  return (
+    <ReactFlowProvider>
+      <Loaded {...props} />
+    </ReactFlowProvider>
+  )
+}
+
+/** What is not saved is kept in this browser, and the browser warns before the page goes. */
+function useLeaving(): void {
+  useEffect(() => {
+    const warn = (event: BeforeUnloadEvent) => {
+      keepDraftNow()
+      if (isDirty(editor())) event.preventDefault()
+    }
+    const look = () => document.visibilityState === 'visible' && void lookAtDisk()
+    addEventListener('beforeunload', warn)
+    addEventListener('focus', look)
+    document.addEventListener('visibilitychange', look)
+    return () => {
+      keepDraftNow()
+      removeEventListener('beforeunload', warn)
+      removeEventListener('focus', look)
+      document.removeEventListener('visibilitychange', look)
+    }
+  }, [])
+}
+
+function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
+  const isTextShown = useEditor((s) => s.isTextShown)
+  const isBusy = useEditor((s) => s.isBusy)
+  const [hasMap, setMap] = useState(false)
+  const [boxSelects, setBoxSelects] = useState(false)
+  const { setViewport, zoomTo, getZoom } = useReactFlow()
+  const element = useRef<HTMLDivElement>(null)
+
+  async function run(): Promise<void> {
+    ;(document.activeElement as HTMLElement | null)?.blur()
+    const errors = draftOf(editor()).findings.filter((finding) => finding.severity === 'error').length
+    if (errors > 0) {
+      setEditor({ tab: 'problems' })
+      refused('Run', errors === 1 ? 'there is an error' : `there are ${errors} errors`, 'See the problems.')
+      return
+    }
+    if (await save()) onRun()
+  }
+  useEffect(() =>
+    setPageActs({
+      run: () => void run(),
+      fit: () => void setViewport(wholeCanvas(), { duration: 200 }),
+      zoom: (factor) => void zoomTo(getZoom() * factor, { duration: 120 }),
+      open: (id) => {
+        keepDraftNow()
+        onOpen(id)
+      },
+    }),
+  )
+  useEditorKeys(element)
+
+  const canvas = (
+    <div className="canvas-area">
+      <CanvasBar
+        hasMap={hasMap}
+        onMap={() => setMap(!hasMap)}
+        boxSelects={boxSelects}
+        onBoxSelects={() => setBoxSelects(!boxSelects)}
+      />
+      <Canvas hasMap={hasMap} boxSelects={boxSelects} />
+    </div>
+  )
+  const text = (
+    <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+      <YamlPane />
+    </Suspense>
+  )
+  return (
+    <div className="editor" ref={element} aria-busy={isBusy}>
+      <EditorHead mayEdit={mayEdit} onRun={() => void run()} />
+      <NoticeLine />
+      {isNarrow ? (
+        <Tabs defaultValue="canvas" className="side-tabs narrow-tabs">
+          <Tabs.List>
+            <Tabs.Tab value="canvas">Canvas</Tabs.Tab>
+            <Tabs.Tab value="library">Library</Tabs.Tab>
+            <Tabs.Tab value="form">Form</Tabs.Tab>
+            <Tabs.Tab value="text">Text</Tabs.Tab>
+          </Tabs.List>
+          <Tabs.Panel value="canvas">{canvas}</Tabs.Panel>
+          <Tabs.Panel value="library">
+            <LibraryPanel />
+          </Tabs.Panel>
+          <Tabs.Panel value="form">
+            <Inspector />
+          </Tabs.Panel>
+          <Tabs.Panel value="text">{text}</Tabs.Panel>
+        </Tabs>
+      ) : (
+        <Group orientation="horizontal" className="work-space">
+          <Pane id="library" defaultSize="17%" minSize="12%" maxSize="34%">
+            <LibraryPanel />
+          </Pane>
+          <Separator className="splitter" aria-label="Width of the library" />
+          <Pane id="middle" defaultSize="57%" minSize="30%">
+            <Group orientation="vertical">
+              <Pane id="canvas" defaultSize={isTextShown ? '56%' : '100%'} minSize="20%">
+                {canvas}
+              </Pane>
+              {isTextShown && (
+                <>
+                  <Separator className="splitter is-flat" aria-label="Height of the text" />
+                  <Pane id="text" defaultSize="44%" minSize="15%">
+                    {text}
+                  </Pane>
+                </>
+              )}
+            </Group>
+          </Pane>
+          <Separator className="splitter" aria-label="Width of the form" />
+          <Pane id="inspector" defaultSize="26%" minSize="20%" maxSize="50%">
+            <Inspector />
+          </Pane>
+        </Group>
+      )}
+      <Palettes />
+      <ConflictDialog />
+      <KeySheet />
+    </div>
+  )
+}

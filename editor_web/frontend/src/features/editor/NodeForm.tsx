@@ -1,0 +1,166 @@
+/** The form of one node: what it runs and with what, where its outcomes lead, and what happens when it takes long or fails. */
+import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
+import { isForeign, isMachine, isTreePart, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
+import { setField } from '../../document/editing/edits'
+import { kindLabel } from '../../document/tree'
+import { perform } from './apply'
+import { itemIcon } from './additions'
+import { openOther } from './commands'
+import { ConductForm } from './ConductForm'
+import { DataForm } from './DataForm'
+import { OrderForm } from './OrderForm'
+import { OutcomeForm } from './OutcomeForm'
+import { ParameterFields } from './ParameterFields'
+import { RulesForm } from './RulesForm'
+import { Section } from './Section'
+import { SettingsForm } from './SettingsForm'
+import { TemplateInput } from './TemplateInput'
+import { rootOf, setEditor, useEditor } from './store'
+
+export interface NodeFormProps {
+  readonly node: EditNode
+  /** Nothing is chosen: this is what fills the canvas. */
+  readonly isScope: boolean
+  /** So many more are chosen. */
+  readonly others: number
+}
+
+export function NodeForm({ node, isScope, others }: NodeFormProps) {
+  const root = useEditor(rootOf)
+  const catalogue = useEditor((s) => s.catalogue)
+  const parent = nodeOf(root, parentPath(node.path))
+  if (root && isForeign(root, node.path)) return <Foreign node={node} />
+  const state = catalogue?.states.find((each) => each.name === node.state)
+  const behavior = catalogue?.behaviors.find((each) => each.id === node.document)
+  const runs = node.kind === 'state' || node.kind === 'behavior'
+  const keys = state?.parameters ?? behavior?.parameters ?? []
+  const set = (field: string, value: unknown, words: string) =>
+    void perform(`${words} of ${node.name}`, [setField(node.path, field, value)])
+  return (
+    <div className="node-form" aria-label={`Form of ${node.name}`}>
+      <header className="form-head">
+        {itemIcon(node.kind, 18)}
+        <div className="form-head-text">
+          <strong>{node.path === ROOT ? 'The whole behavior' : node.name}</strong>
+          <span className="quiet">
+            {[
+              kindLabel(node.kind),
+              isScope && node.path !== ROOT ? 'fills the canvas' : '',
+              others > 0 ? `and ${others} more chosen` : '',
+            ]
+              .filter(Boolean)
+              .join(', ')}
+          </span>
+        </div>
+        {node.path !== ROOT && (
+          <button
+            type="button"
+            className="mini"
+            aria-label={`Rename ${node.name}`}
+            title="Rename (F2)"
+            onClick={() => setEditor({ renaming: node.path, selection: [node.path] })}
+          >
+            <IconCursorText size={15} aria-hidden />
+          </button>
+        )}
+      </header>
+      {runs && (
+        <Section title={node.kind === 'behavior' ? 'Behavior' : 'State'}>
+          <TemplateInput
+            label={node.kind === 'behavior' ? 'Refers to' : 'Runs'}
+            isMono
+            value={node.title}
+            options={node.kind === 'state' ? (catalogue?.states.map((each) => each.name) ?? []) : []}
+            onCommit={(typed) => typed && set(node.kind, typed, 'Kind')}
+          />
+          {state && <p className="form-doc">{state.doc}</p>}
+          {node.document && (
+            <p className="form-doc">
+              {behavior?.description} <OpenOther id={node.document} />
+            </p>
+          )}
+        </Section>
+      )}
+      {runs && (
+        <Section title="Parameters">
+          <ParameterFields node={node} keys={keys} />
+        </Section>
+      )}
+      {isMachine(parent?.kind ?? '') && parent && <OutcomeForm node={node} parent={parent} />}
+      {node.kind === 'concurrency' && <RulesForm node={node} />}
+      {isMachine(node.kind) && (
+        <BeginForm
+          node={node}
+          onSet={(child) => void perform(`Begin with ${child}`, [{ edit: 'set_initial', path: node.path, child }])}
+        />
+      )}
+      {(isTreePart(node.kind) || node.kind === 'concurrency') && node.children.length > 1 && <OrderForm node={node} />}
+      <SettingsForm node={node} />
+      {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
+      {node.path !== ROOT && !isTreePart(node.kind) && <ConductForm node={node} parent={parent} />}
+      <Section title="Notes">
+        <TemplateInput
+          label="Description"
+          isLong
+          placeholder="What it is for, for those who read the behavior"
+          value={node.description}
+          onCommit={(typed) => set('description', typed || null, 'Description')}
+        />
+        <TemplateInput
+          label="Notes"
+          isLong
+          placeholder="For those who edit it"
+          value={node.notes}
+          onCommit={(typed) => set('notes', typed || null, 'Notes')}
+        />
+      </Section>
+    </div>
+  )
+}
+
+function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => void }) {
+  if (node.children.length === 0) return null
+  return (
+    <Section title="Machine">
+      <label className="edit-line">
+        <span>Begins with</span>
+        <select
+          className="plain-input"
+          value={node.initial ?? ''}
+          onChange={(event) => onSet(event.currentTarget.value)}
+        >
+          {!node.children.some((child) => child.name === node.initial) && (
+            <option value={node.initial ?? ''}>{node.initial ?? 'choose'}</option>
+          )}
+          {node.children.map((child) => (
+            <option key={child.name} value={child.name}>
+              {child.name}
+            </option>
+          ))}
+        </select>
+      </label>
+    </Section>
+  )
+}
+
+function OpenOther({ id }: { id: string }) {
+  return (
+    <button type="button" className="link" onClick={() => openOther(id)}>
+      <IconExternalLink size={13} aria-hidden /> Open {id.split('/').pop()}
+    </button>
+  )
+}
+
+function Foreign({ node }: { node: EditNode }) {
+  return (
+    <div className="node-form">
+      <header className="form-head">
+        {itemIcon(node.kind, 18)}
+        <div className="form-head-text">
+          <strong>{node.name}</strong>
+          <span className="quiet">Part of a behavior that is referred to; it is changed in its own file.</span>
+        </div>
+      </header>
+    </div>
+  )
+}

@@ -1,0 +1,198 @@
+/** The palettes: what to add, where a way out leads, and every command by its name. */
+import { IconArrowRight, IconCircleDot, IconFlag } from '@tabler/icons-react'
+import { useMemo } from 'react'
+import {
+  allNodes,
+  isFailure,
+  isMachine,
+  nameOfPath,
+  nodeOf,
+  parentPath,
+  waysOf,
+  type EditNode,
+} from '../../document/editing/model'
+import { chordText } from '../../document/editing/keys'
+import { add, connect, disconnect, focusNode } from './actions'
+import { fits, itemIcon, itemsOf } from './additions'
+import { askFrom } from './asking'
+import { ChoiceBox, type Choice } from './ChoiceBox'
+import { COMMANDS, obstacleOf } from './commands'
+import { reveal } from './session'
+import { declaredOutcomes } from './useArrangement'
+import { draftOf, editor, rootOf, setEditor, useEditor, type PaletteRequest } from './store'
+
+export function Palettes() {
+  const palette = useEditor((s) => s.palette)
+  if (!palette) return null
+  const close = () => {
+    setEditor({ palette: undefined })
+    const last = editor().selection.at(-1)
+    if (last) focusNode(last)
+  }
+  switch (palette.kind) {
+    case 'add':
+      return <AddPalette request={palette} onClose={close} />
+    case 'connect':
+      return <ConnectPalette path={palette.path} onClose={close} />
+    case 'commands':
+      return <CommandPalette onClose={close} />
+  }
+}
+
+function AddPalette({ request, onClose }: { request: Extract<PaletteRequest, { kind: 'add' }>; onClose: () => void }) {
+  const catalogue = useEditor((s) => s.catalogue)
+  const id = useEditor((s) => s.id)
+  const root = useEditor(rootOf)
+  const outcomes = useEditor((s) => draftOf(s).document?.outcomes ?? NONE)
+  const parent = nodeOf(root, request.parent)
+  const choices = useMemo(() => {
+    if (!catalogue || !root || !parent) return []
+    const targets = request.from && !request.from.isInsert ? targetChoices(root, parent, outcomes, request.from) : []
+    const items = itemsOf(catalogue, id).filter((item) => fits(item, parent))
+    return [
+      ...targets,
+      ...items.map((item): Choice => ({
+        id: item.id,
+        title: item.title,
+        group: item.group,
+        detail: item.summary,
+        icon: itemIcon(item.kind, 15),
+        run: () => void add(item.addition, request),
+      })),
+    ]
+  }, [catalogue, id, root, parent, outcomes, request])
+  const from = request.from
+  const what = from
+    ? from.isInsert
+      ? `Insert after ${nameOfPath(from.path)}: ${from.outcome}`
+      : `${nameOfPath(from.path)}: ${from.outcome} leads to`
+    : `Add to ${parent?.name ?? ''}`
+  return (
+    <ChoiceBox
+      label={what}
+      placeholder={`${what} …`}
+      choices={choices}
+      at={request.screen}
+      onClose={onClose}
+      fromText={
+        from && !from.isInsert && parent && isMachine(parent.kind) ? (text) => newOutcome(text, from) : undefined
+      }
+    />
+  )
+}
+
+const NONE: readonly string[] = []
+
+interface From {
+  readonly path: string
+  readonly outcome: string
+}
+
+/** The nodes and outcomes that a way out can lead to. */
+function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly string[], from: From): readonly Choice[] {
+  if (!isMachine(parent.kind)) return []
+  const inside = new Set(parent.children.map((child) => child.name))
+  const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
+    (outcome) => !inside.has(outcome),
+  )
+  const present = waysOf(parent, nodeOf(root, from.path) ?? parent).find((way) => way.outcome === from.outcome)?.target
+  return [
+    ...parent.children.map((child): Choice => ({
+      id: `to:${child.name}`,
+      title: child.name,
+      group: 'Nodes here',
+      detail: child.title,
+      icon: <IconArrowRight size={15} aria-hidden />,
+      run: () => void connect(from.path, from.outcome, child.name),
+    })),
+    ...ends.map((outcome): Choice => ({
+      id: `end:${outcome}`,
+      title: outcome,
+      group: parent === root ? 'Outcomes of the behavior' : `Outcomes of ${parent.name}`,
+      icon: <IconFlag size={15} aria-hidden />,
+      run: () => void connect(from.path, from.outcome, outcome),
+    })),
+    ...(present === undefined
+      ? []
+      : [
+          {
+            id: 'nowhere',
+            title: 'Disconnect',
+            group: 'Nowhere',
+            detail: `now leads to ${present}`,
+            run: () => void disconnect(from.path, from.outcome),
+          },
+        ]),
+  ]
+}
+
+function newOutcome(text: string, from: From): Choice | undefined {
+  if (!/^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$/.test(text)) return undefined
+  return {
+    id: 'new-outcome',
+    title: text,
+    group: 'A new outcome',
+    detail: 'of the container',
+    icon: <IconFlag size={15} aria-hidden />,
+    run: () => void connect(from.path, from.outcome, text),
+  }
+}
+
+function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }) {
+  const root = useEditor(rootOf)
+  const node = nodeOf(root, path)
+  const parent = nodeOf(root, parentPath(path))
+  const ways = node ? waysOf(parent, node).filter((way) => way.isOutcome) : []
+  const choices = ways.map((way): Choice => ({
+    id: way.outcome,
+    title: way.outcome,
+    group: 'Which outcome',
+    detail: way.target === undefined ? 'not connected' : `now leads to ${way.target}`,
+    icon: <IconCircleDot size={15} className={isFailure(way.outcome) ? 'is-failure' : ''} aria-hidden />,
+    // The next box opens once this one has closed.
+    run: () => setTimeout(() => askFrom(path, way.outcome)),
+  }))
+  return (
+    <ChoiceBox
+      label={`Connect ${node?.name ?? ''}`}
+      placeholder="Which outcome …"
+      choices={choices}
+      onClose={onClose}
+    />
+  )
+}
+
+function CommandPalette({ onClose }: { onClose: () => void }) {
+  const root = useEditor(rootOf)
+  const choices = useMemo(() => {
+    const commands = COMMANDS.map((command): Choice => ({
+      id: `command:${command.id}`,
+      title: command.words,
+      group: 'Commands',
+      hint: command.chords[0] && chordText(command.chords[0]),
+      obstacle: obstacleOf(command),
+      run: () => setTimeout(() => command.run()),
+    }))
+    const nodes = root
+      ? allNodes(root)
+          .slice(1)
+          .map((node): Choice => ({
+            id: `node:${node.path}`,
+            title: node.name,
+            group: 'Go to',
+            detail: [node.title, parentPath(node.path)].filter(Boolean).join(' · '),
+            icon: itemIcon(node.kind, 15),
+            run: () => reveal(node.path),
+          }))
+      : []
+    return [...commands, ...nodes]
+  }, [root])
+  return (
+    <ChoiceBox
+      label="Commands and nodes"
+      placeholder="Type a command, or a node to go to …"
+      choices={choices}
+      onClose={onClose}
+    />
+  )
+}

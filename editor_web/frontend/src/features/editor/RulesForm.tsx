@@ -1,0 +1,118 @@
+/** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
+import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
+import type { EditNode } from '../../document/editing/model'
+import { setField } from '../../document/editing/edits'
+import { added, conditionsOf, moved, renamedOutcome, withChild, without, type Rule } from '../../document/editing/rules'
+import { perform } from './apply'
+import { Section } from './Section'
+import { TemplateInput } from './TemplateInput'
+
+export function RulesForm({ node }: { node: EditNode }) {
+  const set = (rules: readonly Rule[], words: string) =>
+    void perform(words, [setField(node.path, 'conditions', conditionsOf(rules))])
+  return (
+    <Section title="Ends with" note="the first line that holds">
+      <div className="rules-scroll" role="region" aria-label="Rules" tabIndex={0}>
+        <table className="edit-table rules-table">
+          <thead>
+            <tr>
+              <th scope="col">Outcome</th>
+              {node.children.map((child) => (
+                <th scope="col" key={child.name}>
+                  {child.name}
+                </th>
+              ))}
+              <th scope="col">
+                <span className="visually-hidden">Order</span>
+              </th>
+            </tr>
+          </thead>
+          <tbody>
+            {node.rules.map((rule, index) => (
+              <tr key={index}>
+                <td>
+                  <TemplateInput
+                    label={`Outcome of rule ${index + 1}`}
+                    value={rule.outcome}
+                    onCommit={(typed) => typed && set(renamedOutcome(node.rules, index, typed), `Rule ${index + 1}`)}
+                  />
+                </td>
+                {node.children.map((child) => (
+                  <td key={child.name}>
+                    <select
+                      className="plain-input"
+                      aria-label={`${child.name} in rule ${index + 1}`}
+                      value={rule.when[child.name] ?? ''}
+                      onChange={(event) =>
+                        set(withChild(node.rules, index, child.name, event.currentTarget.value), `Rule ${index + 1}`)
+                      }
+                    >
+                      <option value="">any</option>
+                      {[
+                        ...new Set([
+                          ...child.outcomes,
+                          ...(rule.when[child.name] ? [rule.when[child.name] ?? ''] : []),
+                        ]),
+                      ].map((outcome) => (
+                        <option key={outcome} value={outcome}>
+                          {outcome}
+                        </option>
+                      ))}
+                    </select>
+                  </td>
+                ))}
+                <td className="row-tools">
+                  <button
+                    type="button"
+                    className="mini"
+                    aria-label={`Move rule ${index + 1} up`}
+                    disabled={index === 0}
+                    onClick={() => set(moved(node.rules, index, -1), 'Order of rules')}
+                  >
+                    <IconArrowUp size={13} aria-hidden />
+                  </button>
+                  <button
+                    type="button"
+                    className="mini"
+                    aria-label={`Move rule ${index + 1} down`}
+                    disabled={index === node.rules.length - 1}
+                    onClick={() => set(moved(node.rules, index, 1), 'Order of rules')}
+                  >
+                    <IconArrowDown size={13} aria-hidden />
+                  </button>
+                  <button
+                    type="button"
+                    className="mini"
+                    aria-label={`Delete rule ${index + 1}`}
+                    onClick={() => set(without(node.rules, index), 'Delete a rule')}
+                  >
+                    <IconTrash size={13} aria-hidden />
+                  </button>
+                </td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+      <div className="command-row">
+        <button
+          type="button"
+          className="command"
+          disabled={node.children.length === 0}
+          onClick={() => set(added(node.rules, node.children), 'Add a rule')}
+        >
+          <IconPlus size={14} aria-hidden /> Add a rule
+        </button>
+      </div>
+      <div className="edit-line">
+        <span>Otherwise</span>
+        <TemplateInput
+          label="Outcome when no rule holds"
+          placeholder="none"
+          value={node.otherwise ?? ''}
+          onCommit={(typed) => void perform('Otherwise', [setField(node.path, 'otherwise', typed || null)])}
+        />
+      </div>
+    </Section>
+  )
+}

@@ -1,0 +1,140 @@
+/** What can be done with the chosen nodes, above them; and the field for a new name. */
+import { NodeToolbar, Position } from '@xyflow/react'
+import {
+  IconArrowsDiagonal,
+  IconArrowsDiagonalMinimize,
+  IconBoxMultiple,
+  IconCopyPlus,
+  IconCursorText,
+  IconLogin2,
+  IconPlugConnected,
+  IconPlus,
+  IconTrash,
+} from '@tabler/icons-react'
+import { useEffect, useRef, useState, type ReactNode } from 'react'
+import {
+  isFrame,
+  isTreePart,
+  nameOfPath,
+  nameProblem,
+  nodeOf,
+  parentPath,
+  type EditNode,
+} from '../../document/editing/model'
+import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
+import { askAdd, askConnect } from './asking'
+import { editor, isOpenNow, rootOf, setEditor, useEditor } from './store'
+
+export function SelectionBar() {
+  const selection = useEditor((s) => s.selection)
+  const renaming = useEditor((s) => s.renaming)
+  const node = useEditor((s) => nodeOf(rootOf(s), s.selection.at(-1) ?? ''))
+  if (renaming !== undefined) {
+    return (
+      <NodeToolbar nodeId={renaming} isVisible position={Position.Top} offset={8}>
+        <RenameField key={renaming} path={renaming} />
+      </NodeToolbar>
+    )
+  }
+  if (!node || selection.length === 0) return null
+  return (
+    <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
+      <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
+        {selection.length === 1 ? <One node={node} /> : <Several count={selection.length} />}
+        <Act label="Duplicate (Ctrl+D)" onPress={() => void duplicate()}>
+          <IconCopyPlus size={16} />
+        </Act>
+        <Act label="Delete (Del)" onPress={() => void remove()}>
+          <IconTrash size={16} />
+        </Act>
+      </div>
+    </NodeToolbar>
+  )
+}
+
+function One({ node }: { node: EditNode }) {
+  const isOpen = useEditor((s) => isOpenNow(s, node.path))
+  return (
+    <>
+      <Act label="Add a state or container here (A)" onPress={() => askAdd()}>
+        <IconPlus size={16} />
+      </Act>
+      <Act label="Connect (C)" onPress={askConnect}>
+        <IconPlugConnected size={16} />
+      </Act>
+      {(isFrame(node) || (isTreePart(node.kind) && node.children.length > 0)) && (
+        <>
+          <Act label={isOpen ? 'Close it (O)' : 'Open it in place (O)'} onPress={() => toggleOpen(node.path, isOpen)}>
+            {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
+          </Act>
+          <Act label="Go into it (Enter)" onPress={() => enter(node.path)}>
+            <IconLogin2 size={16} />
+          </Act>
+        </>
+      )}
+      <Act label="Rename (F2)" onPress={() => setEditor({ renaming: node.path })}>
+        <IconCursorText size={16} />
+      </Act>
+    </>
+  )
+}
+
+function Several({ count }: { count: number }) {
+  return (
+    <>
+      <span className="selection-count">{count} chosen</span>
+      <Act label="Group into a machine (Ctrl+G)" onPress={() => void group('machine')}>
+        <IconBoxMultiple size={16} />
+      </Act>
+    </>
+  )
+}
+
+function Act({ label, onPress, children }: { label: string; onPress: () => void; children: ReactNode }) {
+  return (
+    <button type="button" className="bar-button" aria-label={label} title={label} onClick={onPress}>
+      {children}
+    </button>
+  )
+}
+
+function RenameField({ path }: { path: string }) {
+  const present = nameOfPath(path)
+  const [name, setName] = useState(present)
+  const field = useRef<HTMLInputElement>(null)
+  const parent = nodeOf(rootOf(editor()), parentPath(path))
+  const problem = nameProblem(parent, name, present)
+  useEffect(() => {
+    field.current?.focus()
+    field.current?.select()
+  }, [])
+  const cancel = () => {
+    setEditor({ renaming: undefined })
+    focusNode(path)
+  }
+  return (
+    <form
+      className="rename"
+      onSubmit={(event) => {
+        event.preventDefault()
+        if (!problem) void rename(path, name)
+      }}
+    >
+      <input
+        ref={field}
+        className="plain-input"
+        aria-label={`New name of ${present}`}
+        aria-invalid={problem !== undefined}
+        value={name}
+        onChange={(event) => setName(event.currentTarget.value)}
+        onKeyDown={(event) => event.key === 'Escape' && cancel()}
+        onBlur={() => (problem ? cancel() : void rename(path, name))}
+      />
+      {problem && (
+        <span className="rename-problem" role="alert">
+          {problem}
+        </span>
+      )}
+    </form>
+  )
+}

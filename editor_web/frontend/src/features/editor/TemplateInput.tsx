@@ -1,0 +1,165 @@
+/** A field for a value that may hold `${…}`: names are offered while one is typed. What is typed counts when the field is left. */
+import { useEffect, useId, useRef, useState, type KeyboardEvent } from 'react'
+import { completed, openingAt, type Name } from '../../document/editing/completion'
+import { useNames } from './useNames'
+
+export interface TemplateInputProps {
+  readonly label: string
+  readonly value: string
+  readonly onCommit: (value: string) => void
+  readonly placeholder?: string
+  readonly describedBy?: string
+  readonly isInvalid?: boolean
+  readonly isMono?: boolean
+  /** Several lines. */
+  readonly isLong?: boolean
+  /** More to choose from than names, when the field is empty or holds no `${`. */
+  readonly options?: readonly string[]
+  readonly inputMode?: 'decimal' | 'text'
+}
+
+interface Offer {
+  readonly items: readonly { readonly text: string; readonly detail: string; readonly name?: Name }[]
+  readonly index: number
+}
+
+const MOST = 30
+
+export function TemplateInput(props: TemplateInputProps) {
+  const { label, value, onCommit, placeholder, describedBy, isInvalid, isMono, isLong, options, inputMode } = props
+  const [text, setText] = useState(value)
+  const [offer, setOffer] = useState<Offer>()
+  const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null)
+  const names = useNames()
+  const id = useId()
+  useEffect(() => setText(value), [value])
+
+  function look(next: string, cursor: number): void {
+    const opening = openingAt(next, cursor, names)
+    if (opening) {
+      setOffer({
+        items: opening.names
+          .slice(0, MOST)
+          .map((name) => ({ text: name.name, detail: [name.origin, name.detail].filter(Boolean).join(' · '), name })),
+        index: 0,
+      })
+    } else if (options && !next.includes('${')) {
+      const wanted = next.trim().toLowerCase()
+      const fitting = next === value ? options : options.filter((option) => option.toLowerCase().includes(wanted))
+      setOffer(
+        fitting.length > 0
+          ? { items: fitting.slice(0, MOST).map((option) => ({ text: option, detail: '' })), index: -1 }
+          : undefined,
+      )
+    } else setOffer(undefined)
+  }
+
+  function commit(next = text): void {
+    setOffer(undefined)
+    if (next.trim() !== value) onCommit(next.trim())
+  }
+
+  function take(index: number): void {
+    const item = offer?.items[index]
+    const input = field.current
+    if (!item || !input) return
+    const opening = item.name ? openingAt(text, input.selectionStart ?? text.length, names) : undefined
+    if (item.name && opening) {
+      const done = completed(text, input.selectionStart ?? text.length, opening, item.name.name)
+      setText(done.text)
+      requestAnimationFrame(() => input.setSelectionRange(done.cursor, done.cursor))
+      setOffer(undefined)
+    } else {
+      setText(item.text)
+      commit(item.text)
+    }
+  }
+
+  function onKeyDown(event: KeyboardEvent): void {
+    if (offer && (event.key === 'ArrowDown' || event.key === 'ArrowUp')) {
+      event.preventDefault()
+      const by = event.key === 'ArrowDown' ? 1 : -1
+      setOffer({ ...offer, index: (offer.index + by + offer.items.length) % offer.items.length })
+    } else if (offer && offer.index >= 0 && (event.key === 'Enter' || event.key === 'Tab')) {
+      event.preventDefault()
+      take(offer.index)
+    } else if (event.key === 'Enter' && !(isLong && event.shiftKey)) {
+      if (!isLong) event.preventDefault()
+      if (!isLong) commit()
+    } else if (event.key === 'Escape') {
+      event.stopPropagation()
+      if (offer) setOffer(undefined)
+      else {
+        setText(value)
+        field.current?.blur()
+      }
+    }
+  }
+
+  const shared = {
+    ref: field,
+    id,
+    className: `plain-input${isMono ? ' mono' : ''}`,
+    'aria-label': label,
+    'aria-invalid': isInvalid || undefined,
+    'aria-describedby': describedBy,
+    autoComplete: 'off',
+    spellCheck: false,
+    placeholder,
+    value: text,
+    onKeyDown,
+    onFocus: () => look(text, text.length),
+    onBlur: () => commit(),
+  }
+  return (
+    <div className="template-input">
+      {isLong ? (
+        <textarea
+          {...shared}
+          rows={Math.min(8, Math.max(2, text.split('\n').length))}
+          onChange={(event) => {
+            setText(event.currentTarget.value)
+            look(event.currentTarget.value, event.currentTarget.selectionStart ?? 0)
+          }}
+        />
+      ) : (
+        <input
+          {...shared}
+          role="combobox"
+          aria-expanded={offer !== undefined}
+          aria-controls={`${id}-offer`}
+          aria-activedescendant={offer && offer.index >= 0 ? `${id}-${offer.index}` : undefined}
+          inputMode={inputMode}
+          onChange={(event) => {
+            setText(event.currentTarget.value)
+            look(event.currentTarget.value, event.currentTarget.selectionStart ?? 0)
+          }}
+        />
+      )}
+      {offer && (
+        <ul className="offer" role="listbox" id={`${id}-offer`} aria-label={`Choices for ${label}`}>
+          {offer.items.map((item, index) => (
+            <li
+              key={item.text}
+              id={`${id}-${index}`}
+              role="option"
+              aria-selected={index === offer.index}
+              onPointerDown={(event) => {
+                event.preventDefault()
+                take(index)
+              }}
+            >
+              <span>{item.text}</span>
+              {item.detail && <span className="quiet">{item.detail}</span>}
+            </li>
+          ))}
+          {offer.items.length === 0 && (
+            <li className="quiet" role="option" aria-selected={false} aria-disabled>
+              No such name
+            </li>
+          )}
+        </ul>
+      )}
+    </div>
+  )
+}

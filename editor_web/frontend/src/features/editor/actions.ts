@@ -1,0 +1,367 @@
+/** What can be done with the document, in terms of what is chosen: each becomes edits that the server applies. */
+import { documents } from '../../api/documents'
+import { wordsOf } from '../../api/client'
+import { corner, setField, type AddNode, type Edit, type GroupKind } from '../../document/editing/edits'
+import {
+  freeName,
+  holderOf,
+  isComposite,
+  isForeign,
+  isMachine,
+  isTreePart,
+  nameFor,
+  nameOfPath,
+  nodeOf,
+  parentPath,
+  ROOT,
+  type EditNode,
+} from '../../document/editing/model'
+import { aligned, type Alignment } from '../../document/editing/neighbors'
+import type { Box } from '../../document/geometry'
+import { perform } from './apply'
+import { canvasBoxes } from './canvasPlaces'
+import { chosenOf, draftOf, editor, refused, rootOf, scopeOf, setEditor, told, type AddRequest } from './store'
+
+/** What a new node is. */
+export interface Addition {
+  readonly kind: string
+  readonly runs?: string
+  readonly parameters?: Readonly<Record<string, unknown>>
+  /** What it is called, as far as the name is free. */
+  readonly name: string
+}
+
+export function choose(paths: readonly string[]): void {
+  setEditor({ selection: paths, arrow: undefined, ...(paths.length > 0 ? { tab: 'node' as const } : {}) })
+}
+
+export function chooseArrow(arrow: string | undefined): void {
+  setEditor({ arrow, selection: arrow ? [] : editor().selection })
+}
+
+/** Paths of the chosen nodes without those that are inside another chosen one. */
+export function outermost(): readonly string[] {
+  const { selection } = editor()
+  return selection.filter((path) => path !== ROOT && !selection.some((other) => path.startsWith(`${other}/`)))
+}
+
+/** Add a node; where the request comes from a port or an arrow, it is connected too. */
+export async function add(what: Addition, request: AddRequest): Promise<void> {
+  const root = rootOf(editor())
+  const parent = nodeOf(root, request.parent)
+  if (!root || !parent) return
+  const name = freeName(parent, what.name)
+  const isPlaced =
+    request.at !== undefined && isMachine(parent.kind) && parent.children.some((child) => child.position !== null)
+  const after = request.from ? undefined : afterOf(parent)
+  const node: AddNode = {
+    edit: 'add_node',
+    parent: parent.path,
+    kind: what.kind,
+    name,
+    ...(what.runs ? { runs: what.runs } : {}),
+    ...(what.parameters ? { parameters: what.parameters } : {}),
+    ...(isPlaced && request.at ? { position: corner(request.at.x, request.at.y) } : {}),
+    ...(after ? { after } : {}),
+    ...(request.from?.isInsert ? { on_edge: { from: request.from.path, outcome: request.from.outcome } } : {}),
+  }
+  const connect: Edit[] =
+    request.from && !request.from.isInsert
+      ? [{ edit: 'set_transition', path: request.from.path, outcome: request.from.outcome, target: name }]
+      : []
+  const answer = await perform(`Add ${name}`, [node, ...connect])
+  const made =
+    answer?.changed.find((path) => parentPath(path) === parent.path && nameOfPath(path) === name) ??
+    `${parent.path}/${name}`
+  if (answer && nodeOf(rootOf(editor()), made)) {
+    if (parent.path !== editor().scope && !made.startsWith(`${editor().scope}/`)) setEditor({ scope: parent.path })
+    if (parent.path !== editor().scope) setEditor({ opened: new Map(editor().opened).set(parent.path, true) })
+    choose([made])
+    focusNode(made)
+  }
+}
+
+/** The chosen sibling, after which something new comes. */
+function afterOf(parent: EditNode): string | undefined {
+  const chosen = chosenOf(editor())
+  return chosen && isMachine(parent.kind) && parentPath(chosen.path) === parent.path ? chosen.path : undefined
+}
+
+export function addState(state: string, request: AddRequest): Promise<void> {
+  return add({ kind: 'state', runs: state, name: nameFor(state) }, request)
+}
+
+/** Put the keyboard on a node once it is drawn. */
+export function focusNode(path: string): void {
+  setEditor({ shown: { path } })
+}
+
+export async function remove(): Promise<void> {
+  const { arrow } = editor()
+  if (arrow) {
+    const [machine = '', source = '', outcome = ''] = arrow.split('|')
+    setEditor({ arrow: undefined })
+    await perform(`Disconnect ${outcome}`, [clearWay(`${machine}/${source}`, outcome)])
+    return
+  }
+  const paths = own(outermost(), 'Delete')
+  if (paths.length === 0) return
+  const next = parentPath(paths[0] ?? '')
+  await perform(paths.length === 1 ? `Delete ${nameOfPath(paths[0] ?? '')}` : `Delete ${paths.length} nodes`, [
+    { edit: 'remove_nodes', paths },
+  ])
+  if (next && next !== editor().scope && nodeOf(rootOf(editor()), next)) choose([next])
+}
+
+function clearWay(path: string, outcome: string): Edit {
+  const node = nodeOf(rootOf(editor()), path)
+  if (node && !node.outcomes.includes(outcome)) {
+    if (outcome === 'error') return setField(path, 'on_error', null)
+    return setField(path, outcome.startsWith('after ') ? 'timeout' : 'guard', null)
+  }
+  return { edit: 'clear_transition', path, outcome }
+}
+
+/** The paths that can be changed here; what is inside another document cannot. */
+function own(paths: readonly string[], what: string): readonly string[] {
+  const root = rootOf(editor())
+  const mine = root ? paths.filter((path) => !isForeign(root, path)) : []
+  if (mine.length < paths.length)
+    refused(what, 'this is part of another behavior', 'Open that behavior and change it there.')
+  else if (paths.length === 0) refused(what, 'nothing is chosen', 'Choose nodes on the canvas first.')
+  return mine
+}
+
+export async function rename(path: string, name: string): Promise<void> {
+  // Enter and the loss of the keyboard that follows it are one.
+  if (editor().renaming !== path) return
+  setEditor({ renaming: undefined })
+  if (name === nameOfPath(path)) return
+  const answer = await perform(`Rename ${nameOfPath(path)} to ${name}`, [{ edit: 'rename_node', path, name }])
+  const made = `${parentPath(path)}/${name}`
+  if (answer && nodeOf(rootOf(editor()), made)) {
+    choose([made])
+    focusNode(made)
+  }
+}
+
+export async function duplicate(): Promise<void> {
+  const paths = own(outermost(), 'Duplicate')
+  if (paths.length === 0) return
+  const answer = await perform('Duplicate', [{ edit: 'duplicate', paths }])
+  if (answer) chooseChanged(answer.changed, paths)
+}
+
+function chooseChanged(changed: readonly string[], before: readonly string[]): void {
+  const made = changed.filter((path) => !before.includes(path) && nodeOf(rootOf(editor()), path))
+  const tops = made.filter((path) => !made.some((other) => path.startsWith(`${other}/`)))
+  if (tops.length > 0) choose(tops)
+}
+
+export async function copy(cut = false): Promise<void> {
+  const paths = own(outermost(), cut ? 'Cut' : 'Copy')
+  if (paths.length === 0) return
+  const { id } = editor()
+  try {
+    const { yaml } = await documents.copy(id, draftOf(editor()).text, paths)
+    await toClipboard(yaml)
+    told(paths.length === 1 ? `Copied ${nameOfPath(paths[0] ?? '')}` : `Copied ${paths.length} nodes`)
+    if (cut) await remove()
+  } catch (error) {
+    refused(cut ? 'Cut' : 'Copy', wordsOf(error))
+  }
+}
+
+let clipped = ''
+
+async function toClipboard(text: string): Promise<void> {
+  clipped = text
+  try {
+    await navigator.clipboard.writeText(text)
+  } catch {
+    // A browser that does not allow it: pasting on this page works all the same.
+  }
+}
+
+export async function paste(): Promise<void> {
+  const root = rootOf(editor())
+  let yaml = clipped
+  try {
+    yaml = (await navigator.clipboard.readText()) || clipped
+  } catch {
+    // Not allowed to read; what was copied on this page is known.
+  }
+  await pasteText(yaml, root)
+}
+
+export async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
+  if (!root || !yaml.trim()) {
+    refused('Paste', 'the clipboard is empty', 'Copy nodes first, here or in another behavior.')
+    return
+  }
+  const chosen = chosenOf(editor())
+  const beside = chosen ? parentPath(chosen.path) : editor().scope
+  const parent = holderOf(root, beside || ROOT)
+  if (!parent) return
+  const answer = await perform('Paste', [{ edit: 'paste', parent: parent.path, yaml }])
+  if (answer) chooseChanged(answer.changed, [])
+}
+
+export function selectAll(): void {
+  choose(scopeOf(editor())?.children.map((child) => child.path) ?? [])
+}
+
+export async function group(kind: GroupKind): Promise<void> {
+  const paths = own(outermost(), 'Group')
+  if (paths.length === 0) return
+  const parent = nodeOf(rootOf(editor()), parentPath(paths[0] ?? ''))
+  const name = freeName(parent, 'group')
+  const answer = await perform('Group', [{ edit: 'group', paths, kind, name }])
+  const made = `${parent?.path ?? ''}/${name}`
+  if (answer) choose(nodeOf(rootOf(editor()), made) ? [made] : [])
+}
+
+export async function ungroup(): Promise<void> {
+  const chosen = chosenOf(editor())
+  if (!chosen || chosen.path === ROOT) return
+  const answer = await perform(`Ungroup ${chosen.name}`, [{ edit: 'ungroup', path: chosen.path }])
+  if (answer) chooseChanged(answer.changed, [])
+}
+
+export async function connect(path: string, outcome: string, target: string): Promise<void> {
+  await perform(`Connect ${outcome} to ${target}`, [{ edit: 'set_transition', path, outcome, target }])
+}
+
+export async function disconnect(path: string, outcome: string): Promise<void> {
+  await perform(`Disconnect ${outcome}`, [clearWay(path, outcome)])
+}
+
+export async function autoConnect(): Promise<void> {
+  const { selection, scope } = editor()
+  await perform('Connect what is obvious', [
+    { edit: 'auto_connect', paths: selection.length > 0 ? selection : [scope] },
+  ])
+}
+
+export async function makeInitial(): Promise<void> {
+  const chosen = chosenOf(editor())
+  const parent = chosen && nodeOf(rootOf(editor()), parentPath(chosen.path))
+  if (!chosen || !parent || !isMachine(parent.kind)) return
+  await perform(`Begin with ${chosen.name}`, [{ edit: 'set_initial', path: parent.path, child: chosen.name }])
+}
+
+/** Forget where nodes were put: the container that fills the canvas is laid out by itself again. */
+export async function layOutAnew(): Promise<void> {
+  const scope = scopeOf(editor())
+  const placed = scope ? positionedBelow(scope) : []
+  if (placed.length === 0) {
+    told('It is laid out already')
+    return
+  }
+  await perform('Lay out', [
+    { edit: 'set_positions', positions: Object.fromEntries(placed.map((path) => [path, null])) },
+  ])
+}
+
+function positionedBelow(node: EditNode): readonly string[] {
+  return node.children.flatMap((child) => [...(child.position ? [child.path] : []), ...positionedBelow(child)])
+}
+
+/** Put nodes where they were dragged to. The first one that is moved pins its siblings, which stay where they are seen. */
+export async function place(moved: ReadonlyMap<string, { x: number; y: number }>): Promise<void> {
+  const root = rootOf(editor())
+  const { boxes, origins } = canvasBoxes()
+  const positions: Record<string, readonly [number, number]> = {}
+  for (const [path, at] of moved) {
+    const parent = nodeOf(root, parentPath(path))
+    if (!parent || isTreePart(parent.kind) || !isMachine(parent.kind)) continue
+    const origin = origins.get(parent.path) ?? { x: 0, y: 0 }
+    const isPinned = parent.children.some((child) => child.position !== null)
+    if (!isPinned) {
+      for (const child of parent.children) {
+        const box = boxes.get(child.path)
+        if (box) positions[child.path] ??= corner(box.x - origin.x, box.y - origin.y)
+      }
+    }
+    positions[path] = corner(at.x - origin.x, at.y - origin.y)
+  }
+  if (Object.keys(positions).length > 0) {
+    await perform(moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`, [
+      { edit: 'set_positions', positions },
+    ])
+  }
+}
+
+export async function align(how: Alignment): Promise<void> {
+  const { boxes } = canvasBoxes()
+  const chosen = new Map(
+    outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])),
+  )
+  if (chosen.size < 2) {
+    refused('Align', 'choose two nodes or more')
+    return
+  }
+  await place(aligned(chosen, how))
+}
+
+/** Move the chosen nodes by a step of the keyboard: elsewhere on the canvas, or among the children where their order counts. */
+export async function nudge(x: number, y: number): Promise<void> {
+  const root = rootOf(editor())
+  const chosen = chosenOf(editor())
+  const parent = chosen && nodeOf(root, parentPath(chosen.path))
+  if (!chosen || !parent) return
+  if (isComposite(parent.kind) || parent.kind === 'concurrency') {
+    await reorder(parent, chosen.name, x < 0 || y < 0 ? -1 : 1)
+    return
+  }
+  const { boxes } = canvasBoxes()
+  await place(
+    new Map(
+      outermost().flatMap((path) => {
+        const box = boxes.get(path)
+        return box ? [[path, { x: box.x + x, y: box.y + y }] as const] : []
+      }),
+    ),
+  )
+}
+
+export async function reorder(parent: EditNode, name: string, by: number): Promise<void> {
+  const order = parent.children.map((child) => child.name)
+  const from = order.indexOf(name)
+  const to = Math.max(0, Math.min(order.length - 1, from + by))
+  if (from === to) return
+  order.splice(to, 0, ...order.splice(from, 1))
+  const answer = await perform(`Move ${name}`, [setField(parent.path, 'order', order)])
+  if (answer) chooseChanged([`${parent.path}/${name}`], [])
+}
+
+export async function moveInto(paths: readonly string[], parent: string): Promise<void> {
+  const answer = await perform(`Move into ${nameOfPath(parent)}`, [{ edit: 'move_nodes', paths, parent }])
+  if (answer)
+    choose(paths.map((path) => `${parent}/${nameOfPath(path)}`).filter((path) => nodeOf(rootOf(editor()), path)))
+}
+
+/** Go into a container, so that its inside fills the canvas. */
+export function enter(path: string): void {
+  const node = nodeOf(rootOf(editor()), path)
+  if (!node) return
+  const scope = isTreePart(node.kind) && node.kind !== 'tree' ? parentPath(path) : path
+  const first = node.children[0]?.path
+  setEditor({ scope, selection: first ? [first] : [], arrow: undefined })
+  if (first) focusNode(first)
+}
+
+/** Go out of the container that fills the canvas, and choose it. */
+export function leave(): void {
+  const { scope } = editor()
+  if (scope === ROOT) {
+    choose([])
+    return
+  }
+  setEditor({ scope: parentPath(scope) || ROOT, selection: [scope], arrow: undefined })
+  focusNode(scope)
+}
+
+export function toggleOpen(path: string, isOpen: boolean): void {
+  setEditor({ opened: new Map(editor().opened).set(path, !isOpen) })
+}

@@ -1,0 +1,119 @@
+/** Everything that can be put into a container, for the library and the palette: one list. */
+import { createElement } from 'react'
+import type { CatalogueBody, EntryBody, StateBody } from '../../api/types'
+import { isTreePart, nameFor, type EditNode } from '../../document/editing/model'
+import type { Addition } from './actions'
+import { iconOf } from './kinds'
+
+export interface Item {
+  readonly id: string
+  readonly title: string
+  readonly group: string
+  /** One line of what it is for. */
+  readonly summary: string
+  /** All that its author wrote about it. */
+  readonly doc: string
+  readonly outcomes: readonly string[]
+  readonly kind: string
+  readonly onlyInTree: boolean
+  readonly addition: Addition
+}
+
+/** States first, then containers, then other behaviors. */
+export function itemsOf(catalogue: CatalogueBody, id: string): readonly Item[] {
+  const states = catalogue.states.map((state) => stateItem(state))
+  const containers = catalogue.containers.map((each): Item => ({
+    id: `kind:${each.kind}`,
+    title: each.title,
+    group: each.only_in_tree ? 'Parts of trees' : 'Containers',
+    summary: firstLine(each.doc),
+    doc: each.doc,
+    outcomes: [],
+    kind: each.kind,
+    onlyInTree: each.only_in_tree,
+    addition: { kind: each.kind, name: each.kind },
+  }))
+  const behaviors = catalogue.behaviors
+    .filter((each) => each.id !== id)
+    .map((each): Item => ({
+      id: `behavior:${each.id}`,
+      title: each.name,
+      group: 'Behaviors',
+      summary: each.description,
+      doc: each.description,
+      outcomes: each.outcomes,
+      kind: 'behavior',
+      onlyInTree: false,
+      addition: {
+        kind: 'behavior',
+        runs: relative(id, each.id),
+        name: nameFor(
+          each.id
+            .split('/')
+            .pop()
+            ?.replace(/\.[a-z]+$/, '') ?? 'behavior',
+        ),
+      },
+    }))
+  return [...states, ...containers, ...behaviors]
+}
+
+function stateItem(state: StateBody): Item {
+  return {
+    id: `state:${state.name}`,
+    title: state.name,
+    group: state.group,
+    summary: firstLine(state.doc),
+    doc: state.doc,
+    outcomes: state.outcomes,
+    kind: 'state',
+    onlyInTree: false,
+    addition: { kind: 'state', runs: state.name, name: nameFor(state.name) },
+  }
+}
+
+function firstLine(text: string): string {
+  return text.split('\n')[0] ?? ''
+}
+
+/** The way from one document's folder to another document, as a reference is written. */
+export function relative(from: string, to: string): string {
+  const here = from.split('/').slice(0, -1)
+  const there = to.split('/')
+  let same = 0
+  while (same < here.length && same < there.length - 1 && here[same] === there[same]) same += 1
+  return [...here.slice(same).map(() => '..'), ...there.slice(same)].join('/')
+}
+
+/** Can it stand in this container? */
+export function fits(item: Item, parent: EditNode): boolean {
+  return !item.onlyInTree || isTreePart(parent.kind)
+}
+
+export function itemIcon(kind: string, size = 16) {
+  return createElement(iconOf(kind), { size, 'aria-hidden': true })
+}
+
+/** The state that goes to a named entry, with the entry as its target. */
+export function entryAddition(entry: EntryBody, catalogue: CatalogueBody): Addition | undefined {
+  const wanted: Record<string, string> = {
+    joints: 'motion.MoveJoints',
+    pose: 'motion.MoveLinear',
+    dmp: 'motion.FollowJointDmp',
+    cart_dmp: 'motion.FollowCartDmp',
+  }
+  const state = catalogue.states.find((each) => each.name === wanted[entry.kind])
+  if (!state) return undefined
+  const parameter = state.parameters.find(
+    (key) =>
+      JSON.stringify(key.schema).includes(`"entry":"${entry.kind}"`) || JSON.stringify(key.schema).includes('"entry":'),
+  )
+  if (!parameter) return undefined
+  const isObject = JSON.stringify(parameter.schema).includes('"properties"')
+  return {
+    kind: 'state',
+    runs: state.name,
+    name: entry.name,
+    parameters: { [parameter.name]: isObject ? { entry: entry.name } : entry.name },
+  }
+}

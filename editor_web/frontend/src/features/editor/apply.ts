@@ -1,0 +1,130 @@
+/** Changing the document: edits by the server, typing, undo and redo; one after the other, none lost. */
+import { wordsOf, ServerError } from '../../api/client'
+import { documents } from '../../api/documents'
+import type { EditedBody } from '../../api/types'
+import type { Edit } from '../../document/editing/edits'
+import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
+import { nodeOf, parentPath, type Draft } from '../../document/editing/model'
+import { keepDraft } from './kept'
+import { draftOf, editor, refused, rootOf, setEditor } from './store'
+
+const TYPING_PAUSE_MS = 250
+
+let queue: Promise<unknown> = Promise.resolve()
+let due: ReturnType<typeof setTimeout> | undefined
+
+/** Do something after everything that was asked for before; the editor says meanwhile that it is busy. */
+export function inTurn<T>(work: () => Promise<T>): Promise<T> {
+  const done = queue.then(async () => {
+    setEditor({ isBusy: true })
+    try {
+      return await work()
+    } finally {
+      setEditor({ isBusy: false })
+    }
+  })
+  queue = done.catch(() => undefined)
+  return done
+}
+
+/** Apply edits to the text as it then is; undefined with the reason on the page where the server refuses. */
+export function perform(label: string, edits: readonly Edit[]): Promise<EditedBody | undefined> {
+  if (edits.length === 0) return Promise.resolve(undefined)
+  const { id } = editor()
+  return inTurn(async () => {
+    if (editor().id !== id) return undefined
+    const before = draftOf(editor())
+    try {
+      const answer = await documents.edit(id, before.text, edits)
+      if (answer.refused) {
+        refused(label, answer.refused.message, answer.refused.hint)
+        return undefined
+      }
+      setHistory(pushed(settled(editor().history), label, draftFrom(answer, answer.text, before)))
+      setEditor({ notice: undefined })
+      return answer
+    } catch (error) {
+      refused(label, ...reasonOf(error))
+      return undefined
+    }
+  })
+}
+
+function reasonOf(error: unknown): [string, string] {
+  return error instanceof ServerError ? [error.body.message, error.body.hint] : [wordsOf(error), '']
+}
+
+interface Read {
+  readonly graph: Draft['root'] | null
+  readonly findings: Draft['findings']
+  readonly document?: Draft['document'] | null
+}
+
+/** A draft of what the server read; where it could not, with the graph from before. */
+export function draftFrom(answer: Read, text: string, before: Draft | undefined): Draft {
+  const isStale = !answer.graph
+  return {
+    text,
+    root: answer.graph ?? before?.root,
+    findings: answer.findings,
+    isStale,
+    document: (isStale ? before?.document : answer.document) ?? undefined,
+  }
+}
+
+function setHistory(history: History): void {
+  setEditor({ history })
+  keepDraft()
+  forgetTheGone()
+}
+
+/** What is chosen or shown and is not there any more is let go. */
+function forgetTheGone(): void {
+  const state = editor()
+  const root = rootOf(state)
+  const selection = state.selection.filter((path) => nodeOf(root, path))
+  let scope = state.scope
+  while (scope && !nodeOf(root, scope)) scope = parentPath(scope)
+  setEditor({
+    ...(selection.length === state.selection.length ? {} : { selection }),
+    ...(scope === state.scope ? {} : { scope: scope || 'root' }),
+  })
+}
+
+/** Take what was typed into the text; the graph follows when the typing pauses. */
+export function typed(text: string): void {
+  const before = draftOf(editor())
+  if (text === before.text) return
+  setEditor({ history: pushed(editor().history, 'Type', { ...before, text }, 'typing') })
+  keepDraft()
+  clearTimeout(due)
+  due = setTimeout(() => void readAnew(), TYPING_PAUSE_MS)
+}
+
+/** Ask the server what it reads in the present text. */
+export function readAnew(): Promise<void> {
+  clearTimeout(due)
+  const { id } = editor()
+  return inTurn(async () => {
+    const before = draftOf(editor())
+    const answer = await documents.draft(id, before.text)
+    if (editor().id === id && draftOf(editor()).text === before.text) {
+      setHistory(replaced(editor().history, draftFrom(answer, before.text, before)))
+    }
+  }).catch((error: unknown) => refused('Check', ...reasonOf(error)))
+}
+
+export function undo(): void {
+  void inTurn(() => Promise.resolve(setHistory(undone(settled(editor().history)))))
+}
+
+export function redo(): void {
+  void inTurn(() => Promise.resolve(setHistory(redone(settled(editor().history)))))
+}
+
+/** Put a whole text in place of the present one, as one step that can be undone. */
+export function takeText(label: string, text: string): Promise<void> {
+  const before = draftOf(editor())
+  setEditor({ history: pushed(settled(editor().history), label, { ...before, text }) })
+  return readAnew()
+}

@@ -1,0 +1,364 @@
+/** Every command of the editor with its words and keys: for the keyboard, the palette and the sheet. */
+import { isChord, type Chord, type Press } from '../../document/editing/keys'
+import { isMachine, isTreePart, nodeOf, parentPath, ROOT } from '../../document/editing/model'
+import { canRedo, canUndo } from '../../document/editing/history'
+import {
+  align,
+  autoConnect,
+  choose,
+  copy,
+  duplicate,
+  enter,
+  focusNode,
+  group,
+  layOutAnew,
+  leave,
+  makeInitial,
+  nudge,
+  paste,
+  remove,
+  selectAll,
+  toggleOpen,
+  ungroup,
+} from './actions'
+import { redo, undo } from './apply'
+import { askAdd, askConnect } from './asking'
+import { goToProblem } from './problems'
+import { discard, save } from './session'
+import { chosenOf, editor, isDirty, isOpenNow, rootOf, setEditor } from './store'
+
+export interface Command {
+  readonly id: string
+  readonly words: string
+  readonly part: 'Document' | 'Build' | 'Arrange' | 'Move around'
+  readonly chords: readonly Chord[]
+  /** What is needed for it; nothing stands in the way without. */
+  readonly needs?: 'node' | 'nodes' | 'undo' | 'redo' | 'changes'
+  readonly run: () => void
+}
+
+/** What the page does for the editor: running, fitting, showing. */
+export interface PageActs {
+  readonly run: () => void
+  readonly fit: () => void
+  readonly zoom: (factor: number) => void
+  /** Open another behavior in the editor. */
+  readonly open: (id: string) => void
+}
+
+let acts: PageActs = { run: () => undefined, fit: () => undefined, zoom: () => undefined, open: () => undefined }
+
+/** Open another behavior; the draft of this one is kept. */
+export function openOther(id: string): void {
+  acts.open(id)
+}
+
+export function setPageActs(given: PageActs): void {
+  acts = given
+}
+
+const STEP = 20
+
+function withChosen(act: (path: string) => void): void {
+  const chosen = chosenOf(editor())
+  if (chosen && chosen.path !== ROOT) act(chosen.path)
+}
+
+export const COMMANDS: readonly Command[] = [
+  { id: 'save', part: 'Document', words: 'Save', chords: [{ key: 's', ctrl: true }], run: () => void save() },
+  {
+    id: 'run',
+    part: 'Document',
+    words: 'Save, check, and go to the run page',
+    chords: [{ key: 'Enter', ctrl: true }],
+    run: () => acts.run(),
+  },
+  { id: 'undo', part: 'Document', words: 'Undo', chords: [{ key: 'z', ctrl: true }], needs: 'undo', run: undo },
+  {
+    id: 'redo',
+    part: 'Document',
+    words: 'Redo',
+    chords: [
+      { key: 'z', ctrl: true, shift: true },
+      { key: 'y', ctrl: true },
+    ],
+    needs: 'redo',
+    run: redo,
+  },
+  {
+    id: 'discard',
+    part: 'Document',
+    words: 'Go back to the file as saved',
+    chords: [],
+    needs: 'changes',
+    run: () => void discard(),
+  },
+  {
+    id: 'text',
+    part: 'Document',
+    words: 'Show or hide the text',
+    chords: [{ key: 'y' }],
+    run: () => setEditor({ isTextShown: !editor().isTextShown }),
+  },
+  {
+    id: 'settings',
+    part: 'Document',
+    words: 'Parameters, userdata and outcomes of the behavior',
+    chords: [{ key: ',' }],
+    run: () => setEditor({ tab: 'document' }),
+  },
+  { id: 'problem', part: 'Document', words: 'Go to the next problem', chords: [{ key: 'F8' }], run: goToProblem },
+  {
+    id: 'palette',
+    part: 'Document',
+    words: 'Every command, every node',
+    chords: [{ key: 'k', ctrl: true }],
+    run: () => setEditor({ palette: { kind: 'commands' } }),
+  },
+  {
+    id: 'sheet',
+    part: 'Document',
+    words: 'This list of keys',
+    chords: [{ key: '?' }],
+    run: () => setEditor({ isSheetShown: true }),
+  },
+
+  {
+    id: 'add',
+    part: 'Build',
+    words: 'Add a state or container',
+    chords: [{ key: 'a' }, { key: 'Insert' }],
+    run: () => askAdd(),
+  },
+  {
+    id: 'connect',
+    part: 'Build',
+    words: 'Connect an outcome of the chosen node',
+    chords: [{ key: 'c' }],
+    needs: 'node',
+    run: askConnect,
+  },
+  {
+    id: 'auto',
+    part: 'Build',
+    words: 'Connect what is obvious',
+    chords: [{ key: 'w' }],
+    run: () => void autoConnect(),
+  },
+  {
+    id: 'initial',
+    part: 'Build',
+    words: 'Let the machine begin with the chosen node',
+    chords: [{ key: 'i' }],
+    needs: 'node',
+    run: () => void makeInitial(),
+  },
+  {
+    id: 'rename',
+    part: 'Build',
+    words: 'Rename',
+    chords: [{ key: 'F2' }],
+    needs: 'node',
+    run: () => withChosen((path) => setEditor({ renaming: path })),
+  },
+  {
+    id: 'remove',
+    part: 'Build',
+    words: 'Delete',
+    chords: [{ key: 'Delete' }, { key: 'Backspace' }],
+    run: () => void remove(),
+  },
+  {
+    id: 'duplicate',
+    part: 'Build',
+    words: 'Duplicate',
+    chords: [{ key: 'd', ctrl: true }],
+    needs: 'nodes',
+    run: () => void duplicate(),
+  },
+  {
+    id: 'copy',
+    part: 'Build',
+    words: 'Copy',
+    chords: [{ key: 'c', ctrl: true }],
+    needs: 'nodes',
+    run: () => void copy(),
+  },
+  {
+    id: 'cut',
+    part: 'Build',
+    words: 'Cut',
+    chords: [{ key: 'x', ctrl: true }],
+    needs: 'nodes',
+    run: () => void copy(true),
+  },
+  { id: 'paste', part: 'Build', words: 'Paste', chords: [{ key: 'v', ctrl: true }], run: () => void paste() },
+  {
+    id: 'group',
+    part: 'Build',
+    words: 'Group into a machine',
+    chords: [{ key: 'g', ctrl: true }],
+    needs: 'nodes',
+    run: () => void group('machine'),
+  },
+  {
+    id: 'group-concurrency',
+    part: 'Build',
+    words: 'Group to run side by side',
+    chords: [],
+    needs: 'nodes',
+    run: () => void group('concurrency'),
+  },
+  {
+    id: 'ungroup',
+    part: 'Build',
+    words: 'Ungroup',
+    chords: [{ key: 'g', ctrl: true, shift: true }],
+    needs: 'node',
+    run: () => void ungroup(),
+  },
+
+  { id: 'layout', part: 'Arrange', words: 'Lay out by itself', chords: [{ key: 'l' }], run: () => void layOutAnew() },
+  { id: 'align-left', part: 'Arrange', words: 'Align left', chords: [], needs: 'nodes', run: () => void align('left') },
+  { id: 'align-top', part: 'Arrange', words: 'Align top', chords: [], needs: 'nodes', run: () => void align('top') },
+  { id: 'align-row', part: 'Arrange', words: 'Put in a row', chords: [], needs: 'nodes', run: () => void align('row') },
+  {
+    id: 'align-column',
+    part: 'Arrange',
+    words: 'Put in a column',
+    chords: [],
+    needs: 'nodes',
+    run: () => void align('column'),
+  },
+  {
+    id: 'left',
+    part: 'Arrange',
+    words: 'Move left, or before its sibling',
+    chords: [{ key: 'ArrowLeft', alt: true }],
+    needs: 'node',
+    run: () => void nudge(-STEP, 0),
+  },
+  {
+    id: 'right',
+    part: 'Arrange',
+    words: 'Move right, or behind its sibling',
+    chords: [{ key: 'ArrowRight', alt: true }],
+    needs: 'node',
+    run: () => void nudge(STEP, 0),
+  },
+  {
+    id: 'up',
+    part: 'Arrange',
+    words: 'Move up',
+    chords: [{ key: 'ArrowUp', alt: true }],
+    needs: 'node',
+    run: () => void nudge(0, -STEP),
+  },
+  {
+    id: 'down',
+    part: 'Arrange',
+    words: 'Move down',
+    chords: [{ key: 'ArrowDown', alt: true }],
+    needs: 'node',
+    run: () => void nudge(0, STEP),
+  },
+
+  {
+    id: 'all',
+    part: 'Move around',
+    words: 'Choose everything here',
+    chords: [{ key: 'a', ctrl: true }],
+    run: selectAll,
+  },
+  {
+    id: 'enter',
+    part: 'Move around',
+    words: 'Go into the chosen container or behavior, or to the form of a state',
+    chords: [{ key: 'Enter' }],
+    needs: 'node',
+    run: goIn,
+  },
+  { id: 'leave', part: 'Move around', words: 'Go out, or choose nothing', chords: [{ key: 'Escape' }], run: goOut },
+  {
+    id: 'open',
+    part: 'Move around',
+    words: 'Open or close the chosen container in place',
+    chords: [{ key: 'o' }],
+    needs: 'node',
+    run: openOrClose,
+  },
+  { id: 'fit', part: 'Move around', words: 'Show all', chords: [{ key: 'f' }], run: () => acts.fit() },
+  {
+    id: 'zoom-in',
+    part: 'Move around',
+    words: 'Zoom in',
+    chords: [{ key: '+' }, { key: '=' }],
+    run: () => acts.zoom(1.3),
+  },
+  { id: 'zoom-out', part: 'Move around', words: 'Zoom out', chords: [{ key: '-' }], run: () => acts.zoom(1 / 1.3) },
+]
+
+/** Go into a container, to the behavior that is referred to, or to the form of a state. */
+function goIn(): void {
+  withChosen((path) => {
+    const node = nodeOf(rootOf(editor()), path)
+    if (!node) return
+    if (node.document) openOther(node.document)
+    else if (node.children.length > 0 || isMachine(node.kind) || node.kind === 'concurrency') enter(path)
+    else focusInspector()
+  })
+}
+
+/** Put the keyboard on the first parameter of the chosen node, else on the first field of its form. */
+function focusInspector(): void {
+  setEditor({ tab: 'node' })
+  requestAnimationFrame(() => {
+    const form = document.querySelector('.inspector .node-form')
+    const field =
+      form?.querySelector<HTMLElement>('.edit-fields input, .edit-fields select') ??
+      form?.querySelector<HTMLElement>('input, select, textarea')
+    field?.focus()
+  })
+}
+
+/** One step back: from an arrow, from several nodes to one, from a node to what is around it, from a container to the one around. */
+function goOut(): void {
+  const { selection, scope, arrow } = editor()
+  if (arrow) setEditor({ arrow: undefined })
+  else if (selection.length > 1) choose(selection.slice(-1))
+  else if (selection.length === 1 && parentPath(selection[0] ?? '') !== scope) {
+    const up = parentPath(selection[0] ?? '')
+    choose([up])
+    focusNode(up)
+  } else leave()
+}
+
+function openOrClose(): void {
+  withChosen((path) => {
+    const node = nodeOf(rootOf(editor()), path)
+    if (node && (node.children.length > 0 || !isTreePart(node.kind))) toggleOpen(path, isOpenNow(editor(), path))
+  })
+}
+
+/** Why a command cannot be used now, or nothing. */
+export function obstacleOf(command: Command): string | undefined {
+  const state = editor()
+  switch (command.needs) {
+    case 'node':
+    case 'nodes':
+      return state.selection.length === 0 ? 'choose a node first' : undefined
+    case 'undo':
+      return canUndo(state.history) ? undefined : 'nothing was changed'
+    case 'redo':
+      return canRedo(state.history) ? undefined : 'nothing was undone'
+    case 'changes':
+      return isDirty(state) ? undefined : 'nothing was changed'
+    default:
+      return undefined
+  }
+}
+
+/** The command that a key press means, if any. */
+export function commandOf(press: Press): Command | undefined {
+  return COMMANDS.find((command) => command.chords.some((chord) => isChord(press, chord)))
+}

@@ -1,0 +1,27 @@
+/** Going to a problem: its node on the canvas, its line in the text. */
+import type { FindingBody } from '../../api/types'
+import { allNodes } from '../../document/editing/model'
+import { nearestPath } from './marks'
+import { reveal } from './session'
+import { draftOf, editor, rootOf, setEditor, told } from './store'
+
+let last = -1
+
+export function goTo(finding: FindingBody): void {
+  const root = rootOf(editor())
+  const path = root && nearestPath(new Set(allNodes(root).map((node) => node.path)), finding.path)
+  if (path && path !== 'root') reveal(path)
+  setEditor({ place: { line: finding.line, column: finding.column }, tab: 'problems' })
+}
+
+/** The next one in the order of the text, again from the first after the last. */
+export function goToProblem(): void {
+  const { findings } = draftOf(editor())
+  const next = findings[(last + 1) % Math.max(1, findings.length)]
+  if (!next) {
+    told('No problems')
+    return
+  }
+  last = (last + 1) % findings.length
+  goTo(next)
+}

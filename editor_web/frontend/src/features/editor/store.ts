@@ -1,0 +1,148 @@
+/** What the editor holds: the document's history, what is chosen and shown, and what the server last refused. */
+import { create } from 'zustand'
+import type { CatalogueBody, ConflictBody } from '../../api/types'
+import { newHistory, presentOf, type History } from '../../document/editing/history'
+import { nodeOf, ROOT, type Draft, type EditNode } from '../../document/editing/model'
+import { openness } from '../../document/editing/opening'
+import type { Point } from '../../document/geometry'
+
+/** Something to add, asked for by typing. */
+export interface AddRequest {
+  /** The container it goes into. */
+  readonly parent: string
+  /** Connect this way out with it: from a port, or on an arrow that it is put on. */
+  readonly from?: { readonly path: string; readonly outcome: string; readonly isInsert?: boolean }
+  /** Where on the container's canvas it goes; laid out by itself without. */
+  readonly at?: Point
+  /** Where on the screen the palette opens. */
+  readonly screen?: Point
+}
+
+export type PaletteRequest =
+  | ({ readonly kind: 'add' } & AddRequest)
+  | { readonly kind: 'commands' }
+  | { readonly kind: 'connect'; readonly path: string }
+
+export interface Notice {
+  readonly what: string
+  readonly message: string
+  readonly hint: string
+  readonly tone: 'refused' | 'done'
+}
+
+export type SideTab = 'node' | 'document' | 'problems'
+
+export interface EditorState {
+  readonly id: string
+  readonly phase: 'loading' | 'ready' | 'failed'
+  readonly problem: string
+  /** The file as it is on disk, as far as this page knows. */
+  readonly base: { readonly text: string; readonly hash: string }
+  readonly history: History
+  readonly catalogue: CatalogueBody | undefined
+  /** The container whose inside fills the canvas. */
+  readonly scope: string
+  /** Paths of the chosen nodes, the one chosen last at the end. */
+  readonly selection: readonly string[]
+  /** The chosen arrow, `machine|source|outcome`. */
+  readonly arrow: string | undefined
+  /** Containers opened and closed by hand. */
+  readonly opened: ReadonlyMap<string, boolean>
+  /** Whether containers that nobody opened or closed are open. */
+  readonly opensByItself: boolean
+  readonly isBusy: boolean
+  readonly notice: Notice | undefined
+  readonly conflict: ConflictBody | undefined
+  readonly palette: PaletteRequest | undefined
+  readonly isTextShown: boolean
+  readonly isSheetShown: boolean
+  readonly renaming: string | undefined
+  readonly tab: SideTab
+  /** A node to bring into view; a new object asks anew. */
+  readonly shown: { readonly path: string } | undefined
+  /** A place in the text to go to; a new object asks anew. */
+  readonly place: { readonly line: number; readonly column: number } | undefined
+  /** The draft was found in this browser from an earlier visit. */
+  readonly isRestored: boolean
+  /** The file changed on disk since it was read. */
+  readonly isOutdated: boolean
+}
+
+const NOTHING: Draft = { text: '', root: undefined, findings: [], isStale: false, document: undefined }
+
+export function blank(id: string): EditorState {
+  return {
+    id,
+    phase: 'loading',
+    problem: '',
+    base: { text: '', hash: '' },
+    history: newHistory(NOTHING),
+    catalogue: undefined,
+    scope: ROOT,
+    selection: [],
+    arrow: undefined,
+    opened: new Map(),
+    opensByItself: true,
+    isBusy: false,
+    notice: undefined,
+    conflict: undefined,
+    palette: undefined,
+    isTextShown: false,
+    isSheetShown: false,
+    renaming: undefined,
+    tab: 'node',
+    shown: undefined,
+    place: undefined,
+    isRestored: false,
+    isOutdated: false,
+  }
+}
+
+export const useEditor = create<EditorState>(() => blank(''))
+
+export const editor = useEditor.getState
+
+export function setEditor(change: Partial<EditorState>): void {
+  useEditor.setState(change)
+}
+
+export function setOpensByItself(opensByItself: boolean): void {
+  if (editor().opensByItself !== opensByItself) setEditor({ opensByItself })
+}
+
+/** Is the inside of a container shown on the canvas? */
+export function isOpenNow(state: EditorState, path: string): boolean {
+  const scope = scopeOf(state)
+  return scope ? openness(scope, state.opened, state.opensByItself)(path) : false
+}
+
+export function draftOf(state: EditorState): Draft {
+  return presentOf(state.history).draft
+}
+
+export function rootOf(state: EditorState): EditNode | undefined {
+  return draftOf(state).root
+}
+
+export function isDirty(state: EditorState): boolean {
+  return state.phase === 'ready' && draftOf(state).text !== state.base.text
+}
+
+/** The container that fills the canvas; the root where what was shown has gone. */
+export function scopeOf(state: EditorState): EditNode | undefined {
+  const root = rootOf(state)
+  return nodeOf(root, state.scope) ?? root
+}
+
+/** The node that was chosen last. */
+export function chosenOf(state: EditorState): EditNode | undefined {
+  return nodeOf(rootOf(state), state.selection.at(-1) ?? '')
+}
+
+export function refused(what: string, message: string, hint = ''): void {
+  setEditor({ notice: { what, message, hint, tone: 'refused' } })
+}
+
+export function told(message: string): void {
+  setEditor({ notice: { what: '', message, hint: '', tone: 'done' } })
+}

@@ -1,0 +1,45 @@
+"""Routes of documents: bounded bodies, 404 for what is not there, 409 with both texts for what changed meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.responses import JSONResponse
+
+from editor_web.document_wire import ConflictBody, MergeConflictBody
+from editor_web.routes.limited import LimitedRoute
+from editor_web.wire import ErrorBody
+from engine.editing import DocumentConflict, NoSuchDocument
+
+
+class DocumentRoute(LimitedRoute):
+    """A route whose handler may raise what `engine.editing.Documents` raises."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return the handler with these errors turned into answers."""
+        handler = super().get_route_handler()
+
+        async def answered(request: Request) -> Response:
+            try:
+                return await handler(request)
+            except NoSuchDocument as error:
+                body = ErrorBody(message=error.message, where=str(error.where or ""), hint=error.hint or "")
+                return JSONResponse(body.model_dump(), status_code=404)
+            except DocumentConflict as error:
+                return JSONResponse(_conflict(error).model_dump(), status_code=409)
+
+        return answered
+
+
+def _conflict(error: DocumentConflict) -> ConflictBody:
+    return ConflictBody(
+        message=error.message,
+        where=str(error.where or ""),
+        hint=error.hint or "",
+        theirs=error.theirs.text,
+        theirs_hash=error.theirs.hash,
+        merged=error.merged,
+        conflicts=tuple(MergeConflictBody.model_validate(each) for each in error.conflicts),
+    )

@@ -1,0 +1,147 @@
+"""Documents under edit: texts come and go, edits are functions of them; what is on disk changes only by `PUT`."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Query
+
+from editor_web.document_wire import (
+    ConflictBody,
+    CopiedBody,
+    CopyBody,
+    DifferenceBody,
+    DocumentBody,
+    DraftedBody,
+    EditedBody,
+    EditsBody,
+    KeyFlowBody,
+    NewDocumentBody,
+    NewIdBody,
+    RefusalBody,
+    SaveBody,
+    SavedBody,
+    TextBody,
+    VersionBody,
+    VersionTextBody,
+)
+from editor_web.routes.document_route import DocumentRoute
+from editor_web.routes.services import Services, ServicesOf
+from editor_web.wire import ErrorBody
+from engine.editing import Opened, apply_edits, copy_nodes, read_edits
+from engine.editing.comparison import compare_texts
+
+router = APIRouter(
+    prefix="/api/v1/documents",
+    tags=["documents"],
+    route_class=DocumentRoute,
+    responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}},
+)
+
+
+@router.post("", status_code=201)
+def create_document(body: NewDocumentBody, services: ServicesOf) -> DocumentBody:
+    """Make a document from a template; its id is its path, `behaviors/folder/name.yaml`."""
+    made = services.documents.create(body.id, template=body.template, name=body.name)
+    return _document(services, made)
+
+
+@router.post("/{document_id:path}/draft")
+def draft(document_id: str, body: TextBody, services: ServicesOf) -> DraftedBody:
+    """Draw and check a text as if it were the document's; text that cannot be read has findings and no graph."""
+    return DraftedBody.model_validate(services.documents.examine(document_id, body.text))
+
+
+@router.post("/{document_id:path}/edits")
+def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditedBody:
+    """Make edits in a text, all or none; nothing is saved."""
+    documents = services.documents
+    edits, refusal = read_edits(body.edits)
+    text, changed = body.text, tuple[str, ...]()
+    if refusal is None:
+        done = apply_edits(body.text, edits, file=document_id, knowledge=documents.knowledge(document_id))
+        text, changed, refusal = done.text, done.changed, done.refused
+    drafted = DraftedBody.model_validate(documents.examine(document_id, text))
+    refused = RefusalBody.model_validate(refusal) if refusal is not None else None
+    return EditedBody(text=text, changed=changed, refused=refused, **dict(drafted))
+
+
+@router.post("/{document_id:path}/data_flow")
+def get_data_flow(document_id: str, body: TextBody, services: ServicesOf) -> list[KeyFlowBody]:
+    """Tell who writes and who reads each key of a text; 422 where it is no valid behavior."""
+    return [KeyFlowBody.model_validate(each) for each in services.documents.data_flow(document_id, body.text)]
+
+
+@router.post("/{document_id:path}/copy")
+def copy(document_id: str, body: CopyBody, services: ServicesOf) -> CopiedBody:
+    """Return nodes of a text as YAML with their comments, to be pasted anywhere."""
+    knowledge = services.documents.knowledge(document_id)
+    return CopiedBody(yaml=copy_nodes(body.text, body.paths, file=document_id, knowledge=knowledge))
+
+
+@router.post("/{document_id:path}/rename")
+def rename_document(document_id: str, body: NewIdBody, services: ServicesOf) -> DocumentBody:
+    """Give a document another id; its versions go along."""
+    return _document(services, services.documents.rename(document_id, body.id))
+
+
+@router.post("/{document_id:path}/duplicate", status_code=201)
+def duplicate_document(document_id: str, body: NewIdBody, services: ServicesOf) -> DocumentBody:
+    """Make a copy of a document as it is on disk."""
+    return _document(services, services.documents.duplicate(document_id, body.id))
+
+
+@router.get("/{document_id:path}/versions")
+def list_versions(document_id: str, services: ServicesOf) -> list[VersionBody]:
+    """List the versions of a document, newest first, also of a deleted one."""
+    found = services.documents.versions(document_id)
+    now = services.documents.hash_on_disk(document_id)
+    return [VersionBody(hash=each.hash, saved_at=each.saved_at_s, current=each.hash == now) for each in found]
+
+
+@router.get("/{document_id:path}/versions/{digest}")
+def get_version(document_id: str, digest: str, services: ServicesOf) -> VersionTextBody:
+    """Return the text of a version."""
+    found = services.documents.versions(document_id)
+    version = next((each for each in found if each.hash == digest), None)
+    if version is None:
+        raise HTTPException(404, "this version is not kept")
+    text = services.documents.version(document_id, digest)
+    current = digest == services.documents.hash_on_disk(document_id)
+    return VersionTextBody(hash=digest, saved_at=version.saved_at_s, current=current, text=text)
+
+
+@router.get("/{document_id:path}/diff")
+def get_difference(
+    document_id: str, services: ServicesOf, before: Annotated[str, Query(alias="from", pattern="^[0-9a-f]{64}$")],
+    after: Annotated[str, Query(alias="to", pattern="^([0-9a-f]{64})?$")] = "",
+) -> DifferenceBody:  # fmt: skip
+    """Compare two versions node by node; without `to`, with the one on disk."""
+    documents = services.documents
+    old = documents.version(document_id, before)
+    new = documents.version(document_id, after) if after else documents.open(document_id).text
+    return DifferenceBody.model_validate(compare_texts(old, new, file=document_id))
+
+
+@router.get("/{document_id:path}")
+def get_document(document_id: str, services: ServicesOf) -> DocumentBody:
+    """Return a document as it is on disk, drawn and checked."""
+    return _document(services, services.documents.open(document_id))
+
+
+@router.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
+def save_document(document_id: str, body: SaveBody, services: ServicesOf) -> SavedBody:
+    """Write a document that is as it was when it was read; 409 with both texts, and their merge, where it is not."""
+    saved = services.documents.save(document_id, body.text, base_hash=body.base_hash)
+    return SavedBody(hash=saved.hash, saved_at=saved.saved_at_s)
+
+
+@router.delete("/{document_id:path}", status_code=204)
+def delete_document(document_id: str, services: ServicesOf) -> None:
+    """Remove a document; its text stays among its versions."""
+    services.documents.delete(document_id)
+
+
+def _document(services: Services, opened: Opened) -> DocumentBody:
+    drafted = DraftedBody.model_validate(services.documents.examine(opened.id, opened.text))
+    return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))

@@ -1,0 +1,262 @@
+"""The bench that edits work on: a draft, its nodes, and the names that follow when nodes go elsewhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import cast
+
+from engine.editing.draft import Draft
+from engine.editing.knowledge import Ends, Knowledge
+from engine.editing.outline import MACHINES, NAMED, Outline, Plain, Spot, leads
+
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
+Stray = Callable[[Plain, str], "str | None"]
+"""Where a lead goes whose target is in its container no more: given the node and the target; None drops it."""
+
+
+class Bench:
+    """One document on the bench; edits change its data and say so with `stale`."""
+
+    def __init__(self, draft: Draft, knowledge: Knowledge) -> None:
+        self.draft = draft
+        self.knowledge = knowledge
+        self._changed: dict[int, Plain] = {}
+        self._outline: Outline | None = None
+
+    @property
+    def outline(self) -> Outline:
+        """The nodes as they are now."""
+        if self._outline is None:
+            self._outline = Outline(self.draft.data)
+        return self._outline
+
+    def stale(self) -> None:
+        """Look at the nodes anew."""
+        self._outline = None
+
+    def at(self, path: str) -> Spot:
+        """Return a node; raises EditRefused where there is none."""
+        return self.outline.at(path)
+
+    def ends(self, spot: Spot) -> Ends:
+        """Return how a node can end."""
+        return self.knowledge.ends(self.outline, spot)
+
+    def mark(self, node: Plain) -> None:
+        """Remember that a node was made or changed."""
+        self._changed[id(node)] = node
+
+    def changed(self) -> tuple[str, ...]:
+        """Return the paths of the nodes that were made or changed and are still there, in the order of the edits."""
+        paths = {id(spot.data): path for path, spot in self.outline.spots.items()}
+        return tuple(paths[known] for known in self._changed if known in paths)
+
+    def free_name(self, container: Spot, wanted: str, taken: Iterable[str] = ()) -> str:
+        """Return a name for a new child: as wanted, or with a number; never that of an outcome of the container."""
+        base = re.sub(r"[^A-Za-z0-9_-]+", "_", wanted).lstrip("-")[:56] or "node"
+        used = {*(child.name for child in self.outline.children(container)), *taken}
+        if container.kind in MACHINES:
+            used |= {*self.ends(container).outcomes, *self._document_outcomes(container)}
+        number, name = 2, base
+        while name in used:
+            name = f"{base}_{number}"
+            number += 1
+        return name
+
+    def outcomes_inside(self, container: Spot) -> tuple[str, ...]:
+        """Return the names that children of a machine may lead to beside one another."""
+        return tuple(dict.fromkeys((*self.ends(container).outcomes, *self._document_outcomes(container))))
+
+    def _document_outcomes(self, container: Spot) -> tuple[str, ...]:
+        listed = self.draft.data.get("outcomes") if container.parent is None else None
+        return tuple(str(each) for each in cast("list[object]", listed)) if isinstance(listed, list) else ()
+
+
+def states_of(container: Spot) -> Plain:
+    """Return the children of a container with named ones, as they are written; made where there are none yet."""
+    body = container.data.get(container.kind)
+    if not isinstance(body, dict):
+        body = container.data[container.kind] = {}
+    inside = cast("Plain", body)
+    if not isinstance(inside.get("states"), dict):
+        inside["states"] = {}
+    return cast("Plain", inside["states"])
+
+
+def rename_key(mapping: Plain, old: str, new: str) -> None:
+    """Give an entry of a mapping another key; it keeps its place."""
+    kept = {new if key == old else key: value for key, value in mapping.items()}
+    mapping.clear()
+    mapping.update(kept)
+
+
+def insert_key(mapping: Plain, key: str, value: object, index: int | None) -> None:
+    """Put an entry into a mapping at a place; at the end without one."""
+    items = list(mapping.items())
+    items.insert(len(items) if index is None else max(0, index), (key, value))
+    mapping.clear()
+    mapping.update(items)
+
+
+def drop(node: Plain, key: str, entry: str) -> None:
+    """Take an entry out of a mapping of a node, and the mapping with its last one."""
+    mapping = node.get(key)
+    if isinstance(mapping, dict):
+        cast("Plain", mapping).pop(entry, None)
+        if not mapping:
+            del node[key]
+
+
+@dataclass
+class Restructuring:
+    """Keeps references right while nodes are renamed, moved and removed.
+
+    Made before the nodes are touched; `finish` then lets transitions, initial children, conditions, policies, canvas
+    positions and notes follow the nodes to wherever they are.
+    """
+
+    bench: Bench
+    _spots: list[Spot] = field(default_factory=list[Spot])
+
+    def __post_init__(self) -> None:
+        self._spots = list(self.bench.outline.spots.values())
+
+    def finish(self, *, instead: dict[int, str] | None = None, stray: Stray | None = None) -> None:
+        """Let everything follow.
+
+        Args:
+            instead: For nodes that have left a container, by the id of their data, the name to lead to now.
+            stray: Where leads go that no longer have their target beside them; without it they are dropped.
+        """
+        self.bench.stale()
+        after = {id(spot.data): spot for spot in self.bench.outline.spots.values()}
+        before = {spot.path: spot for spot in self._spots}
+        for spot in self._spots:
+            now = after.get(id(spot.data))
+            if now is None:
+                continue
+            inside = {child.name: child for child in self._spots if child.parent is spot}
+            self._follow_container(now, inside, after, instead or {})
+            if spot.parent is not None and spot.parent.kind in NAMED:
+                beside = {each.name: each for each in self._spots if each.parent is spot.parent}
+                self._follow_leads(now, spot.parent, beside, after, instead or {}, stray)
+        for key in ("view", "notes"):
+            self._follow_paths(key, before, after)
+        self.bench.stale()
+
+    def _follow_leads(
+        self,
+        now: Spot,
+        home: Spot,
+        beside: dict[str, Spot],
+        after: dict[int, Spot],
+        instead: dict[int, str],
+        stray: Stray | None,
+    ) -> None:
+        for mapping, key, target in list(leads(now.data)):
+            meant = beside.get(target)
+            there = after.get(id(meant.data)) if meant is not None else None
+            if there is not None and _beside(there, now):
+                self._lead(now.data, mapping, key, there.name)
+                continue
+            stays = now.parent is not None and now.parent.data is home.data
+            if meant is None and stays:
+                continue
+            to = instead.get(id(meant.data)) if meant is not None and stays else None
+            if to is None and stray is not None:
+                to = stray(now.data, target)
+            self._lead(now.data, mapping, key, to)
+
+    def _lead(self, node: Plain, mapping: Plain, key: str, target: str | None) -> None:
+        if target is not None:
+            if mapping[key] != target:
+                mapping[key] = target
+        elif mapping is node.get("transitions"):
+            drop(node, "transitions", key)
+
+    def _follow_container(
+        self, now: Spot, inside: dict[str, Spot], after: dict[int, Spot], instead: dict[int, str]
+    ) -> None:
+        names: dict[str, str | None] = {}
+        for name, child in inside.items():
+            there = after.get(id(child.data))
+            stays = there is not None and there.parent is not None and there.parent.data is now.data
+            names[name] = there.name if stays and there is not None else instead.get(id(child.data))
+        if all(name == to for name, to in names.items()):
+            return
+        body = now.body
+        if now.kind in MACHINES:
+            self._follow_initial(now, body, names)
+        elif now.kind == "concurrency":
+            _follow_conditions(body, names)
+        elif now.kind == "parallel" and isinstance(body.get("policy"), list):
+            policy = cast("list[object]", body["policy"])
+            kept = [to for name in policy if (to := names.get(str(name), str(name))) is not None]
+            if kept:
+                policy[:] = kept
+            else:
+                del body["policy"]
+
+    def _follow_initial(self, now: Spot, body: Plain, names: dict[str, str | None]) -> None:
+        initial = body.get("initial")
+        if not isinstance(initial, str) or initial not in names:
+            return
+        first = next((child.name for child in self.bench.outline.children(now)), None)
+        to = names[initial] or first
+        if to is None:
+            del body["initial"]
+        elif to != initial:
+            body["initial"] = to
+
+    def _follow_paths(self, key: str, before: dict[str, Spot], after: dict[int, Spot]) -> None:
+        places = self.bench.draft.data.get(key)
+        if not isinstance(places, dict):
+            return
+        known = cast("Plain", places)
+        kept: Plain = {}
+        for path, value in known.items():
+            spot = before.get(path)
+            now = after.get(id(spot.data)) if spot is not None else None
+            if spot is None:
+                kept[path] = value
+            elif now is not None:
+                kept[now.path] = value
+        if list(kept) == list(known):
+            return
+        known.clear()
+        known.update(kept)
+        if not known:
+            del self.bench.draft.data[key]
+
+
+def _beside(one: Spot, two: Spot) -> bool:
+    return one.parent is not None and two.parent is not None and one.parent.data is two.parent.data
+
+
+def _follow_conditions(body: Plain, names: dict[str, str | None]) -> None:
+    listed = body.get("conditions")
+    if not isinstance(listed, list):
+        return
+    conditions = cast("list[object]", listed)
+    emptied: list[object] = []
+    for entry in conditions:
+        for when in cast("Plain", entry).values() if isinstance(entry, dict) else ():
+            if isinstance(when, dict):
+                _follow_when(cast("Plain", when), names)
+        if isinstance(entry, dict) and all(when == {} for when in cast("Plain", entry).values()):
+            emptied.append(cast("object", entry))
+    conditions[:] = [entry for entry in conditions if not any(entry is gone for gone in emptied)]
+
+
+def _follow_when(when: Plain, names: dict[str, str | None]) -> None:
+    if not any(name in names and names[name] != name for name in when):
+        return
+    kept: Plain = {}
+    for name, due in when.items():
+        to = names.get(name, name)
+        if to is not None:
+            kept[to] = due
+    when.clear()
+    when.update(kept)

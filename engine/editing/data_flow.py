@@ -1,0 +1,120 @@
+"""Who writes and who reads each userdata key of a behavior, and on which way a reader finds it undefined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from engine.check.flow.flow import Flow
+from engine.check.flow.read import Read, reads
+from engine.check.flow.route import route, shown
+from engine.check.flow.site import Sites
+from engine.check.subject import Catalogue, Placed, Subject, new_subjects
+from engine.document.behavior import Behavior
+
+Origin = Literal["parameter", "userdata", "item", "index", "output", "collect"]
+Defined = Literal["always", "maybe", "never", "unreachable"]
+_MOST_ROUTES = 200
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyWriter:
+    """A node that writes a key, or a container that declares it; the path is empty for the document itself.
+
+    `name` is the output key, or what else of the node it is.
+    """
+
+    path: str
+    origin: Origin
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyReader:
+    """A node that reads a key.
+
+    `by`: as an input of the same name, mapped through `in`, in an expression, or collected by a foreach. `sources` are
+    the paths from which the value may come, `defined` whether there is one; `way` is how it is reached without one.
+    """
+
+    path: str
+    by: str
+    name: str
+    required: bool
+    defined: Defined
+    sources: tuple[str, ...]
+    way: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyFlow:
+    """One key with all that write and read it, in document order."""
+
+    key: str
+    writers: tuple[KeyWriter, ...]
+    readers: tuple[KeyReader, ...]
+
+
+def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
+    """Return the keys of a behavior, those that it declares first; behaviors that it refers to are walls."""
+    subject = new_subjects(behavior, catalogue)[0]
+    written = list(_writers(subject))
+    read = tuple(reads(subject))
+    keys = dict.fromkeys((*(key for key, _ in written), *(each.key for each in read)))
+    flow = Flow(subject, Sites(keys))
+    readers = [(each.key, _reader(flow, each, number < _MOST_ROUTES)) for number, each in enumerate(read)]
+    return tuple(
+        KeyFlow(
+            key=key,
+            writers=tuple(writer for of, writer in written if of == key),
+            readers=tuple(reader for of, reader in readers if of == key),
+        )
+        for key in keys
+    )
+
+
+def _writers(subject: Subject) -> Iterator[tuple[str, KeyWriter]]:
+    document = subject.behavior.document
+    for key in document.parameters:
+        yield key, KeyWriter(path="", origin="parameter", name=key)
+    for key in document.userdata:
+        yield key, KeyWriter(path="", origin="userdata", name=key)
+    for placed in subject.nodes.values():
+        yield from _written(subject, placed)
+
+
+def _written(subject: Subject, placed: Placed) -> Iterator[tuple[str, KeyWriter]]:
+    node, path = placed.node, placed.path
+    for key in node.userdata:
+        yield key, KeyWriter(path=path, origin="userdata", name=key)
+    rounds = node.foreach
+    if rounds is not None:
+        yield rounds.item, KeyWriter(path=path, origin="item", name="as")
+        if rounds.index is not None:
+            yield rounds.index, KeyWriter(path=path, origin="index", name="index")
+        for inner, outer in rounds.collect.items():
+            yield outer, KeyWriter(path=path, origin="collect", name=inner)
+    signature = subject.signature(node)
+    for name in signature.outputs if signature is not None else ():
+        if name not in node.outputs:
+            yield name, KeyWriter(path=path, origin="output", name=name)
+    for name, key in node.outputs.items():
+        yield key, KeyWriter(path=path, origin="output", name=name)
+
+
+def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
+    path, sites = read.placed.path, flow.sites
+    fact = (flow.behind if read.by == "collect" else flow.before).get(path)
+    defined: Defined = "unreachable"
+    sources: tuple[str, ...] = ()
+    way = ""
+    if fact is not None:
+        undefined, known = fact & sites.undefined_bit(read.key), fact & sites.defined_bits(read.key)
+        defined = "always" if not undefined else "maybe" if known else "never"
+        sources = tuple(site.path for site in sites.places(read.key, known))
+        if undefined and known and with_way and read.by != "collect":
+            way = shown(route(flow, path, sites.undefined_bit(read.key)))
+    return KeyReader(
+        path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, way=way
+    )

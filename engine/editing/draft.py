@@ -1,0 +1,126 @@
+"""A text under edit: its plain data, free to be changed, and the way back into the text."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any, cast
+
+from engine.document.yaml_source import parse_source
+from engine.editing.matching import same
+from engine.editing.rewriting import Rewriter
+from engine.editing.syntax import Collection, Origin, read_syntax
+from engine.errors import DocumentError, FlexcellError
+
+
+class EditRefused(FlexcellError):
+    """An edit cannot be made; nothing of it was."""
+
+
+class Draft:
+    """A document whose `data` may be changed at will; `text` is it as written then.
+
+    Args:
+        text: YAML or JSON.
+        file: Its name, for positions; `.json` makes it JSON.
+
+    Raises:
+        DocumentError: the text cannot be read; `where` is the position.
+    """
+
+    def __init__(self, text: str, *, file: str) -> None:
+        self.file = file
+        self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
+        self._origin = read_syntax(self._plain(text), file=file)
+        self._sources: dict[int, Collection] = {}
+        self._kept: list[object] = []
+        self._take(self._origin)
+        root = cast("Collection", self._origin.root)
+        self.data = cast("dict[str, object]", root.data)
+
+    @property
+    def origin(self) -> Origin:
+        """The text as it was read, with its spans."""
+        return self._origin
+
+    @property
+    def sources(self) -> Mapping[int, Collection]:
+        """Where dicts and lists stand in a text, by their id."""
+        return self._sources
+
+    @property
+    def json(self) -> bool:
+        """True where it is JSON."""
+        return self._origin.json
+
+    def adopt(self, text: str) -> dict[str, object]:
+        """Read other YAML, a mapping, whose text comes along wherever its parts are put.
+
+        Raises:
+            DocumentError: it cannot be read.
+        """
+        other = read_syntax(self._plain(text), file="clipboard.yaml")
+        self._take(other)
+        return cast("dict[str, object]", cast("Collection", other.root).data)
+
+    def copied(self, value: object) -> object:
+        """Return a copy that will be written like what it is a copy of."""
+        if isinstance(value, dict):
+            found = cast("dict[str, object]", value)
+            return self._alike(found, {key: self.copied(each) for key, each in found.items()})
+        if isinstance(value, list):
+            items = cast("list[object]", value)
+            return self._alike(items, [self.copied(each) for each in items])
+        return copy.copy(value)
+
+    def source_of(self, value: object) -> Collection | None:
+        """Return where a dict or list stands in a text."""
+        return self._sources.get(id(value))
+
+    def text(self) -> str:
+        """Return the document as it is now.
+
+        Raises:
+            EditRefused: it cannot be written without changing more than was asked for.
+        """
+        made = Rewriter(self._sources, self.json).document(self._origin, self.data)
+        if not self._says(made):
+            # What ends with a line feed cannot be shown on a last line without one.
+            made += "\n"
+            if not self._says(made):
+                hint = "change the text itself"
+                raise EditRefused("this edit cannot be written into the text as it is laid out", hint=hint)
+        return made.replace("\n", self._newline) if self._newline != "\n" else made
+
+    def _says(self, text: str) -> bool:
+        """Tell whether a text reads as the data, in kind and order."""
+        try:
+            return _equal(parse_source(text, file=self.file).data, self.data)
+        except DocumentError:
+            return False
+
+    def _plain(self, text: str) -> str:
+        return text.replace("\r\n", "\n") if self._newline != "\n" else text
+
+    def _take(self, origin: Origin) -> None:
+        for found in origin.collections():
+            self._sources[id(found.data)] = found
+            self._kept.append(found.data)
+
+    def _alike(self, original: object, made: object) -> object:
+        source = self._sources.get(id(original))
+        if source is not None:
+            self._sources[id(made)] = source
+        self._kept.append(made)  # ids are used again when objects go
+        return made
+
+
+def _equal(a: Any, b: Any) -> bool:
+    """Tell whether two values are the same in kind and order."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        one, two = cast("dict[str, Any]", a), cast("dict[str, Any]", b)
+        return list(one) == list(two) and all(_equal(each, two[key]) for key, each in one.items())
+    if isinstance(a, list) and isinstance(b, list):
+        many, more = cast("list[Any]", a), cast("list[Any]", b)
+        return len(many) == len(more) and all(_equal(one, other) for one, other in zip(many, more, strict=True))
+    return same(cast("object", a), cast("object", b))

@@ -1,0 +1,187 @@
+"""The edits of a document: what can be asked for, as frozen messages with the word `edit` saying which."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+Point = tuple[float, float]
+Path = Annotated[str, Meta(max_length=4000, description="A node, `root/approach/left`")]
+Name = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")]
+
+
+class Edge(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, rename={"source": "from"}):
+    """An arrow of a machine: a child of it (its path), and one of its outcomes."""
+
+    source: Path
+    outcome: str
+
+
+class Edit(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="edit"):
+    """Root of the edits."""
+
+
+class AddNode(Edit, frozen=True, kw_only=True, tag="add_node"):
+    """Put a new node into a container; its name is made up where none is given.
+
+    `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees
+    sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes
+    as `copy` gives them, the content is that instead. `after` leads the open good outcomes of a
+    sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children.
+    """
+
+    parent: Path
+    kind: str = ""
+    runs: str = ""
+    parameters: dict[str, object] = {}
+    name: Name | None = None
+    yaml: str = ""
+    index: int | None = None
+    position: Point | None = None
+    after: Path | None = None
+    on_edge: Edge | None = None
+
+
+class RemoveNodes(Edit, frozen=True, kw_only=True, tag="remove_nodes"):
+    """Take nodes out, with the transitions and conditions that name them; other references show as findings."""
+
+    paths: tuple[Path, ...]
+
+
+class RenameNode(Edit, frozen=True, kw_only=True, tag="rename_node"):
+    """Give a node another name; whatever refers to it follows."""
+
+    path: Path
+    name: Name
+
+
+class MoveNodes(Edit, frozen=True, kw_only=True, tag="move_nodes"):
+    """Put nodes into another container, or elsewhere among their siblings; transitions among them stay."""
+
+    paths: tuple[Path, ...]
+    parent: Path
+    index: int | None = None
+
+
+class SetTransition(Edit, frozen=True, kw_only=True, tag="set_transition"):
+    """Lead an outcome of a node to a sibling, or to an outcome of the machine around it."""
+
+    path: Path
+    outcome: str
+    target: Name
+
+
+class ClearTransition(Edit, frozen=True, kw_only=True, tag="clear_transition"):
+    """Lead an outcome of a node nowhere."""
+
+    path: Path
+    outcome: str
+
+
+class SetInitial(Edit, frozen=True, kw_only=True, tag="set_initial"):
+    """Let a machine begin with a child."""
+
+    path: Path
+    child: Name
+
+
+class SetParameter(Edit, frozen=True, kw_only=True, tag="set_parameter"):
+    """Give a state or behavior a value for a parameter."""
+
+    path: Path
+    name: str
+    value: object
+
+
+class ClearParameter(Edit, frozen=True, kw_only=True, tag="clear_parameter"):
+    """Take the value of a parameter back; its default holds."""
+
+    path: Path
+    name: str
+
+
+class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
+    """Set one thing of a node; null takes it away.
+
+    For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes,
+    and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
+    otherwise, userdata, items, times, as, index, next, collect, memory, policy, synchronise, after, status, running,
+    failure; and `order`, the names of all children in their new order.
+    """
+
+    path: Path
+    field: str
+    value: object = None
+
+
+class SetPositions(Edit, frozen=True, kw_only=True, tag="set_positions"):
+    """Place nodes on the canvas, in pixels relative to their container; null forgets a position."""
+
+    positions: dict[Path, Point | None]
+
+
+class Group(Edit, frozen=True, kw_only=True, tag="group"):
+    """Put siblings into a new container in their place; what leads out of them becomes its outcomes."""
+
+    paths: tuple[Path, ...]
+    kind: Literal["machine", "priority", "concurrency", "sequence", "selector", "parallel"]
+    name: Name | None = None
+
+
+class Ungroup(Edit, frozen=True, kw_only=True, tag="ungroup"):
+    """Put the children of a container in its place."""
+
+    path: Path
+
+
+class Duplicate(Edit, frozen=True, kw_only=True, tag="duplicate"):
+    """Put copies of nodes beside them; transitions among them lead to the copies."""
+
+    paths: tuple[Path, ...]
+
+
+class Paste(Edit, frozen=True, kw_only=True, tag="paste"):
+    """Put nodes as `copy` gives them into a container."""
+
+    parent: Path
+    yaml: str
+    position: Point | None = None
+    index: int | None = None
+
+
+class SetDocument(Edit, frozen=True, kw_only=True, tag="set_document"):
+    """Change what the document declares; null takes a key away. The other keys stay.
+
+    Keys: name, description, cell, parameters, userdata, outcomes, success.
+    """
+
+    changes: dict[str, object]
+
+
+class AutoConnect(Edit, frozen=True, kw_only=True, tag="auto_connect"):
+    """Lead the open outcomes of nodes where they obviously go; of all children for a machine."""
+
+    paths: tuple[Path, ...]
+
+
+AnyEdit = (
+    AddNode
+    | RemoveNodes
+    | RenameNode
+    | MoveNodes
+    | SetTransition
+    | ClearTransition
+    | SetInitial
+    | SetParameter
+    | ClearParameter
+    | SetField
+    | SetPositions
+    | Group
+    | Ungroup
+    | Duplicate
+    | Paste
+    | SetDocument
+    | AutoConnect
+)

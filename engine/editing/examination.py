@@ -1,0 +1,138 @@
+"""Looks at a text as it is being edited: what it draws, and everything that is wrong with it."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from engine.check import Finding, check_behavior
+from engine.document.loader import parse_behavior
+from engine.editing.draft import Draft
+from engine.editing.graph import DocumentInfo, DocumentNode, document_graph, info_of
+from engine.editing.knowledge import Knowledge
+from engine.editing.outline import Outline, Plain
+from engine.errors import DocumentError, Position
+from engine.library import FindingView
+
+
+@dataclass(frozen=True, kw_only=True)
+class Examination:
+    """What is known of a text; `graph` and `document` are None where it cannot be read."""
+
+    hash: str
+    graph: DocumentNode | None
+    document: DocumentInfo | None
+    findings: tuple[FindingView, ...]
+
+
+def hash_of(text: str) -> str:
+    """Return the SHA-256 of a text as it stands in a file."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def examine(text: str, *, file: Path, knowledge: Knowledge) -> Examination:
+    """Draw and check a text as if it stood in `file`."""
+    digest = hash_of(text)
+    try:
+        draft = Draft(text, file=str(file))
+    except DocumentError as error:
+        return Examination(hash=digest, graph=None, document=None, findings=(_invalid(error),))
+    graph = document_graph(draft, knowledge)
+    found = strays(draft, knowledge, file) or _check(text, file, knowledge)
+    nodes = _by_line(graph) if graph is not None else []
+    placed = (_placed(each, nodes) for each in found)
+    findings = tuple(sorted(placed, key=lambda each: (each.line, each.column)))
+    return Examination(hash=digest, graph=graph, document=info_of(draft), findings=findings)
+
+
+def _check(text: str, file: Path, knowledge: Knowledge) -> list[FindingView]:
+    try:
+        behavior = parse_behavior(text, file=file)
+    except DocumentError as error:
+        return [_invalid(error, of=file)]
+    return [_view(finding, file) for finding in check_behavior(behavior, knowledge.catalogue)]
+
+
+def strays(draft: Draft, knowledge: Knowledge, file: Path) -> list[FindingView]:
+    """Return where a text names files outside of the project, which nobody is to look at."""
+    named: list[tuple[str, Plain, str]] = [
+        (path, spot.data, "behavior") for path, spot in Outline(draft.data).spots.items() if "behavior" in spot.data
+    ]
+    named += [("", draft.data, "cell")] if isinstance(draft.data.get("cell"), str) else []
+    found: list[FindingView] = []
+    for path, data, key in named:
+        written = data[key]
+        if isinstance(written, str) and not _is_inside(file.parent, written, knowledge.project):
+            source = draft.source_of(data)
+            member = (
+                next((m for m in source.members if m.key is not None and m.key.value == key), None) if source else None
+            )
+            at = member.value.start if member is not None else 0
+            before = draft.origin.text[:at]
+            found.append(
+                FindingView(
+                    severity="error",
+                    code="invalid-document",
+                    message=f"`{written}` leads out of the project",
+                    path=path,
+                    line=before.count("\n") + 1,
+                    column=at - before.rfind("\n"),
+                    hint="name a file of this project, relative to this document",
+                )
+            )
+    return found
+
+
+def _is_inside(folder: Path, written: str, project: Path) -> bool:
+    try:
+        return (folder / written).resolve().is_relative_to(project.resolve())
+    except (OSError, ValueError):
+        return False
+
+
+def _invalid(error: DocumentError, *, of: Path | None = None) -> FindingView:
+    where = error.where if isinstance(error.where, Position) else None
+    elsewhere = where is not None and of is not None and where.file != str(of)
+    here = where if where is not None and not elsewhere else Position(file="", line=1, column=1)
+    message = (
+        f"{Path(where.file).name}:{where.line}: {error.message}" if where is not None and elsewhere else error.message
+    )
+    return FindingView(
+        severity="error", code="invalid-document", message=message, path="",
+        line=here.line, column=here.column, hint=error.hint or "",
+    )  # fmt: skip
+
+
+def _view(finding: Finding, file: Path) -> FindingView:
+    position, message, path = finding.position, finding.message, finding.path
+    if position.file != str(file):
+        # Of a behavior that is referred to: the node that refers to it is what can be shown here.
+        path = path.partition("/root")[0] or "root"
+        message = f"{Path(position.file).name}:{position.line}: {message}"
+        position = Position(file=str(file), line=0, column=0)
+    return FindingView(
+        severity=finding.severity, code=finding.code, message=message, path=path,
+        line=position.line, column=position.column, hint=finding.hint or "",
+    )  # fmt: skip
+
+
+def _by_line(graph: DocumentNode) -> list[DocumentNode]:
+    found = [graph]
+    for node in found:
+        found += node.children
+    return found
+
+
+def _placed(finding: FindingView, nodes: list[DocumentNode]) -> FindingView:
+    """Give a finding the line of its node, or the node of its line, where it has only one of them."""
+    if finding.line == 0:
+        node = next((each for each in nodes if each.path == finding.path), None)
+        line, column = (node.line, node.column) if node is not None else (1, 1)
+        return msgspec.structs.replace(finding, line=line, column=column)
+    if finding.path:
+        return finding
+    around = [node for node in nodes if node.line <= finding.line <= node.end_line]
+    return msgspec.structs.replace(finding, path=around[-1].path) if around else finding

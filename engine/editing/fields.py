@@ -1,0 +1,281 @@
+"""Edits of what a node or document says of itself: parameters, measures, texts, positions, declarations."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import cast
+
+import msgspec
+
+from engine.document.behavior import BehaviorDocument
+from engine.document.conversion import in_words
+from engine.document.node import (
+    Composite,
+    Concurrency,
+    Cooldown,
+    Decorator,
+    ForEach,
+    Guard,
+    Machine,
+    Node,
+    OneShot,
+    Parallel,
+    Remap,
+    Repeat,
+    Retry,
+    StatusCondition,
+    Timeout,
+)  # fmt: skip
+from engine.editing.bench import Bench, drop, states_of
+from engine.editing.draft import EditRefused
+from engine.editing.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
+from engine.editing.matching import graft
+from engine.editing.outline import CONTAINERS, GROUPS, NAMED, Plain, Spot
+from engine.nearness import near_names
+
+_OF_NODES = frozenset(
+    ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
+     "state", "behavior", "behaviour", "name")
+)  # fmt: skip
+_OF_KINDS: Mapping[str, type[msgspec.Struct]] = {
+    "machine": Machine, "priority": Machine, "concurrency": Concurrency, "foreach": ForEach, "sequence": Composite,
+    "selector": Composite, "parallel": Parallel, "inverter": Decorator, "one_shot": OneShot, "repeat": Repeat,
+    "cooldown": Cooldown, "remap": Remap, "condition": StatusCondition, "retry": Retry, "timeout": Timeout,
+    "guard": Guard,
+}  # fmt: skip
+_FARTHEST_PX = 1_000_000
+_INSIDE = frozenset(("states", "child", "children"))
+_OF_DOCUMENTS = ("name", "description", "cell", "parameters", "userdata", "outcomes", "success")
+_HEAD = (
+    "flexcell",
+    *_OF_DOCUMENTS[:2],
+    "cell",
+    "parameters",
+    "userdata",
+    "outcomes",
+    "success",
+    "root",
+    "view",
+    "notes",
+)
+_ORDER = (
+    "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "timeout", "retry",
+    "on_error", "autonomy", "resume", "success", "every", "transitions",
+)  # fmt: skip
+"""In which order the keys of a state are written."""
+
+
+def set_parameter(bench: Bench, edit: SetParameter) -> None:
+    """Give a state or behavior a value for a parameter."""
+    spot = bench.at(edit.path)
+    if "state" not in spot.data and "behavior" not in spot.data and "behaviour" not in spot.data:
+        raise EditRefused(f"`{spot.path}` takes no parameters", hint="parameters go to states and behavior references")
+    put(spot.data, "with", {**_mapping(spot.data.get("with")), edit.name: plain(edit.value)})
+    bench.mark(spot.data)
+
+
+def clear_parameter(bench: Bench, edit: ClearParameter) -> None:
+    """Take the value of a parameter back."""
+    spot = bench.at(edit.path)
+    given = _mapping(spot.data.get("with"))
+    if edit.name not in given:
+        raise EditRefused(f"`{spot.path}` is given no `{edit.name}`", hint=near_names(edit.name, given))
+    drop(spot.data, "with", edit.name)
+    bench.mark(spot.data)
+
+
+def set_field(bench: Bench, edit: SetField) -> None:
+    """Set one thing of a node."""
+    spot = bench.at(edit.path)
+    value = plain(edit.value)
+    if edit.field == "order":
+        _reorder(bench, spot, value)
+    elif edit.field == "notes":
+        _note(bench, spot, value)
+    elif edit.field in _OF_NODES and not (edit.field == spot.kind and spot.kind in CONTAINERS):
+        _set_own(spot, edit.field, value)
+    else:
+        _set_inside(bench, spot, edit.field, value)
+    bench.mark(spot.data)
+    bench.stale()
+
+
+def set_positions(bench: Bench, edit: SetPositions) -> None:
+    """Place nodes on the canvas."""
+    view = _mapping(bench.draft.data.get("view"))
+    for path, point in edit.positions.items():
+        spot = bench.at(path)
+        if point is None:
+            view.pop(path, None)
+        else:
+            at = [_rounded(number) for number in point]
+            view[path] = graft(view[path], at) if path in view else at
+            bench.mark(spot.data)
+    if view:
+        bench.draft.data["view"] = view
+    else:
+        bench.draft.data.pop("view", None)
+
+
+def set_document(bench: Bench, edit: SetDocument) -> None:
+    """Change what the document declares."""
+    for key, value in edit.changes.items():
+        if key not in _OF_DOCUMENTS:
+            raise EditRefused(f"a document has no `{key}` to set", hint=near_names(key, _OF_DOCUMENTS))
+        if value is None:
+            bench.draft.data.pop(key, None)
+            continue
+        _require(BehaviorDocument, key, value)
+        data = bench.draft.data
+        if key in data:
+            data[key] = graft(data[key], plain(value))
+        else:
+            _insert_in_order(data, key, plain(value), _HEAD)
+
+
+def put(node: Plain, key: str, value: object) -> None:
+    """Set an entry of a node; a new one stands where people would write it."""
+    if key in node:
+        node[key] = graft(node[key], value)
+    elif key == "description":
+        kept = dict(node)
+        node.clear()
+        node.update({key: value, **kept})
+    elif key in ("with", "in", "out") and "transitions" in node:
+        _insert_in_order(node, key, value, _ORDER)
+    else:
+        node[key] = value
+
+
+def plain(value: object, depth: int = 0) -> object:
+    """Return a value of a request as plain data; refused where it is nested too deeply."""
+    if depth > 40:
+        raise EditRefused("this value is nested too deeply", hint="at most 40 levels")
+    if isinstance(value, dict):
+        return {str(key): plain(each, depth + 1) for key, each in cast("dict[object, object]", value).items()}
+    if isinstance(value, list | tuple):
+        return [plain(each, depth + 1) for each in cast("list[object]", value)]
+    if (isinstance(value, float) and value != value) or value in (float("inf"), float("-inf")):
+        raise EditRefused("this is not a finite number")
+    if isinstance(value, int) and not isinstance(value, bool) and not -(2**63) <= value < 2**63:
+        raise EditRefused("this integer does not fit into 64 bits")
+    return value
+
+
+def _set_own(spot: Spot, key: str, value: object) -> None:
+    if value is None or value == {} or (key == "description" and value == ""):
+        if key in ("state", "behavior", "behaviour"):
+            raise EditRefused("a node cannot be without what it runs", hint="remove the node instead")
+        spot.data.pop(key, None)
+        return
+    if key in ("state", "behavior", "behaviour") and key not in spot.data:
+        raise EditRefused(
+            f"`{spot.path}` is a {spot.kind or 'node without kind'}, no {key}", hint="add a new node instead"
+        )
+    _require(Node, key, value)
+    put(spot.data, key, value)
+
+
+def _set_inside(bench: Bench, spot: Spot, key: str, value: object) -> None:
+    model = _OF_KINDS.get(spot.kind)
+    known = {each.encode_name for each in msgspec.structs.fields(model)} - _INSIDE if model is not None else set[str]()
+    if model is None or key not in known:
+        raise EditRefused(
+            f"a {spot.kind or 'node'} has no `{key}` to set",
+            where=spot.path,
+            hint=near_names(key, {*known, *_OF_NODES}),
+        )
+    if value is not None:
+        _require(model, key, value)
+    elif key == "initial":
+        raise EditRefused("a machine begins somewhere", where=spot.path, hint="name one of its children")
+    body = _body(spot)
+    if value is None:
+        body.pop(key, None)
+    elif key in body:
+        body[key] = graft(body[key], value)
+    else:
+        _insert_in_order(
+            body, key, value, ("initial", "items", "times", "as", "index", "memory", "policy", "synchronise")
+        )
+
+
+def _body(spot: Spot) -> Plain:
+    """Return the mapping under the key of a node's kind; a plain list of children becomes one."""
+    body = spot.data.get(spot.kind)
+    if isinstance(body, list):
+        memory = {"memory": True} if spot.kind != "parallel" else {}
+        spot.data[spot.kind] = {**memory, "children": cast("list[object]", body)}
+    elif not isinstance(body, dict):
+        spot.data[spot.kind] = {}
+    return cast("Plain", spot.data[spot.kind])
+
+
+def _reorder(bench: Bench, spot: Spot, value: object) -> None:
+    children = bench.outline.children(spot)
+    order = [str(name) for name in cast("list[object]", value)] if isinstance(value, list) else []
+    if sorted(order) != sorted(child.name for child in children):
+        names = ", ".join(child.name for child in children)
+        raise EditRefused("an order names each child once", where=spot.path, hint=f"its children are {names}")
+    by_name = {child.name: child for child in children}
+    if spot.kind in NAMED:
+        states = states_of(spot)
+        left = {key: each for key, each in states.items() if key not in by_name}
+        states.clear()
+        states.update({**{name: by_name[name].data for name in order}, **left})
+    elif spot.kind in GROUPS:
+        listed = spot.data[spot.kind]
+        items = cast("list[object]", listed if isinstance(listed, list) else cast("Plain", listed)["children"])
+        items[:] = [by_name[name].data for name in order]
+
+
+def _note(bench: Bench, spot: Spot, value: object) -> None:
+    notes = _mapping(bench.draft.data.get("notes"))
+    if value is None or value == "":
+        notes.pop(spot.path, None)
+    elif isinstance(value, str):
+        notes[spot.path] = value
+    else:
+        raise EditRefused("a note is text", where=spot.path)
+    if notes:
+        bench.draft.data["notes"] = notes
+    else:
+        bench.draft.data.pop("notes", None)
+
+
+def _require(model: type[msgspec.Struct], key: str, value: object) -> None:
+    """Refuse a value that no document can have there."""
+    kind = next(each.type for each in msgspec.structs.fields(model) if each.encode_name == key)
+    try:
+        msgspec.convert(value, kind)
+    except msgspec.ValidationError as error:
+        raise EditRefused(
+            f"`{key}`: {in_words(str(error))}", hint=f"given: {json.dumps(value, default=str)[:80]}"
+        ) from None
+
+
+def _insert_in_order(mapping: Plain, key: str, value: object, order: tuple[str, ...]) -> None:
+    """Put a new entry behind the last of those that come before it in `order`."""
+    rank = order.index(key) if key in order else len(order)
+    items = list(mapping.items())
+    place = 0
+    for number, (name, _) in enumerate(items):
+        if name in order and order.index(name) < rank:
+            place = number + 1
+    if key not in order:
+        place = len(items)
+    items.insert(place, (key, value))
+    mapping.clear()
+    mapping.update(items)
+
+
+def _rounded(number: float) -> int | float:
+    if not -_FARTHEST_PX <= number <= _FARTHEST_PX:
+        raise EditRefused(f"no canvas is so large: {number:g}", hint=f"positions are within {_FARTHEST_PX} pixels")
+    near = round(number, 1)
+    return int(near) if near == int(near) else near
+
+
+def _mapping(value: object) -> Plain:
+    return cast("Plain", value) if isinstance(value, dict) else {}

@@ -1,0 +1,146 @@
+"""How the nodes of a document can end, as far as states and other documents say, also where it is not finished."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import cast
+
+from engine.check.subject import Catalogue
+from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES
+from engine.document.signature import StateSignature, read_signature
+from engine.document.yaml_source import load_source
+from engine.editing.outline import MACHINES, Outline, Plain, Spot, leads
+from engine.errors import DocumentError, RegistryError, StateError
+from engine.registry import state_by_path
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The outcomes of something, and those of them that mean that nothing went wrong."""
+
+    outcomes: tuple[str, ...]
+    success: tuple[str, ...]
+
+
+@dataclass
+class Knowledge:
+    """What is known around a document.
+
+    Args:
+        catalogue: The states by name.
+        folder: Where the document lies; references are relative to it.
+        project: Folder that references may not lead out of.
+    """
+
+    catalogue: Catalogue
+    folder: Path
+    project: Path
+    _known: dict[str, Ends | None] = field(default_factory=dict[str, "Ends | None"])
+
+    def signature(self, state: str) -> StateSignature | None:
+        """Return what a state declares; None where there is none, or it is broken."""
+        try:
+            found = self.catalogue.get(state) or (state_by_path(state) if ":" in state else None)
+            return read_signature(found) if found is not None else None
+        except (RegistryError, StateError):
+            return None  # the check says what is wrong with it
+
+    def file_of(self, reference: str) -> Path | None:
+        """Return the file of a referred behavior; None where it is missing or outside of the project."""
+        try:
+            file = (self.folder / reference).resolve()
+            return file if file.is_relative_to(self.project.resolve()) and file.is_file() else None
+        except (OSError, ValueError):
+            return None  # no path that this system can have
+
+    def ends(self, outline: Outline, spot: Spot) -> Ends:
+        """Return how a node can end, apart from timeouts, guards and errors."""
+        data = spot.data
+        if isinstance(data.get("state"), str):
+            return self._of_state(str(data["state"]), data)
+        if isinstance(data.get("behavior"), str):
+            return self._of_reference(str(data["behavior"])) or _used(data)
+        if spot.kind == "concurrency":
+            return self._of_concurrency(outline, spot)
+        if spot.kind == "foreach":
+            return Ends(FOREACH_OUTCOMES, FOREACH_OUTCOMES[:1])
+        if spot.kind in MACHINES:
+            return self._of_machine(outline, spot)
+        return Ends(TREE_OUTCOMES, TREE_OUTCOMES[:1])
+
+    def _of_state(self, name: str, data: Plain) -> Ends:
+        signature = self.signature(name)
+        return (
+            Ends(signature.outcomes, signature.success or signature.outcomes) if signature is not None else _used(data)
+        )
+
+    def _of_reference(self, written: str) -> Ends | None:
+        if written not in self._known:
+            self._known[written] = self._read(written)
+        return self._known[written]
+
+    def _read(self, written: str) -> Ends | None:
+        file = self.file_of(written)
+        try:
+            data = load_source(file).data if file is not None else None
+        except DocumentError:
+            return None  # the check says what is wrong with it
+        if not isinstance(data, dict):
+            return None
+        said = cast("Plain", data)
+        outcomes = texts(said.get("outcomes"))
+        return Ends(outcomes, texts(said.get("success")) or outcomes)
+
+    def _of_concurrency(self, outline: Outline, spot: Spot) -> Ends:
+        found = rules(spot)
+        otherwise = spot.body.get("otherwise")
+        named = [*(outcome for outcome, _ in found), *([otherwise] if isinstance(otherwise, str) else [])]
+        good = {child.name: self.ends(outline, child).success for child in outline.children(spot)}
+        nominal = [outcome for outcome, when in found if all(due in good.get(name, ()) for name, due in when.items())]
+        return Ends(tuple(dict.fromkeys(named)), tuple(dict.fromkeys(nominal)))
+
+    def _of_machine(self, outline: Outline, spot: Spot) -> Ends:
+        children = {child.name: child for child in outline.children(spot)}
+        targets = [target for child in children.values() for _, _, target in leads(child.data)]
+        reached: dict[str, None] = {}
+        due: list[object] = [spot.body.get("initial")]
+        while due:
+            name = due.pop()
+            if not isinstance(name, str) or name in reached:
+                continue
+            reached[name] = None
+            if name in children:
+                good = self.ends(outline, children[name]).success
+                wired = children[name].data.get("transitions")
+                due += (
+                    [to for outcome, to in cast("Plain", wired).items() if outcome in good]
+                    if isinstance(wired, dict)
+                    else []
+                )
+        outside = dict.fromkeys(target for target in targets if target not in children)
+        return Ends(tuple(outside), tuple(name for name in outside if name in reached))
+
+
+def rules(spot: Spot) -> list[tuple[str, Mapping[str, str]]]:
+    """Return the conditions of a concurrency container in order: outcome, and which child must end how."""
+    found: list[tuple[str, Mapping[str, str]]] = []
+    listed = spot.body.get("conditions")
+    for entry in cast("list[object]", listed) if isinstance(listed, list) else ():
+        for outcome, when in cast("Plain", entry).items() if isinstance(entry, dict) else ():
+            if isinstance(when, dict):
+                found.append((outcome, {name: str(due) for name, due in cast("Plain", when).items()}))
+    return found
+
+
+def texts(value: object) -> tuple[str, ...]:
+    """Return the text items of a list; nothing for anything else."""
+    items: Iterable[object] = cast("list[object]", value) if isinstance(value, list) else ()
+    return tuple(item for item in items if isinstance(item, str))
+
+
+def _used(data: Plain) -> Ends:
+    transitions = data.get("transitions")
+    used = tuple(cast("Plain", transitions)) if isinstance(transitions, dict) else ()
+    return Ends(used, used)

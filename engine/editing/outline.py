@@ -1,0 +1,168 @@
+"""The nodes of a document as plain data, also of one that is not finished or has mistakes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import cast
+
+from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
+from engine.editing.draft import EditRefused
+from engine.nearness import near_names
+
+Plain = dict[str, object]
+Keys = tuple[str | int, ...]
+MACHINES = ("machine", "priority")
+NAMED = ("machine", "priority", "concurrency")
+"""Containers whose children have keys."""
+GROUPS = ("sequence", "selector", "parallel")
+"""Parts of a tree with any number of children."""
+SINGLES = ("inverter", "one_shot", "repeat", "cooldown", "remap", "condition")
+"""Decorators: parts of a tree with one child."""
+CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *WRAPPERS)
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """A node in its place: `keys` lead to it from the document, `parent` is the node around it."""
+
+    path: str
+    name: str
+    kind: str
+    data: Plain
+    keys: Keys
+    parent: Spot | None
+
+    @property
+    def in_tree(self) -> bool:
+        """True for a part or leaf of a tree."""
+        return self.parent is not None and (self.parent.kind == "tree" or self.parent.is_part)
+
+    @property
+    def is_part(self) -> bool:
+        """True for what stands only inside a tree."""
+        return self.kind in TREE_KINDS or self.kind in WRAPPERS
+
+    @property
+    def body(self) -> Plain:
+        """What is under the key of its kind, where that is a mapping; else an empty one."""
+        found = self.data.get(self.kind)
+        return cast("Plain", found) if isinstance(found, dict) else {}
+
+    @property
+    def states(self) -> Plain:
+        """The children of a container with named ones."""
+        found = self.body.get("states")
+        return cast("Plain", found) if isinstance(found, dict) else {}
+
+
+class Outline:
+    """All nodes of a document by path, in document order, containers before their children."""
+
+    def __init__(self, document: Plain) -> None:
+        self.spots: dict[str, Spot] = {}
+        root = document.get("root")
+        if isinstance(root, dict):
+            self._walk(cast("Plain", root))
+
+    def at(self, path: str) -> Spot:
+        """Return a node; raises EditRefused where there is none."""
+        if path not in self.spots:
+            raise EditRefused(f"there is no node `{path}`", hint=near_names(path, self.spots))
+        return self.spots[path]
+
+    def children(self, spot: Spot) -> tuple[Spot, ...]:
+        """Return the nodes directly inside one."""
+        return tuple(self.spots[f"{spot.path}/{name}"] for name, _, _ in placed(spot.data))
+
+    def path_of(self, data: Plain) -> str:
+        """Return the path of a node by its data."""
+        return next(path for path, spot in self.spots.items() if spot.data is data)
+
+    def _walk(self, root: Plain) -> None:
+        due = [Spot("root", "root", kind_of(root), root, ("root",), None)]
+        while due:
+            spot = due.pop()
+            self.spots[spot.path] = spot
+            inside = [
+                Spot(f"{spot.path}/{name}", name, kind_of(child, in_tree=spot.kind == "tree" or spot.is_part), child,
+                     (*spot.keys, *keys), spot)
+                for name, keys, child in placed(spot.data)
+            ]  # fmt: skip
+            due += reversed(inside)
+
+
+def kind_of(node: Plain, *, in_tree: bool = False) -> str:
+    """Return the key that says what a node is; empty where it has none."""
+    for kind in (*KINDS, *TREE_KINDS):
+        if kind in node:
+            return kind
+    wrapping = [key for key in WRAPPERS if isinstance(node.get(key), dict) and "child" in cast("Plain", node[key])]
+    if not wrapping and in_tree:
+        wrapping = [key for key in WRAPPERS if key in node]
+    return wrapping[0] if wrapping else ""
+
+
+def placed(node: Plain) -> list[tuple[str, Keys, Plain]]:
+    """Return the children of a node: name, keys from the node inward, data."""
+    kind = kind_of(node)
+    body = node.get(kind)
+    if kind in NAMED and isinstance(body, dict):
+        states = cast("Plain", body).get("states")
+        named = cast("Plain", states).items() if isinstance(states, dict) else ()
+        return [(name, (kind, "states", name), cast("Plain", each)) for name, each in named if isinstance(each, dict)]
+    if kind == "tree" and isinstance(body, dict):
+        child = cast("Plain", body)
+        return [(own_name(child), ("tree",), child)] if child else []
+    if kind in GROUPS:
+        keys: Keys = (kind,) if isinstance(body, list) else (kind, "children")
+        listed = cast("object", cast("Plain", body).get("children") if isinstance(body, dict) else body)
+        nodes = cast("list[object]", listed) if isinstance(listed, list) else []
+        found = [(index, cast("Plain", each)) for index, each in enumerate(nodes) if isinstance(each, dict)]
+        names = tree_names([each for _, each in found])
+        return [(name, (*keys, index), each) for name, (index, each) in zip(names, found, strict=True)]
+    if kind and isinstance(body, dict) and isinstance(cast("Plain", body).get("child"), dict):
+        child = cast("Plain", cast("Plain", body)["child"])
+        return [("child" if kind == "foreach" else own_name(child), (kind, "child"), child)]
+    return []
+
+
+def own_name(node: Plain) -> str:
+    """Return the name of a node inside a tree: as given, else after what it is."""
+    given = node.get("name")
+    if isinstance(given, str):
+        return given
+    said = str(node.get("state") or node.get("behaviour") or "")
+    reference = node.get("behavior")
+    said = re.split(r"[.:]", said)[-1] or (PurePosixPath(reference).stem if isinstance(reference, str) else "")
+    return re.sub(r"[^A-Za-z0-9_-]", "_", said)[:64] or kind_of(node, in_tree=True) or "node"
+
+
+def tree_names(children: list[Plain]) -> list[str]:
+    """Name the children of a composite; a name that is taken gets a number."""
+    names: list[str] = []
+    seen: dict[str, int] = {}
+    for child in children:
+        own = name = own_name(child)
+        while name in names:
+            seen[own] = seen.get(own, 1) + 1
+            name = f"{own}_{seen[own]}"
+        names.append(name)
+    return names
+
+
+def leads(node: Plain) -> Iterator[tuple[Plain, str, str]]:
+    """Go through where a node leads: the mapping that says so, the key in it, the target."""
+    transitions = node.get("transitions")
+    if isinstance(transitions, dict):
+        for outcome, target in list(cast("Plain", transitions).items()):
+            if isinstance(target, str):
+                yield cast("Plain", transitions), outcome, target
+    for key in ("timeout", "guard"):
+        measure = node.get(key)
+        if isinstance(measure, dict) and isinstance(cast("Plain", measure).get("to"), str):
+            yield cast("Plain", measure), "to", str(cast("Plain", measure)["to"])
+    if isinstance(node.get("on_error"), str):
+        yield node, "on_error", str(node["on_error"])

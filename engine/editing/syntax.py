@@ -1,0 +1,279 @@
+"""The text of a document as a tree of spans: where every key, value, comment and line of it begins and ends.
+
+What is read here has passed the strict reader; these spans let a writer keep each byte it does not change.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Protocol, cast
+
+import yaml
+
+from engine.document.yaml_source import SURROGATE_PAIR, one_code_point, parse_source, plain_scalar
+from engine.errors import DocumentError, Position
+
+_LOST = 2
+"""By so much two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
+
+
+@dataclass(slots=True, eq=False)
+class Scalar:
+    """One value that is no collection; `style` is its quote, `|`, `>` or empty for plain text."""
+
+    start: int
+    end: int
+    value: object
+    style: str
+
+
+@dataclass(slots=True, eq=False)
+class Member:
+    """One entry of a mapping or item of a list, with the lines and comments that belong to it.
+
+    In a block collection `start` is where its own lines begin (blank lines and comments above it included) and `stop`
+    is the end of its last line; in a flow collection both are those of the entry itself. `at` is where
+    its key or its dash stands.
+    """
+
+    start: int
+    at: int
+    key: Scalar | None
+    value: Syntax
+    stop: int
+
+
+@dataclass(slots=True, eq=False)
+class Collection:
+    """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
+
+    origin: Origin = field(repr=False)
+    start: int
+    end: int
+    flow: bool
+    column: int
+    data: dict[str, object] | list[object]
+    members: list[Member] = field(default_factory=list["Member"])
+
+    @property
+    def bare(self) -> bool:
+        """True for the pair in `[key: value]`, a mapping without braces."""
+        return self.flow and self.origin.text[self.start] not in "{["
+
+
+Syntax = Scalar | Collection
+
+
+@dataclass(slots=True, eq=False)
+class Origin:
+    """A text that was read: `root` is its outermost value."""
+
+    text: str
+    json: bool
+    root: Syntax = field(default_factory=lambda: Scalar(0, 0, None, ""))
+
+    def collections(self) -> Iterator[Collection]:
+        """Go through every collection, those outside first."""
+        due: list[Syntax] = [self.root]
+        while due:
+            found = due.pop()
+            if isinstance(found, Collection):
+                yield found
+                due += [member.value for member in found.members]
+
+    def indent_at(self, offset: int) -> int:
+        """Return the indentation of the line that `offset` is in."""
+        start = self.text.rfind("\n", 0, offset) + 1
+        return len(self.text) - start - len(self.text[start:].lstrip(" ")) if start < len(self.text) else 0
+
+
+class _Mark(Protocol):
+    index: int
+    column: int
+
+
+class _Event(Protocol):
+    start_mark: _Mark
+    end_mark: _Mark
+    value: str
+    style: str | None
+    flow_style: bool
+    implicit: tuple[bool, bool]
+
+
+def read_syntax(text: str, *, file: str) -> Origin:
+    """Read YAML or JSON text with lines that end in a line feed.
+
+    Raises:
+        DocumentError: the strict reader refuses it, or it is no mapping; `where` is the position.
+    """
+    source = parse_source(text, file=file)
+    if not isinstance(source.data, dict):
+        where = Position(file=file, line=1, column=1)
+        raise DocumentError("the document is no mapping", where=where, hint="begin with `flexcell: 1`")
+    origin = Origin(text, file.endswith(".json"))
+    origin.root = _Reader(origin).read()
+    # A file may be called `.json` and hold YAML, which the reader takes: then it goes on as YAML.
+    origin.json = origin.json and isinstance(origin.root, Collection) and origin.root.flow
+    return origin
+
+
+class _Reader:
+    def __init__(self, origin: Origin) -> None:
+        self._origin = origin
+        self._text = origin.text
+        self._shorter: list[int] = []
+        # PyYAML's C parser is untyped: the cast contains it here.
+        self._parser = yaml.CSafeLoader(self._in_yaml())
+        self._next = cast("Callable[[], _Event]", self._parser.get_event)
+
+    def _in_yaml(self) -> str:
+        """Return the text as YAML, in which JSON's two escapes for one character are one; remember where."""
+        if not self._origin.json:
+            return self._text
+
+        def joined(pair: re.Match[str]) -> str:
+            self._shorter.append(pair.end() - _LOST * (len(self._shorter) + 1))
+            return one_code_point(pair)
+
+        return SURROGATE_PAIR.sub(joined, self._text)
+
+    def _span(self, event: _Event) -> tuple[int, int]:
+        """Return where an event begins and ends in the text as it is."""
+        start, end = event.start_mark.index, event.end_mark.index
+        if not self._shorter:
+            return start, end
+        return start + _LOST * bisect_right(self._shorter, start), end + _LOST * bisect_right(self._shorter, end)
+
+    def read(self) -> Syntax:
+        try:
+            while True:
+                event = self._next()
+                if _is(event, yaml.StreamStartEvent, yaml.DocumentStartEvent):
+                    continue
+                return self._value(event, outside=0)
+        finally:
+            self._parser.dispose()
+
+    def _value(self, event: _Event, *, outside: int) -> Syntax:
+        """Read a value; `outside` is where its key or dash ends, for values that are left out."""
+        if _is(event, yaml.ScalarEvent):
+            return self._scalar(event, outside)
+        mapping = _is(event, yaml.MappingStartEvent)
+        start = self._span(event)[0]
+        if not event.flow_style:
+            start = self._head(start, event.start_mark.column)
+        data: dict[str, object] | list[object] = {} if mapping else []
+        made = Collection(self._origin, start, start, event.flow_style, event.start_mark.column, data)
+        while True:
+            event = self._next()
+            if _is(event, yaml.MappingEndEvent, yaml.SequenceEndEvent):
+                break
+            previous = made.members[-1].stop if made.members else made.start
+            made.members.append(self._entry(event, made, previous) if mapping else self._item(event, made, previous))
+        if made.flow:
+            made.end = max(self._span(event)[1], made.members[-1].stop if made.members else 0)
+        elif made.members:
+            made.end = made.members[-1].stop
+        return made
+
+    def _head(self, start: int, column: int) -> int:
+        """Return where the comments begin that stand directly above the first member of a block."""
+        text = self._text
+        line = text.rfind("\n", 0, start) + 1
+        if text[line:start].strip(" "):
+            return start
+        while line > 0:
+            above = text.rfind("\n", 0, line - 1) + 1
+            if not text.startswith(f"{' ' * column}#", above):
+                break
+            line, start = above, above + column
+        return start
+
+    def _entry(self, event: _Event, made: Collection, previous: int) -> Member:
+        key = Scalar(*self._span(event), event.value, event.style or "")
+        value = self._value(self._next(), outside=key.end)
+        at = self._explicit(key.start, previous)
+        cast("dict[str, object]", made.data)[str(key.value)] = data_of(value)
+        return self._placed(made, previous, at, key, value)
+
+    def _item(self, event: _Event, made: Collection, previous: int) -> Member:
+        if made.flow:
+            value = self._value(event, outside=previous)
+            at = value.start
+        else:
+            at = skip_space(self._text, previous)
+            value = self._value(event, outside=at + 1)
+        cast("list[object]", made.data).append(data_of(value))
+        return self._placed(made, previous, at, None, value)
+
+    def _placed(self, made: Collection, previous: int, at: int, key: Scalar | None, value: Syntax) -> Member:
+        if made.flow:
+            return Member(at, at, key, value, max(value.end, key.end if key is not None else 0))
+        start = previous if not made.members else min(previous + 1, at)
+        return Member(start, at, key, value, self._last_line(max(value.end, at + 1), made.column))
+
+    def _scalar(self, event: _Event, outside: int) -> Scalar:
+        (start, end), style = self._span(event), event.style or ""
+        value: object = event.value
+        if event.implicit[0] and not style:
+            value = plain_scalar(event.value)
+        if start == end:
+            # Left out altogether: it stands behind the colon, if there is one.
+            colon = skip_space(self._text, outside)
+            start = end = colon + 1 if self._text[colon : colon + 1] == ":" else outside
+        elif style in ("|", ">"):
+            kept = "+" in self._text[start : self._text.find("\n", start)]
+            shown = self._text[start:end]
+            end = start + len(shown[:-1] if kept and shown.endswith("\n") else shown.rstrip("\n"))
+        return Scalar(start, end, value, style)
+
+    def _explicit(self, at: int, previous: int) -> int:
+        """Return where `? ` stands in front of a key, else the key."""
+        before = self._text[previous:at].rstrip(" ")
+        return previous + len(before) - 1 if before.endswith("?") else at
+
+    def _last_line(self, end: int, column: int) -> int:
+        """Return the end of the line at `end`, or of the last comment below it that stands deeper than `column`."""
+        text = self._text
+        stop = _line_end(text, end)
+        at = stop
+        while at < len(text):
+            line_end = _line_end(text, at + 1)
+            line = text[at + 1 : line_end]
+            bare = line.lstrip(" ")
+            if bare.startswith("#") and len(line) - len(bare) > column:
+                stop = line_end
+            elif bare.strip():
+                break
+            at = line_end
+        return stop
+
+
+def data_of(value: Syntax) -> object:
+    """Return the plain data of a value."""
+    return value.value if isinstance(value, Scalar) else value.data
+
+
+def skip_space(text: str, at: int) -> int:
+    """Return where something other than space, line ends, commas and comments begins, from `at` on."""
+    while at < len(text):
+        if text[at] in " \t\n\r,":
+            at += 1
+        elif text[at] == "#" and (at == 0 or text[at - 1] in " \t\n\r,"):
+            at = _line_end(text, at)
+        else:
+            break
+    return at
+
+
+def _line_end(text: str, at: int) -> int:
+    found = text.find("\n", at)
+    return found if found >= 0 else len(text)
+
+
+def _is(event: object, *kinds: type) -> bool:
+    return type(event) in kinds

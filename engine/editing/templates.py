@@ -1,0 +1,28 @@
+"""The documents that a new behavior begins as."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from engine.editing.notation import scalar_text
+from engine.errors import DocumentError
+from engine.nearness import near_names
+
+_HEAD = "flexcell: 1\nname: {name}\noutcomes: [finished, failed]\nsuccess: [finished]\nroot:\n"
+_TREE_HEAD = "flexcell: 1\nname: {name}\noutcomes: [success, failure]\nsuccess: [success]\nroot:\n"
+TEMPLATES: Mapping[str, str] = {
+    "machine": _HEAD + "  machine:\n    states: {{}}\n",
+    "sequence": _TREE_HEAD + "  tree:\n    sequence: []\n",
+    "concurrency": _HEAD + "  concurrency:\n    states: {{}}\n    conditions: []\n",
+}
+
+
+def new_text(template: str, *, name: str) -> str:
+    """Return the text of a new behavior, yet without nodes.
+
+    Raises:
+        DocumentError: there is no such template.
+    """
+    if template not in TEMPLATES:
+        raise DocumentError(f"there is no template `{template}`", hint=near_names(template, TEMPLATES))
+    return TEMPLATES[template].format(name=scalar_text(name, json=False, flow=False))

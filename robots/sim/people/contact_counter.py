@@ -1,0 +1,101 @@
+"""Counts what the bodies of people touch, from the physics' own contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.port import Array
+from robots.sim.people.person_spec import PersonIndices
+from robots.sim.physics import Physics
+
+_CONTACTS, _TOUCHING_S, _GREATEST_N, _PAIRS = 0, 1, 2, 3
+_BEFORE, _NOW = 1.0, 2.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Touched:
+    """How often bodies of a person began to touch others, for how long any did, the hardest of all, and which.
+
+    `pairs` are numbers of bodies, the person's own first, by how `BODIES` counts them.
+    """
+
+    contacts: int
+    touching_s: float
+    greatest_force_n: float
+    pairs: tuple[tuple[int, int], ...]
+
+
+def count_size(body_count: int, own: int) -> int:
+    """Return how many numbers a count has for a person of `own` bodies in a world of `body_count`."""
+    return _PAIRS + own * body_count
+
+
+def touched(numbers: Array, body_count: int) -> Touched:
+    """Return what the numbers of a count say."""
+    own, others = np.nonzero(numbers[_PAIRS:].reshape(-1, body_count))
+    return Touched(
+        contacts=int(numbers[_CONTACTS]),
+        touching_s=float(numbers[_TOUCHING_S]),
+        greatest_force_n=float(numbers[_GREATEST_N]),
+        pairs=tuple(zip(own.tolist(), others.tolist(), strict=True)),
+    )
+
+
+class ContactCounter:
+    """The counts of all people of a world; `numbers` has a row for each person, (people, `count_size`).
+
+    A contact begins when two bodies touch that did not in the step before. The force of a pair is the sum of
+    the normal forces of its contact points.
+    """
+
+    def __init__(self, people: tuple[PersonIndices, ...], physics: Physics, *, body_count: int) -> None:
+        self._physics = physics
+        own = len(people[0].bodies)
+        self.numbers = np.zeros((len(people), count_size(body_count, own)))
+        self._pairs = self.numbers[:, _PAIRS:].reshape(len(people), own, body_count)
+        rows = {body: (i, j) for i, person in enumerate(people) for j, body in enumerate(person.bodies)}
+        self._geom_body = physics.geom_body
+        self._rows = rows
+        self._touching = False
+        self._is_person: NDArray[np.bool_] = np.array([body in rows for body in physics.geom_body], dtype=np.bool_)
+
+    def step(self, step_s: float) -> None:
+        """Count the contacts of the step just done."""
+        geoms = self._physics.contact_geoms()
+        hits = np.flatnonzero(self._is_person[geoms].any(axis=1)) if len(geoms) else ()
+        now: dict[tuple[int, int, int], float] = {}
+        for hit in hits:
+            index = int(hit)
+            if self._physics.contact_depth_m(index) < 0.0:
+                continue
+            pair = self._pair(geoms[index].tolist())
+            now[pair] = now.get(pair, 0.0) + self._physics.normal_force_n(index)
+        if now:
+            self._count(now, step_s)
+        elif self._touching:
+            self._pairs[self._pairs == _NOW] = _BEFORE
+            self._touching = False
+
+    def take_over(self, numbers: Array) -> None:
+        """Go on from a count, `numbers` as here."""
+        self.numbers[:] = numbers
+        self._touching = bool((self._pairs == _NOW).any())
+
+    def _pair(self, geoms: list[int]) -> tuple[int, int, int]:
+        first, second = (self._geom_body[geom] for geom in geoms)
+        own, other = (first, second) if first in self._rows else (second, first)
+        return (*self._rows[own], other)
+
+    def _count(self, now: dict[tuple[int, int, int], float], step_s: float) -> None:
+        was_touching = self._pairs == _NOW
+        self._pairs[was_touching] = _BEFORE
+        for (person, own, other), force_n in now.items():
+            numbers = self.numbers[person]
+            numbers[_CONTACTS] += not was_touching[person, own, other]
+            numbers[_GREATEST_N] = max(float(numbers[_GREATEST_N]), force_n)
+            self._pairs[person, own, other] = _NOW
+        self.numbers[sorted({person for person, _, _ in now}), _TOUCHING_S] += step_s
+        self._touching = True

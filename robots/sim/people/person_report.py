@@ -1,0 +1,44 @@
+"""What a snapshot of a world says of its people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from engine.skills.people import ContactCount
+from robots.port import Array
+from robots.sim.people.contact_counter import count_size, touched
+from robots.sim.people.hand_way import HandState
+from robots.sim.people.limb import BODIES
+
+# Place and velocity of the hand, and how long it is still on its way.
+_HAND_FIELDS = 7
+
+
+@dataclass(frozen=True, kw_only=True)
+class PersonSample:
+    """One person at an instant."""
+
+    hand: HandState
+    arrives_in_s: float
+    count: ContactCount
+
+
+def report_size(people: int, *, body_count: int) -> int:
+    """Return how many numbers a snapshot has for the people of a world."""
+    return people * (_HAND_FIELDS + count_size(body_count, len(BODIES)))
+
+
+def person_sample(values: Array, people: tuple[str, ...], person: str, *, bodies: tuple[str, ...]) -> PersonSample:
+    """Return what a snapshot's numbers for `people` say of one of them; `bodies` are all names of the world."""
+    row = values.reshape(len(people), -1)[people.index(person)]
+    count = touched(row[_HAND_FIELDS:], len(bodies))
+    return PersonSample(
+        hand=HandState(xyz=row[0:3].copy(), velocity=row[3:6].copy()),
+        arrives_in_s=float(row[6]),
+        count=ContactCount(
+            contacts=count.contacts,
+            touching_s=count.touching_s,
+            greatest_force_n=count.greatest_force_n,
+            pairs=tuple((f"{person}/{BODIES[own]}", bodies[other]) for own, other in count.pairs),
+        ),
+    )

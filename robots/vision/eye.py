@@ -1,0 +1,91 @@
+"""Looks at a simulated cell through its cameras and keeps the map: one call for each moment, wherever it runs."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from engine.errors import CellError
+from engine.sensing import DepthImage
+from robots.planning.cell_scene import known_obstacles
+from robots.vision.camera import CameraSpec
+from robots.vision.depth import new_depth
+from robots.vision.depth_image import frame_number, measured_image
+from robots.vision.known import Known, Moment, Posture
+from robots.vision.mapper import Mapper
+from robots.vision.physics_copy import PhysicsCopy
+from robots.vision.sight import Look, Seen, Sight
+
+
+class Eye:
+    """Looks with cameras of a simulated cell; belongs to the thread that made it.
+
+    Args:
+        sight: What to look at.
+        repeatable: Whether the images must be the same on every machine.
+
+    Raises:
+        CellError: the cell cannot be built, or images cannot be made as the environment asks.
+    """
+
+    def __init__(self, sight: Sight, *, repeatable: bool) -> None:
+        self._sight = sight
+        self._cameras = {camera.name: camera for camera in sight.cameras}
+        self._cell = PhysicsCopy(sight.scene)
+        self._depth = new_depth(self._cell, sight.cameras, box=sight.box, repeatable=repeatable)
+        self._mapper = Mapper(sight.box, sight.scene.arms)
+        self._mapper.know(Known(obstacles=known_obstacles(sight.scene)))
+
+    @property
+    def words(self) -> str:
+        """How images are made, for people."""
+        return self._depth.words
+
+    def know(self, known: Known) -> None:
+        """Leave out these obstacles and held parts from the next look on."""
+        self._mapper.know(known)
+
+    def look(self, look: Look) -> Seen:
+        """Take the images and bring the map up to date.
+
+        Raises:
+            CellError: something known of the cell does not fit it; the map is as it was.
+        """
+        unknown = [name for name in look.cameras if name not in self._cameras]
+        if unknown:
+            raise CellError(f"there is no camera {unknown[0]}", where="cameras", hint=f"there are {[*self._cameras]}")
+        started_s = time.perf_counter()
+        self._cell.go_to(np.frombuffer(look.state))
+        images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
+        rendered_s = time.perf_counter()
+        if look.forget:
+            self._mapper.forget()
+        grid = self._mapper.update(images, self._cell.moment(look.time_s))
+        return Seen(
+            grid=grid,
+            images=tuple(image for image in images if image.camera in look.wanted),
+            render_s=rendered_s - started_s,
+            map_s=time.perf_counter() - rendered_s,
+        )
+
+    def warm(self) -> None:
+        """Have everything compiled and loaded that a first look would wait for; the map stays empty."""
+        home = {arm.name: Posture(joints=arm.robot().home_rad) for arm in self._sight.scene.arms}
+        images = [self._image(camera, 0.0) for camera in self._sight.cameras]
+        self._mapper.update(images, Moment(time_s=0.0, arms=home))
+        self._mapper.forget()
+
+    def close(self) -> None:
+        """Let go of the graphics."""
+        self._depth.close()
+
+    def _image(self, camera: CameraSpec, time_s: float) -> DepthImage:
+        return measured_image(
+            camera,
+            self._depth.exact(camera),
+            intrinsics=self._depth.intrinsics(camera),
+            time_s=time_s,
+            frame=frame_number(camera, time_s),
+            seed=self._sight.seed,
+        )

@@ -1,0 +1,72 @@
+"""A second copy of a simulated cell, set to where the world was at an instant, for cameras to look at."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from engine.errors import CellError
+from engine.messages import Pose
+from robots.model.rigid import Rigid
+from robots.port import Array
+from robots.sim.cell_model import build_cell
+from robots.sim.image_layout import ImageLayout
+from robots.sim.physics import mujoco
+from robots.sim.scene import Scene
+from robots.vision.known import Moment, Posture
+
+
+class PhysicsCopy:
+    """MuJoCo's model of a scene and a state of it; raises CellError as `build_cell` does.
+
+    `model` and `data` are MuJoCo's, for who renders.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        cell = build_cell(scene)
+        self.model: Any = cell.model
+        self.data: Any = mujoco.MjData(self.model)
+        self._kind: Any = mujoco.mjtState.mjSTATE_INTEGRATION
+        self._physics = ImageLayout((), state_size=int(mujoco.mj_stateSize(self.model, self._kind))).physics
+        mujoco.mj_kinematics(self.model, self.data)
+        self._parts = cell.parts
+        self._part_qpos = cell.part_qpos
+        self._arms = {
+            arm.name: (arm.qpos, _tool_joints(self.model, arm.name, frozenset(arm.model.arm_joints)))
+            for arm in cell.arms
+        }
+
+    def go_to(self, image: Array) -> None:
+        """Be where `image`, as of `Host.image`, was made; raises CellError where it is none of this world."""
+        if len(image) < self._physics.stop or not np.isfinite(image[self._physics]).all():
+            raise CellError(f"{len(image)} numbers are no state of this world", where="cameras")
+        mujoco.mj_setState(self.model, self.data, np.ascontiguousarray(image[self._physics]), self._kind)
+        mujoco.mj_kinematics(self.model, self.data)
+
+    def moment(self, time_s: float) -> Moment:
+        """Return where arms and parts are in this state."""
+        q: Array = self.data.qpos
+        return Moment(
+            time_s=time_s,
+            arms={
+                name: Posture(
+                    joints=tuple(q[places].tolist()),
+                    tool_joints={joint: float(q[place]) for joint, place in tool.items()},
+                )
+                for name, (places, tool) in self._arms.items()
+            },
+            parts=dict(zip(self._parts, map(_pose, q[self._part_qpos].reshape(-1, 7)), strict=True)),
+        )
+
+
+def _tool_joints(model: Any, arm: str, arm_joints: frozenset[str]) -> dict[str, int]:
+    """Return the addresses of the joints of an arm's tool, by their names in the URDF."""
+    prefix = f"{arm}/"
+    joints = (model.joint(number) for number in range(int(model.njnt)))
+    named = {str(joint.name).removeprefix(prefix): joint for joint in joints if str(joint.name).startswith(prefix)}
+    return {name: int(joint.qposadr[0]) for name, joint in named.items() if name not in arm_joints}
+
+
+def _pose(numbers: Array) -> Pose:
+    return Rigid.of(numbers[:3], np.roll(numbers[3:], -1)).to_pose("world")

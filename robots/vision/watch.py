@@ -1,0 +1,192 @@
+"""The cameras of a simulated cell as a device: takes images while somebody needs them, and publishes the map."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+
+import msgspec
+
+from engine.bus import SkillBus
+from engine.bus.topic import Topic
+from engine.robot import DeviceStatus
+from engine.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from robots.gripper.grip_judgement import Grip
+from robots.planning.scene import PlanningScene
+from robots.sim.world import SimWorld
+from robots.vision.camera import CameraSpec
+from robots.vision.known import Known
+from robots.vision.live_map import LiveMap
+from robots.vision.sight import Look, Seen, Sight, state_bytes
+from robots.vision.source import Unsubscribe
+
+PROCESSING_S = 0.03
+"""Time from an image to the map in virtual time: near the 99th percentile that `benchmarks/perception.py` measures."""
+
+_FRESH_IMAGES = 3
+_LEAST_FRESH_S = 0.5
+_log = logging.getLogger("flexcell.vision")
+
+
+class CellWatch:
+    """Implements `engine.robot.Robot` for a world and `OccupancySource` for planners.
+
+    How images come is up to `LockstepWatch` and `RealTimeWatch`, which ask here what to look at and hand in
+    here what was seen.
+    """
+
+    name = "cell/cameras"
+
+    def __init__(self, sight: Sight, *, world: SimWorld, now_s: Callable[[], float]) -> None:
+        self.sight = sight
+        self._world = world
+        slowest_s = max(1.0 / camera.rate_hz for camera in sight.cameras)
+        self.map = LiveMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
+        self.known: Known | None = None
+        self.status = DeviceStatus.DISCONNECTED
+        self.dropped = 0
+        self.made = ""
+        self._looks = 0
+        self._forget = False
+        self._base = 0
+        self._last: Seen | None = None
+        self._grids: Topic[OccupancyGrid] | None = None
+        self._states: Topic[OccupancyState] | None = None
+        self._depths: dict[str, Topic[DepthImage]] = {}
+
+    # What a planner needs: `OccupancySource`.
+
+    @property
+    def latest(self) -> OccupancyGrid | None:
+        """The newest map."""
+        return self.map.latest
+
+    @property
+    def stale_reason(self) -> str:
+        """Why the map must not be trusted."""
+        return self.map.stale_reason
+
+    def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
+        """Call `callback` whenever the revision or the stale reason has changed."""
+        return self.map.subscribe(callback)
+
+    def require(self) -> None:
+        """Take images until as many `release`."""
+        self.map.required += 1
+
+    def release(self) -> None:
+        """End what one `require` began."""
+        self.map.required = max(0, self.map.required - 1)
+
+    def forget(self) -> None:
+        """Begin with an empty map at the next image."""
+        self._forget = True
+
+    def know(self, scene: PlanningScene) -> None:
+        """Leave out the obstacles and held parts of `scene` from the next image on."""
+        known = Known.of(scene)
+        if known != self.known:
+            self.known = known
+
+    # What is asked by those who take the images.
+
+    @property
+    def needed(self) -> bool:
+        """Whether anybody needs the map or an image now."""
+        read = self._grids is not None and self._grids.subscriber_count > 0
+        return self.map.required > 0 or read or bool(self._wanted())
+
+    def next_look(self, cameras: tuple[CameraSpec, ...]) -> Look:
+        """Return the order to look with these cameras at the world as it is now."""
+        image = self._world.host.image()
+        names = tuple(camera.name for camera in cameras)
+        forget, self._forget = self._forget, False
+        return Look(
+            # An image begins with the number of steps done.
+            time_s=round(float(image[0])) * self._world.host.summary.step_s,
+            state=state_bytes(image),
+            cameras=names,
+            wanted=tuple(name for name in self._wanted() if name in names),
+            forget=forget,
+        )
+
+    def begin_anew(self) -> None:
+        """Know that the next map is of an eye that has seen nothing before; revisions go on rising all the same."""
+        self._base = self.map.latest.revision if self.map.latest is not None else 0
+
+    def hand_in(self, seen: Seen, *, looked_at_s: float) -> None:
+        """Publish what was seen."""
+        self._looks += 1
+        self._last = seen
+        grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
+        changed = self.map.arrived(grid, looked_at_s=looked_at_s)
+        self.status = DeviceStatus.READY
+        if changed and self._grids is not None:
+            self._grids.publish(grid)
+        for image in seen.images:
+            self._depths[image.camera].publish(image)
+
+    def fail(self, reason: str) -> None:
+        """Say why no images come."""
+        if reason != self.map.lost_reason:
+            _log.error("the cameras see nothing: %s", reason)
+        self.status = DeviceStatus.FAULT
+        self.map.lost(reason)
+
+    def say_how(self, words: str) -> None:
+        """Say how depth images are made."""
+        if words != self.made:
+            self.made = words
+            _log.info("depth images are made %s", words)
+
+    # What a device of the world is.
+
+    def grips(self) -> dict[str, Grip]:
+        """Cameras hold nothing."""
+        return {}
+
+    def recall(self, grips: Mapping[str, Grip]) -> None:
+        """The world was brought to an earlier state: what was seen since is forgotten."""
+        self._forget = True
+        self.map.outdated()
+
+    def register(self, bus: SkillBus) -> None:
+        """Publish what cameras there are; map and images come while somebody reads them."""
+        self._grids = bus.topic("cell/occupancy", OccupancyGrid)
+        self._states = bus.topic("cell/occupancy_state", OccupancyState)
+        self._states.provide(self._state)
+        self.map.subscribe(lambda: self._publish_state())
+        for camera in self.sight.cameras:
+            self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
+            bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(
+                CameraInfo(
+                    camera=camera.name,
+                    intrinsics=camera.intrinsics,
+                    pose=camera.pose,
+                    rate_hz=camera.rate_hz,
+                    range_m=camera.range_m,
+                )
+            )
+
+    async def stop(self) -> None:
+        """Nothing here moves."""
+
+    def _wanted(self) -> tuple[str, ...]:
+        return tuple(name for name, topic in self._depths.items() if topic.subscriber_count > 0)
+
+    def _publish_state(self) -> None:
+        assert self._states is not None
+        if self._states.subscriber_count > 0:
+            self._states.publish(self._state())
+
+    def _state(self) -> OccupancyState:
+        latest, last = self.map.latest, self._last
+        return OccupancyState(
+            stale_reason=self.map.stale_reason,
+            made=self.made,
+            revision=latest.revision if latest is not None else 0,
+            looks=self._looks,
+            dropped=self.dropped,
+            image_s=last.render_s if last is not None else 0.0,
+            mapping_s=last.map_s if last is not None else 0.0,
+        )

@@ -1,0 +1,28 @@
+"""cell.Withdraw: lets a person of a simulated cell take the hand out of it."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.skills import people
+from engine.skills.people import HandSpeed
+from engine.state import Context, Outcome, State
+from states.cell.sent_hand import PersonName, Wait, sent_hand
+
+
+class Withdraw(State, frozen=True, kw_only=True):
+    """Let the hand of a person of a simulated cell go back to where it rests, from now on."""
+
+    state_name: ClassVar[str] = "cell.Withdraw"
+    outcomes: ClassVar[tuple[str, ...]] = ("done", "failed")
+    success: ClassVar[tuple[str, ...]] = ("done",)
+
+    person: PersonName
+    speed_m_s: HandSpeed = 0.8
+    wait: Wait = False
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the cell, and wait for the hand where that is wanted."""
+        request = people.Withdraw(person=self.person, speed_m_s=self.speed_m_s)
+        what = f"{self.person} does not withdraw"
+        return await sent_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)

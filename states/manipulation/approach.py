@@ -1,0 +1,116 @@
+"""Brings the tool to a part or a place: free of collisions in front of it, then straight in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from engine.cause import cause_of
+from engine.errors import SkillFailed
+from engine.event import Cause
+from engine.messages import Pose, Vector3
+from engine.skills.motion import AllInverseKinematics, InverseKinematics, Speed
+from engine.skills.planning import Margin, Patience
+from engine.skills.planning_scene import CheckCollision, TouchingPair
+from engine.state import Context
+from states.frames import moved
+from states.manipulation.steps import Ended, Step, go_through
+from states.manipulation.straight import go_straight
+from states.motion.move_free import MoveFree
+from states.scene.naming import CELL
+
+_ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
+_TRIES = 8
+"""With so many configurations of the arm at most a pose is tried."""
+_SAME_RAD = 1.5
+"""A joint that turns farther on the straight way is in another configuration at its other end."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Approach:
+    """How an arm comes to a pose, and goes on: by which straight ways, how fast, how far from obstacles, how patient.
+
+    `out_m` leads from the pose to where the arm comes from, `onward_m` to where it goes afterwards, in the world.
+    `expected` tells which pairs are meant to touch at the pose; `kind` names the state in causes.
+    """
+
+    robot: str
+    out_m: Vector3
+    onward_m: Vector3
+    speed: Speed
+    line_speed_m_s: float
+    margin_m: Margin
+    patience_s: Patience
+    expected: Callable[[TouchingPair], bool]
+    kind: str
+
+    async def to(self, ctx: Context, poses: Sequence[Pose], *, before: Sequence[Step] = ()) -> Pose | Ended:
+        """Bring the tool to the first pose, in the world, that is reached and free; return which one.
+
+        A configuration is chosen at the pose itself, and the same one in front of it: else the straight ways might
+        end at a limit of a joint. `before` is gone through before the straight way.
+        """
+        ended = Ended("unreachable", None)
+        for pose in poses:
+            solutions = await self._solutions(ctx, pose)
+            if isinstance(solutions, Ended):
+                ended = solutions
+                continue
+            for joints in solutions:
+                tried = await self._try(ctx, pose, joints, before)
+                if tried is None:
+                    return pose
+                ended = tried
+                if ended.outcome not in ("unreachable", "blocked"):
+                    return ended
+        return ended
+
+    async def straight_to(self, ctx: Context, pose: Pose) -> Ended | None:
+        """Go straight to a pose."""
+        return await go_straight(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
+
+    async def straight_out(self, ctx: Context, pose: Pose) -> Ended | None:
+        """Go straight back to where the arm came to `pose` from."""
+        return await self.straight_to(ctx, moved(pose, self.out_m))
+
+    async def _solutions(self, ctx: Context, pose: Pose) -> Sequence[tuple[float, ...]] | Ended:
+        """Return configurations at a pose, soonest reached first."""
+        try:
+            return (await ctx.call(AllInverseKinematics(pose=pose), to=self.robot)).solutions[:_TRIES]
+        except SkillFailed as error:
+            return Ended("unreachable", cause_of(error))
+
+    async def _try(self, ctx: Context, pose: Pose, joints: tuple[float, ...], before: Sequence[Step]) -> Ended | None:
+        """Bring the tool to a pose that it is to have with `joints`; None when it is there."""
+        in_front = await self._in_front_of(ctx, pose, joints)
+        if isinstance(in_front, Ended):
+            return in_front
+        move = MoveFree(
+            robot=self.robot,
+            joints=in_front,
+            speed=self.speed,
+            margin_m=self.margin_m,
+            patience_s=self.patience_s,
+        )
+        return await go_through(ctx, [Step(move, _ENDS), *before]) or await self.straight_to(ctx, pose)
+
+    async def _in_front_of(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | Ended:
+        report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
+        pairs = [f"{pair.first} with {pair.second}" for pair in report.touching if not self.expected(pair)]
+        if pairs:
+            return Ended("blocked", Cause(message=f"there, {', '.join(pairs)} would touch", where=self.robot))
+        in_front = await self._beside(ctx, moved(pose, self.out_m), joints)
+        onward = await self._beside(ctx, moved(pose, self.onward_m), joints) if self.onward_m != self.out_m else None
+        return onward if isinstance(onward, Ended) else in_front
+
+    async def _beside(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | Ended:
+        """Return how the arm stands at the other end of a straight way, not otherwise than with `joints`."""
+        try:
+            found = (await ctx.call(InverseKinematics(pose=pose, seed=joints), to=self.robot)).joints
+        except SkillFailed as error:
+            return Ended("unreachable", cause_of(error))
+        turned = max(abs(a - b) for a, b in zip(joints, found, strict=True))
+        if turned <= _SAME_RAD:
+            return found
+        words = f"the straight way would turn a joint by {turned:.2f} rad"
+        return Ended("unreachable", Cause(message=words, where=self.robot))

@@ -1,0 +1,169 @@
+"""manipulation.PickPart: takes a part, from wherever the arm is to the part in the air."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.event import Cause
+from engine.messages import Pose, Vector3
+from engine.skills.arm_control import Mass
+from engine.skills.gripper import Width
+from engine.skills.motion import ForwardKinematics, Speed
+from engine.skills.planning import Margin, Patience
+from engine.skills.planning_scene import TouchingPair
+from engine.state import Context, Outcome, State
+from states.frames import composed, frame_in_world, moved, part_in_world, turn_between_rad
+from states.gripper.grasp import Force, Grasp
+from states.hand.close import Close
+from states.hand.naming import Percent
+from states.magnet.on import On
+from states.manipulation.approach import Approach
+from states.manipulation.holding import ToolKind, letting_go, still_holding, tool_resource
+from states.manipulation.steps import Ended, Step, go_through
+from states.manipulation.straight import Direction, LineSpeed, Way, way_out
+from states.motion.set_load import SetLoad
+from states.motion.target import NO_OFFSET, PoseTarget, RobotName, resolve_pose
+from states.scene.attach import Attach
+from states.scene.detach import Detach
+from states.scene.naming import PartName
+
+PART = "part"
+"""The frame of the part, in `grasp`."""
+FROM_ABOVE = PoseTarget(xyz=(0.0, 0.0, 0.0), xyzw=(1.0, 0.0, 0.0, 0.0), frame=PART)
+_FAILED = {"failed": "failed"}
+
+
+class PickPart(State, frozen=True, kw_only=True):
+    """Open the tool, move free of collisions in front of the part, straight in, close, lift, and look what is held.
+
+    Where the part is now is asked when the state runs. While it is held, ways are planned with it. `missed` when
+    the tool does not hold it, closed or lifted: then the tool is open and the arm back in front; or when there is no
+    such part. `unreachable` when the arm cannot get there, `blocked` when something is in the way; the reason is
+    written as `reason`.
+    """
+
+    state_name: ClassVar[str] = "manipulation.PickPart"
+    outcomes: ClassVar[tuple[str, ...]] = ("picked", "missed", "unreachable", "blocked", "failed")
+    success: ClassVar[tuple[str, ...]] = ("picked",)
+    outputs: ClassVar[Mapping[str, Any]] = {"reason": str}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"picked": ("reason",)}
+
+    robot: RobotName
+    part: PartName
+    tool: ToolKind = "gripper"
+    grasp: Annotated[
+        PoseTarget, Meta(description="Tool centre point at the part: `{xyz, xyzw, frame}` with frame `part` or another")
+    ] = FROM_ABOVE
+    turns: Annotated[int, Meta(ge=1, le=8, description="In how many turns about the tool's z the grasp is as good")] = 1
+    approach: Direction = None
+    approach_m: Way = 0.1
+    lift_m: Annotated[Way, Meta(description="How far it is lifted, along the world's z")] = 0.1
+    width_m: Annotated[Width | None, Meta(description="Width of the part between two fingers")] = None
+    force_n: Force = 20.0
+    percent: Annotated[Percent, Meta(description="How far a hand closes")] = 80.0
+    mass_kg: Annotated[Mass, Meta(description="Told to the arm as its load; 0 tells it nothing")] = 0.0
+    speed: Speed = 0.3
+    line_speed_m_s: LineSpeed = 0.1
+    margin_m: Margin = 0.0
+    patience_s: Patience = 60.0
+
+    def __post_init__(self) -> None:
+        if self.tool == "gripper" and self.width_m is None:
+            raise ValueError("a gripper needs `width_m`, the width of the part between its fingers")
+        if self.approach is not None and not any(self.approach):
+            raise ValueError("`approach` is no direction")
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm and its tool."""
+        return (self.robot, tool_resource(self.robot, self.tool))
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Go through the pick."""
+        ended = await self._pick(ctx)
+        if ended is None:
+            return Outcome("picked")
+        return ended.under(f"{self.robot} did not pick part {self.part}", where=ctx.path, kind=self.state_name)
+
+    async def _pick(self, ctx: Context) -> Ended | None:
+        found = await self._grasps(ctx)
+        if isinstance(found, Cause):
+            return Ended("missed", found)
+        frame, grasps = found
+        approach = self._approach(way_out(grasps[0], frame, self.approach, self.approach_m))
+        if ended := await go_through(ctx, [Step(letting_go(self.robot, self.tool, ""), _FAILED)]):
+            return ended
+        grasp = await approach.to(ctx, grasps)
+        if isinstance(grasp, Ended):
+            return grasp
+        ended = await self._close(ctx) or await self._lift(ctx, approach, grasp)
+        if ended is not None and ended.outcome == "missed":
+            return await self._let_go(ctx) or await approach.straight_out(ctx, grasp) or ended
+        return ended
+
+    async def _grasps(self, ctx: Context) -> tuple[Pose, list[Pose]] | Cause:
+        """Return the frame that the grasp is given in, and the poses in the world to try, nearest turn first."""
+        given = await resolve_pose(ctx, self.grasp, NO_OFFSET)
+        of_part = given.frame in (PART, self.part)
+        frame = await part_in_world(ctx, self.part) if of_part else await frame_in_world(ctx, given.frame)
+        if isinstance(frame, Cause):
+            return frame
+        grasp = composed(frame, given)
+        if self.turns == 1:
+            return frame, [grasp]
+        now = await ctx.call(ForwardKinematics(), to=self.robot)
+        turned = [composed(grasp, _turned(2 * math.pi * turn / self.turns)) for turn in range(self.turns)]
+        return frame, sorted(turned, key=lambda pose: round(turn_between_rad(pose.xyzw, now.xyzw), 6))
+
+    def _approach(self, out_m: Vector3) -> Approach:
+        return Approach(
+            robot=self.robot,
+            out_m=out_m,
+            onward_m=(0.0, 0.0, self.lift_m),
+            speed=self.speed,
+            line_speed_m_s=self.line_speed_m_s,
+            margin_m=self.margin_m,
+            patience_s=self.patience_s,
+            expected=self._meant_to_touch,
+            kind=self.state_name,
+        )
+
+    def _meant_to_touch(self, pair: TouchingPair) -> bool:
+        return self.part in (pair.first, pair.second)
+
+    async def _close(self, ctx: Context) -> Ended | None:
+        steps = [
+            Step(self._closing(), {"missed": "missed", "failed": "failed"}),
+            Step(Attach(part=self.part, robot=self.robot), _FAILED),
+        ]
+        load = Step(SetLoad(robot=self.robot, mass_kg=self.mass_kg), _FAILED)
+        return await go_through(ctx, [*steps, load] if self.mass_kg else steps)
+
+    def _closing(self) -> State:
+        match self.tool:
+            case "gripper":
+                return Grasp(gripper=self.robot, part=self.part, width_m=self.width_m or 0.0, force_n=self.force_n)
+            case "magnet":
+                return On(magnet=self.robot, part=self.part)
+            case "hand":
+                return Close(hand=self.robot, part=self.part, percent=self.percent)
+
+    async def _lift(self, ctx: Context, approach: Approach, grasp: Pose) -> Ended | None:
+        held = Step(still_holding(self.robot, self.tool, self.part), {"lost": "missed"})
+        over = moved(grasp, (0.0, 0.0, self.lift_m))
+        return await approach.straight_to(ctx, over) or await go_through(ctx, [held])
+
+    async def _let_go(self, ctx: Context) -> Ended | None:
+        steps = [
+            Step(letting_go(self.robot, self.tool, ""), _FAILED),
+            Step(Detach(part=self.part), _FAILED),
+        ]
+        unload = Step(SetLoad(robot=self.robot, mass_kg=0.0), _FAILED)
+        return await go_through(ctx, [*steps, unload] if self.mass_kg else steps)
+
+
+def _turned(angle_rad: float) -> Pose:
+    return Pose(xyz=(0.0, 0.0, 0.0), xyzw=(0.0, 0.0, math.sin(angle_rad / 2), math.cos(angle_rad / 2)))

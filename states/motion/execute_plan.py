@@ -1,0 +1,58 @@
+"""motion.ExecutePlan: goes a way that was planned before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from engine.skills import planning
+from engine.skills.planning import KeepOrientation, Margin, Patience, PlannedMotion, PlannerName, PlanningTime
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.free_end import reason_of, stayed_blocked
+from states.motion.free_target import Watch
+from states.motion.target import RobotName
+
+
+class ExecutePlan(State, frozen=True, kw_only=True):
+    """Go the way `plan` that `motion.PlanMotion` found; the arm stands where it begins.
+
+    What changes on the way is avoided as in `motion.MoveFree`, and planner, margin and orientation are for that.
+    `blocked` and `failed` write the `reason`.
+    """
+
+    state_name: ClassVar[str] = "motion.ExecutePlan"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+    outputs: ClassVar[Mapping[str, Any]] = {"reason": str}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"reached": ("reason",)}
+
+    robot: RobotName
+    patience_s: Patience = 60.0
+    watch: Watch = True
+    planner: PlannerName = "fast"
+    time_s: PlanningTime = 1.0
+    margin_m: Margin = 0.0
+    keep_orientation: KeepOrientation | None = None
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context, *, plan: PlannedMotion) -> Outcome:
+        """Send the goal and judge its end."""
+        options = planning.PlanOptions(
+            planner=self.planner,
+            time_s=self.time_s,
+            margin_m=self.margin_m,
+            keep_orientation=self.keep_orientation,
+            speed=plan.speed,
+        )
+        adaptation = planning.Adaptation(watch=self.watch, patience_s=self.patience_s)
+        goal = planning.ExecutePlan(plan=plan, adaptation=adaptation, options=options)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded":
+            return Outcome("reached")
+        what = f"{self.robot} did not go its planned way to the end"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        return Outcome("blocked" if stayed_blocked(end) else "failed", {"reason": reason_of(cause)}, cause)

@@ -1,0 +1,18 @@
+"""Judges how a collision-free motion ended, in the words of its states."""
+
+from __future__ import annotations
+
+from engine.event import Cause
+from engine.skills.planning import FreeMotionResult
+from engine.state import ActionEnd
+
+
+def reason_of(cause: Cause) -> str:
+    """Return what lies below the outermost link of a chain, in one line."""
+    below = [link.message for link in cause.chain()][1:]
+    return " because ".join(below) or cause.message
+
+
+def stayed_blocked(end: ActionEnd[FreeMotionResult]) -> bool:
+    """Tell whether a motion was given up because its way did not get free in time."""
+    return end.status == "aborted" and end.result is not None and bool(end.result.blocked)

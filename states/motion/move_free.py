@@ -1,0 +1,71 @@
+"""motion.MoveFree: moves an arm around whatever stands in its way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from engine.skills import planning
+from engine.skills.motion import PoseMatch, Speed
+from engine.skills.planning import KeepOrientation, Margin, Patience, PlannerName, PlanningTime
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.free_end import reason_of, stayed_blocked
+from states.motion.free_target import GoalJoints, GoalPose, Seed, Watch, free_label, require_one, resolve_free
+from states.motion.target import NO_OFFSET, Offset, RobotName
+
+
+class MoveFree(State, frozen=True, kw_only=True):
+    """Move to `joints` or `pose` along a way that touches nothing of the planning scene and nothing the cameras see.
+
+    What comes into the way is gone around, or waited for: `blocked` after `patience_s` of that. `no_way`
+    when start, goal or limits leave none; then nothing has moved. All but `reached` write the `reason`.
+    """
+
+    state_name: ClassVar[str] = "motion.MoveFree"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "blocked", "no_way", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+    outputs: ClassVar[Mapping[str, Any]] = {"reason": str}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"reached": ("reason",)}
+
+    robot: RobotName
+    joints: GoalJoints = None
+    pose: GoalPose = None
+    offset_m: Offset = NO_OFFSET
+    match: PoseMatch = "pose"
+    speed: Speed = 0.3
+    patience_s: Patience = 60.0
+    watch: Watch = True
+    planner: PlannerName = "fast"
+    time_s: PlanningTime = 1.0
+    margin_m: Margin = 0.0
+    keep_orientation: KeepOrientation | None = None
+    seed: Seed = 0
+
+    def __post_init__(self) -> None:
+        require_one(self.joints, self.pose)
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and judge its end."""
+        options = planning.PlanOptions(
+            planner=self.planner,
+            time_s=self.time_s,
+            seed=self.seed,
+            margin_m=self.margin_m,
+            keep_orientation=self.keep_orientation,
+            speed=self.speed,
+        )
+        target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
+        adaptation = planning.Adaptation(watch=self.watch, patience_s=self.patience_s)
+        goal = planning.MoveFree(target=target, options=options, adaptation=adaptation)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded":
+            return Outcome("reached")
+        what = f"{self.robot} did not reach {free_label(self.joints, self.pose, self.offset_m)}"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        name = "no_way" if end.status == "rejected" else "blocked" if stayed_blocked(end) else "failed"
+        return Outcome(name, {"reason": reason_of(cause)}, cause)

@@ -1,0 +1,71 @@
+"""motion.PlanMotion: finds a way that touches nothing and shows it, without going it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from engine.skills import planning
+from engine.skills.motion import PoseMatch, Speed
+from engine.skills.planning import KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.free_end import reason_of
+from states.motion.free_target import GoalJoints, GoalPose, Seed, free_label, require_one, resolve_free
+from states.motion.target import NO_OFFSET, Offset, RobotName
+
+_REFUSED = ("GoalRejected", "SkillFailed")
+"""The planner's answer; everything else is that it could not be asked."""
+
+
+class PlanMotion(State, frozen=True, kw_only=True):
+    """Find a way to `joints` or `pose` that touches nothing of the planning scene, and show it in the 3D view.
+
+    The arm does not move. Writes the way as `plan`, for `motion.ExecutePlan`; `no_way` writes why there is
+    none as `reason`: what is touched at the start or the goal, or that the search ended without one.
+    """
+
+    state_name: ClassVar[str] = "motion.PlanMotion"
+    outcomes: ClassVar[tuple[str, ...]] = ("planned", "no_way", "failed")
+    success: ClassVar[tuple[str, ...]] = ("planned",)
+    outputs: ClassVar[Mapping[str, Any]] = {"plan": PlannedMotion, "reason": str}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "planned": ("reason",),
+        "no_way": ("plan",),
+        "failed": ("plan",),
+    }
+
+    robot: RobotName
+    joints: GoalJoints = None
+    pose: GoalPose = None
+    offset_m: Offset = NO_OFFSET
+    match: PoseMatch = "pose"
+    speed: Speed = 0.3
+    planner: PlannerName = "fast"
+    time_s: PlanningTime = 1.0
+    margin_m: Margin = 0.0
+    keep_orientation: KeepOrientation | None = None
+    seed: Seed = 0
+
+    def __post_init__(self) -> None:
+        require_one(self.joints, self.pose)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the planner and judge its answer."""
+        options = planning.PlanOptions(
+            planner=self.planner,
+            time_s=self.time_s,
+            seed=self.seed,
+            margin_m=self.margin_m,
+            keep_orientation=self.keep_orientation,
+            speed=self.speed,
+        )
+        target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
+        goal = planning.PlanMotion(target=target, options=options)
+        end = await ctx.perform(goal, to=self.robot)
+        if end.status == "succeeded" and end.result is not None:
+            return Outcome("planned", {"plan": end.result})
+        what = f"no way of {self.robot} to {free_label(self.joints, self.pose, self.offset_m)} was planned"
+        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        refused = end.cause is not None and end.cause.kind in _REFUSED
+        return Outcome("no_way" if refused else "failed", {"reason": reason_of(cause)}, cause)

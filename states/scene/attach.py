@@ -1,0 +1,34 @@
+"""scene.Attach: lets a part of the planning scene move along with an arm."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from engine.skills.planning_scene import AttachPart
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.motion.target import RobotName
+from states.scene.naming import CELL, PartName
+
+
+class Attach(State, frozen=True, kw_only=True):
+    """Plan with a part as with a piece of the arm that holds it, from where it is relative to the tool now.
+
+    It may touch the tool, and what it lies on until it is lifted.
+    """
+
+    state_name: ClassVar[str] = "scene.Attach"
+    outcomes: ClassVar[tuple[str, ...]] = ("attached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("attached",)
+
+    part: PartName
+    robot: RobotName
+    link: Annotated[str, Meta(description="The link that holds it; the tool's by default")] = ""
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the cell."""
+        request = AttachPart(part=self.part, robot=self.robot, link=self.link)
+        what = f"part {self.part} was not attached to {self.robot}"
+        return await asked(ctx, request, to=CELL, done="attached", what=what, kind=self.state_name)

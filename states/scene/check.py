@@ -1,0 +1,60 @@
+"""scene.Check: tells what an arm touches, or would touch, and how near it is to the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from msgspec import Meta
+
+from engine.cause import cause_of, under
+from engine.errors import SkillFailed
+from engine.event import Cause
+from engine.skills.planning import Margin
+from engine.skills.planning_scene import CheckCollision, CollisionReport
+from engine.state import Context, Outcome, State
+from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
+from states.scene.naming import CELL
+
+
+class Check(State, frozen=True, kw_only=True):
+    """Ask what an arm touches where it stands, or at `joints`: `free` when nothing is nearer than `margin_m`.
+
+    Writes the distance to what is nearest, and the pairs that touch as `first with second`.
+    """
+
+    state_name: ClassVar[str] = "scene.Check"
+    outcomes: ClassVar[tuple[str, ...]] = ("free", "touching", "failed")
+    success: ClassVar[tuple[str, ...]] = ("free",)
+    outputs: ClassVar[Mapping[str, Any]] = {"distance_m": float, "touching": list[str]}
+    unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("distance_m", "touching")}
+
+    robot: RobotName
+    joints: Annotated[
+        JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`; as it stands by default")
+    ] = None
+    margin_m: Margin = 0.0
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the cell and judge its report."""
+        joints = await resolve_joints(ctx, self.joints) if self.joints is not None else ()
+        request = CheckCollision(robot=self.robot, joints=joints)
+        try:
+            report = await ctx.call(request, to=CELL)
+        except SkillFailed as error:
+            what = f"what {self.robot} touches was not found out"
+            return Outcome("failed", cause=under(what, cause_of(error), where=ctx.path, kind=self.state_name))
+        pairs = [f"{pair.first} with {pair.second}" for pair in report.touching]
+        outputs: dict[str, object] = {"distance_m": report.distance_m, "touching": pairs}
+        if not pairs and report.distance_m >= self.margin_m:
+            return Outcome("free", outputs)
+        because = Cause(message=self._words(report, pairs), where=f"{CELL}/{request.skill_name()}")
+        posture = f" at {joints_label(self.joints)}" if self.joints is not None else ""
+        message = f"{self.robot} is not free{posture}"
+        return Outcome("touching", outputs, under(message, because, where=ctx.path, kind=self.state_name))
+
+    def _words(self, report: CollisionReport, pairs: list[str]) -> str:
+        if pairs:
+            return f"{', '.join(pairs)} touch"
+        first, second = report.nearest
+        return f"{first} is {report.distance_m * 1e3:.1f} mm from {second}, {self.margin_m * 1e3:.1f} mm are asked for"

@@ -1,0 +1,25 @@
+"""scene.Detach: lets a part of the planning scene stay where it is."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from engine.skills.planning_scene import DetachPart
+from engine.state import Context, Outcome, State
+from states.asked import asked
+from states.scene.naming import CELL, PartName
+
+
+class Detach(State, frozen=True, kw_only=True):
+    """Plan no more with a part as held: it stays in the scene where it is. One that nobody holds is no failure."""
+
+    state_name: ClassVar[str] = "scene.Detach"
+    outcomes: ClassVar[tuple[str, ...]] = ("detached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("detached",)
+
+    part: PartName
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Ask the cell."""
+        what = f"part {self.part} was not detached"
+        return await asked(ctx, DetachPart(part=self.part), to=CELL, done="detached", what=what, kind=self.state_name)

@@ -1,0 +1,97 @@
+"""Intrusions are drawn into the way and outside of the minimum distance, and a motion that does not look out is hit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.intrusion_drawing import STEP_S, Intrusion, IntrusionDrawer, RecordedWay
+from benchmarks.intrusion_run import Ended, intruded_cell
+from benchmarks.intrusions import CELL
+from engine.clock import run_virtual
+from engine.document.cell import load_cell
+from engine.skills.planning import MotionTarget
+from robots.sim.cell_model import CellModel, build_cell
+from robots.sim.cell_scene import scene_of
+from robots.sim.commands import MoveHand
+from robots.sim.simulation import Simulation
+from robots.sim.snapshot import Snapshot
+
+DOCUMENT = load_cell(CELL)
+RIGHT = (-0.567, 0.18, 0.13, 0.0, 1.26, -0.567)
+LEFT = (0.567, 0.18, 0.13, 0.0, 1.26, 0.567)
+STOPPING_S = 0.5
+
+
+@pytest.fixture(scope="module", name="cell")
+def _cell() -> CellModel:
+    return build_cell(scene_of(DOCUMENT.document))
+
+
+def _way(duration_s: float = 3.0) -> RecordedWay:
+    s = np.linspace(0.0, 1.0, round(duration_s / STEP_S) + 1)[:, None]
+    share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+    return RecordedWay(start=RIGHT, goal=LEFT, joints=np.array(RIGHT) + share * (np.array(LEFT) - np.array(RIGHT)))
+
+
+def _drawn(cell: CellModel, *, count: int, seed: int = 0) -> list[Intrusion]:
+    drawer, random = IntrusionDrawer(cell, stopping_s=STOPPING_S), np.random.default_rng(seed)
+    return [drawer.draw(_way(), random) for _ in range(count)]
+
+
+def test_a_seed_draws_the_same_again_and_another_seed_others(cell: CellModel) -> None:
+    first = _drawn(cell, count=2)
+    assert _drawn(cell, count=2) == first
+    assert _drawn(cell, count=2, seed=1) != first
+
+
+def test_drawn_hands_get_into_the_way_but_not_to_where_the_arm_is_before_it_can_have_stopped(cell: CellModel) -> None:
+    """In the physics: an arm that is put where it would be until then is not touched, one farther on is."""
+    way = _way()
+    for intrusion in _drawn(cell, count=2):
+        stopped = round((intrusion.noticeable_s + STOPPING_S) / STEP_S)
+        assert not _touched(cell, intrusion, way, until_row=stopped)
+        assert intrusion.after_s < intrusion.noticeable_s < way.duration_s
+        assert 0.25 <= intrusion.speed_m_s <= 1.2
+
+
+def _touched(cell: CellModel, intrusion: Intrusion, way: RecordedWay, *, until_row: int) -> bool:
+    """Return whether the reach touches an arm that is carried along a way and left there."""
+    simulation = Simulation(cell)
+    positions, (arm,) = simulation._qpos, cell.arms  # pyright: ignore[reportPrivateUsage]
+    reach = MoveHand(person=intrusion.person, hand_m=intrusion.hand_m, speed_m_s=intrusion.speed_m_s)
+    sent = round(intrusion.after_s / STEP_S)
+    steps = round(STEP_S / simulation.step_s)
+    last = min(until_row, len(way.joints) - 1)
+    for row in range(sent, last + round(2.0 / STEP_S)):
+        if row == sent:
+            simulation.apply(reach)
+        for _ in range(steps):
+            positions[arm.qpos] = way.joints[min(row, last)]
+            simulation.step()
+    values = simulation.layout.new_array()
+    simulation.write_snapshot(values)
+    return Snapshot(simulation.layout, values).person(intrusion.person).count.contacts > 0
+
+
+def test_the_control_group_drives_into_the_hand() -> None:
+    """Over the middle between the pedestals, where the magnet passes."""
+    in_the_way = Intrusion(
+        person="visitor",
+        after_s=0.1,
+        hand_m=(1.25, 0.25, 1.12),
+        speed_m_s=1.2,
+        stay_s=None,
+        near="arm/magnet_base",
+        noticeable_s=0.6,
+    )
+
+    async def main() -> Ended:
+        async with intruded_cell(DOCUMENT, speed=0.3) as cell:
+            await cell.free(MotionTarget(joints=RIGHT))
+            return await cell.intruded(_way(), in_the_way, adapts=False)
+
+    ended = run_virtual(main())
+    assert ended.contacts > 0
+    assert ended.in_motion == ended.contacts
+    assert any(own.startswith("visitor/") and other.startswith("arm/") for own, other in ended.pairs)

@@ -1,0 +1,56 @@
+"""Pages are told when a document changes on disk."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+
+import websockets.asyncio.client
+
+from editor_web.live_documents import DocumentWatch
+from engine.editing import Documents, hash_of
+from tests.editor_web.conftest import Serve
+from tests.editor_web.editing_client import SHIFT, SHIFT_ID
+from tests.editor_web.fake_backend import FakeBackend
+
+
+def test_a_look_tells_what_has_changed_since_the_last_one(tmp_path: Path) -> None:
+    documents = Documents(tmp_path, {})
+    watch = DocumentWatch(documents, changed=lambda _: None, wanted=lambda: True)
+    documents.create(SHIFT_ID)
+    assert watch.look() == {}
+    assert watch.look() == {}
+    (tmp_path / SHIFT_ID).write_text(SHIFT)
+    (tmp_path / "behaviors/other.yaml").write_text(SHIFT + "# other\n")
+    assert watch.look() == {SHIFT_ID: hash_of(SHIFT), "behaviors/other.yaml": hash_of(SHIFT + "# other\n")}
+    documents.delete(SHIFT_ID)
+    assert watch.look() == {SHIFT_ID: None}
+
+
+async def test_an_open_page_hears_of_a_change_on_disk(serve: Serve, tmp_path: Path) -> None:
+    documents = Documents(tmp_path / "project", {})
+    documents.create(SHIFT_ID)
+    async with serve(FakeBackend(step_s=0.02, documents=documents)) as served:
+        address = f"ws://{served.running.url.removeprefix('http://')}api/v1/live"
+        headers = {**served.cookie, "Origin": served.origin}
+        async with (
+            asyncio.timeout(8),
+            websockets.asyncio.client.connect(address, additional_headers=headers, proxy=None) as page,
+        ):
+            frame = json.loads(await page.recv())
+            writing = asyncio.create_task(_write_again_and_again(tmp_path / "project" / SHIFT_ID))
+            while frame["k"] != "documents":
+                frame = json.loads(await page.recv())
+            writing.cancel()
+            await asyncio.wait({writing})
+    assert frame["changed"].keys() == {SHIFT_ID}
+
+
+async def _write_again_and_again(file: Path) -> None:
+    """The first look of the server is its base: what changes before it is not told."""
+    number = 0
+    while True:
+        number += 1
+        await asyncio.to_thread(file.write_text, f"{SHIFT}# {number}\n")
+        await asyncio.sleep(0.1)

@@ -1,0 +1,173 @@
+"""Planned ways in a real browser: what is asked of the operator, what is in the way, and what the 3D view shows."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, FrameLocator, Locator, Page, expect
+
+from engine.bus import SkillBus
+from engine.supervision import Supervision
+from tests.editor_web.browsing import DESK, PHONE, Scheme, Size, opened_page, require_accessible, switch
+from tests.editor_web.fake_planner import CONFIRMED, CONFIRMED_ID, FakePlanner, Plan
+from tests.editor_web.workshop import Workshop
+
+ASKED = Supervision(autonomy="low", demand_operator=True)
+GREEN, VIOLET, TABLE = (22, 163, 74), (68, 1, 84), (228, 224, 223)
+PICTURE_LIMIT_MS = 60_000
+_read: Any = import_module("imageio.v3").imread
+
+
+class Shop(Workshop):
+    """A workshop with an arm that plans."""
+
+    def __init__(self, *, host: str, project: Path, cell_view: bool = False) -> None:
+        self._planner: FakePlanner | None = None
+        super().__init__(
+            host=host, project=project, states={Plan.state_name: Plan}, furnish=self._settle, cell_view=cell_view
+        )
+        (project / CONFIRMED_ID).write_text(CONFIRMED, encoding="utf-8")
+
+    @property
+    def planner(self) -> FakePlanner:
+        """The arm's; use it with `on_loop`."""
+        assert self._planner is not None
+        return self._planner
+
+    def _settle(self, bus: SkillBus) -> None:
+        self._planner = FakePlanner(bus)
+
+
+@pytest.fixture
+def shop(tmp_path: Path, loopback: str) -> Generator[Shop]:
+    """Without a 3D view."""
+    with Shop(host=loopback, project=tmp_path) as opened:
+        yield opened
+
+
+def asked(page: Page) -> Locator:
+    """What the run asks."""
+    return page.get_by_role("region", name="The run asks")
+
+
+def blocked(page: Page) -> Locator:
+    """The arms that wait."""
+    return page.get_by_role("list", name="Arms whose way is blocked")
+
+
+@contextmanager
+def at_confirmed(browser: Browser, shop: Shop, *, size: Size = DESK, scheme: Scheme = "light") -> Generator[Page]:
+    """The page of the behavior that plans."""
+    with opened_page(browser, shop.running, f"/behaviors/{CONFIRMED_ID}", size=size, scheme=scheme) as page:
+        expect(page.get_by_role("heading", name="confirmed")).to_be_visible()
+        yield page
+
+
+@pytest.mark.parametrize(
+    ("answer", "end"), [("Agree: planned", "finished: good"), ("Instead: no_way", "finished: bad")]
+)
+def test_a_question_about_a_way_says_what_it_is_and_that_it_can_be_seen(
+    browser: Browser, shop: Shop, answer: str, end: str
+) -> None:
+    shop.start(CONFIRMED_ID, supervision=ASKED)
+    with at_confirmed(browser, shop) as page:
+        question = asked(page).get_by_role("listitem", name="Question of root/plan")
+        expect(question).to_contain_text("wants to end with planned")
+        expect(question).to_contain_text(
+            re.compile(r"left: 3\.25 s for 1\.\d\d m of the tool's path, found by RRTConnect in 0\.12 s")
+        )
+        expect(question).to_contain_text("shown in the 3D view")
+        shop.on_loop(lambda: shop.planner.show("none"))
+        expect(question).to_contain_text("not in the 3D view any more")
+        question.get_by_role("button", name=answer).click()
+        expect(page.locator(".page-head .badge")).to_have_text(end)
+
+
+def test_an_arm_that_waits_for_a_free_way_says_for_what_and_for_how_long(browser: Browser, shop: Shop) -> None:
+    with at_confirmed(browser, shop) as page:
+        shop.on_loop(lambda: shop.planner.show("moving"))
+        expect(blocked(page)).to_have_count(0)
+        shop.on_loop(lambda: shop.planner.show("blocked", reason="left/fore would touch anna/hand"))
+        expect(blocked(page)).to_contain_text("left waits: left/fore would touch anna/hand, since 0 s")
+        # Another reason is the same wait.
+        shop.on_loop(lambda: shop.planner.show("blocked", reason="left/fore would touch anna/fore"))
+        expect(blocked(page)).to_contain_text("touch anna/fore, since 1 s")
+        page.reload()
+        expect(blocked(page)).to_contain_text("touch anna/fore, since")
+        expect(page.get_by_role("timer")).not_to_have_text(re.compile("^[01] s$"))
+        shop.on_loop(lambda: shop.planner.show("moving"))
+        expect(blocked(page)).to_have_count(0)
+
+
+def view_of(page: Page) -> FrameLocator:
+    """The 3D view, once something is drawn."""
+    view = page.frame_locator("iframe[title='3D view of the cell']")
+    expect(view.locator("canvas[data-engine]")).to_be_visible(timeout=20_000)
+    return view
+
+
+def pixels(page: Page, colour: tuple[int, int, int]) -> int:
+    """How many pixels of the 3D view are of about this colour."""
+    shot = page.locator("iframe[title='3D view of the cell']").screenshot(timeout=PICTURE_LIMIT_MS)
+    picture = np.asarray(_read(io.BytesIO(shot)))[..., :3].astype(int)
+    return int((np.abs(picture - colour).max(axis=-1) < 30).sum())
+
+
+def wait_for(page: Page, condition: Callable[[], bool]) -> None:
+    """Let the page draw until it looks so."""
+    for _ in range(40):
+        if condition():
+            return
+        page.wait_for_timeout(250)
+    assert condition()
+
+
+def test_what_the_view_shows_is_chosen_by_keyboard_and_kept(browser: Browser, tmp_path: Path, loopback: str) -> None:
+    """Seen in the picture itself: voxels until they are hidden, the line of a way until it is over."""
+    with (
+        Shop(host=loopback, project=tmp_path, cell_view=True) as shop,
+        opened_page(browser, shop.running, size=(640, 480)) as page,
+    ):
+        shop.on_loop(lambda: shop.planner.show("moving"))
+        view_of(page)
+        wait_for(page, lambda: pixels(page, VIOLET) > 50 and pixels(page, GREEN) > 50)
+        page.get_by_role("button", name="Show", exact=True).press("Enter")
+        menu = page.get_by_role("dialog", name="Show")
+        switch(menu.get_by_label("Voxels"), on=False)
+        page.keyboard.press("Escape")
+        expect(menu).to_have_count(0)
+        expect(page.get_by_role("button", name="Show", exact=True)).to_be_focused()
+        wait_for(page, lambda: pixels(page, VIOLET) == 0)
+        page.reload()
+        shop.on_loop(lambda: shop.planner.show("none"))
+        view_of(page)
+        wait_for(page, lambda: pixels(page, TABLE) > 500)
+        assert (pixels(page, VIOLET), pixels(page, GREEN)) == (0, 0)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [DESK, PHONE])
+def test_questions_blocked_ways_and_the_menu_are_accessible_and_fit(
+    browser: Browser, tmp_path: Path, loopback: str, size: Size, scheme: Scheme
+) -> None:
+    with Shop(host=loopback, project=tmp_path, cell_view=True) as shop:
+        shop.start(CONFIRMED_ID, supervision=ASKED)
+        with at_confirmed(browser, shop, size=size, scheme=scheme) as page:
+            expect(asked(page)).to_contain_text("shown in the 3D view")
+            shop.on_loop(lambda: shop.planner.show("blocked", reason="left/fore would touch anna/hand"))
+            expect(blocked(page)).to_be_visible()
+            if size == PHONE:
+                page.get_by_role("tab", name="Cell").click()
+            page.get_by_role("button", name="Show", exact=True).click()
+            expect(page.get_by_role("dialog", name="Show")).to_be_visible()
+            assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+            assert page.evaluate("() => document.documentElement.scrollHeight") <= size[1]
+            require_accessible(page, f"a planned way, {scheme} {size}")

@@ -1,0 +1,107 @@
+"""Random edits: such that a model knows the meaning of, and such of every kind, sensible or not."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+from engine.editing.outline import Outline, Spot
+from tests.engine.editing.layouts import Plain
+
+MACHINES = ("machine", "priority")
+NAMED = (*MACHINES, "concurrency")
+VALUES = (1, 2.5, "word", "${k}", [1, "a"], {"deep": {"er": None}}, True)
+DESCRIPTIONS = ("One.", "a: b # c", "two\nlines", "  x ")
+
+
+@st.composite
+def simple_edits(draw: st.DrawFn, data: Plain) -> Plain | None:
+    """Draw one of the edits that `model_of` knows; None where there is nothing to edit."""
+    outline = Outline(data)
+    spots = list(outline.spots.values())
+    kind = draw(st.sampled_from(["rename", "remove", "wire", "unwire", "initial", "give", "describe"]))
+    if kind in ("rename", "remove"):
+        spot = _one(draw, [s for s in spots if s.parent is not None and s.parent.kind in NAMED])
+        if spot is None or spot.parent is None or "other" in spot.parent.states:
+            return None
+        named = {"edit": "rename_node", "path": spot.path, "name": "other"}
+        return named if kind == "rename" else {"edit": "remove_nodes", "paths": [spot.path]}
+    if kind in ("wire", "unwire"):
+        spot = _one(draw, [s for s in spots if s.parent is not None and s.parent.kind in MACHINES])
+        return None if spot is None else _wiring(draw, spot, clear=kind == "unwire")
+    if kind == "initial":
+        spot = _one(draw, [s for s in spots if s.kind in MACHINES and outline.children(s)])
+        if spot is None:
+            return None
+        return {"edit": "set_initial", "path": spot.path, "child": draw(st.sampled_from(list(spot.states)))}
+    spot = _one(draw, [s for s in spots if "state" in s.data])
+    if spot is None:
+        return None
+    if kind == "give":
+        name = draw(st.sampled_from(["value", "text", "fresh"]))
+        return {"edit": "set_parameter", "path": spot.path, "name": name, "value": draw(st.sampled_from(VALUES))}
+    said = draw(st.sampled_from(DESCRIPTIONS))
+    return {"edit": "set_field", "path": spot.path, "field": "description", "value": said}
+
+
+def _wiring(draw: st.DrawFn, spot: Spot, *, clear: bool) -> Plain | None:
+    wired: Any = spot.data.get("transitions", {})
+    if not clear:
+        target = draw(st.sampled_from(["x", "y", "s0"]))
+        return {"edit": "set_transition", "path": spot.path, "outcome": "done", "target": target}
+    if not wired:
+        return None
+    return {"edit": "clear_transition", "path": spot.path, "outcome": draw(st.sampled_from(sorted(wired)))}
+
+
+def _one(draw: st.DrawFn, spots: list[Spot]) -> Spot | None:
+    return draw(st.sampled_from(spots)) if spots else None
+
+
+_NAMES = st.sampled_from(["fresh", "s0", "s1", "x", "b0", "child", "a b", ""])
+_KINDS = st.sampled_from(
+    ["state", "behavior", "machine", "concurrency", "tree", "foreach", "sequence", "retry", "inverter", "zzz"]
+)
+_ODD = st.sampled_from(
+    [None, 1, 0.5, "text", "${k}", [], ["s0"], {}, {"after": 1, "to": "x"}, {"a": "b"}, [{"x": {"b0": "a"}}]]
+)
+_FIELDS = st.sampled_from(
+    ["description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
+     "notes", "state", "name", "initial", "conditions", "otherwise", "userdata", "items", "times", "as", "next",
+     "collect", "memory", "policy", "order", "child", "states", "colour"]
+)  # fmt: skip
+_GROUPS = st.sampled_from(["machine", "concurrency", "sequence", "selector", "parallel"])
+_CLIPBOARDS = st.sampled_from(["a: {state: data.Put}", "x: 1", ": :", "a: {tree: {sequence: [{state: data.Put}]}}"])
+_KEYS = st.sampled_from(["name", "outcomes", "userdata", "cell", "root"])
+
+
+def any_edits(paths: list[str]) -> st.SearchStrategy[Plain]:
+    """Draw an edit of any kind, sensible or not."""
+    path = st.sampled_from([*paths, "root/nobody", ""])
+    some = st.lists(path, max_size=3)
+    index = st.none() | st.integers(-1, 5)
+    point = st.none() | st.tuples(st.integers(-9, 900), st.floats())
+    runs = st.sampled_from(["data.Put", "gone.yaml", ""])
+    fields: dict[str, dict[str, st.SearchStrategy[Any]]] = {
+        "add_node": {
+            "parent": path, "kind": _KINDS, "runs": runs, "index": index, "position": point, "name": st.none() | _NAMES
+        },
+        "remove_nodes": {"paths": some},
+        "rename_node": {"path": path, "name": _NAMES},
+        "move_nodes": {"paths": some, "parent": path, "index": index},
+        "set_transition": {"path": path, "outcome": _NAMES, "target": _NAMES},
+        "clear_transition": {"path": path, "outcome": _NAMES},
+        "set_initial": {"path": path, "child": _NAMES},
+        "set_parameter": {"path": path, "name": _NAMES, "value": _ODD},
+        "clear_parameter": {"path": path, "name": _NAMES},
+        "set_field": {"path": path, "field": _FIELDS, "value": _ODD},
+        "set_positions": {"positions": st.dictionaries(path, point, max_size=3)},
+        "group": {"paths": some, "kind": _GROUPS},
+        "ungroup": {"path": path},
+        "duplicate": {"paths": some},
+        "paste": {"parent": path, "yaml": _CLIPBOARDS},
+        "auto_connect": {"paths": some},
+        "set_document": {"changes": st.dictionaries(_KEYS, _ODD, max_size=2)},
+    }  # fmt: skip
+    return st.one_of([st.fixed_dictionaries({"edit": st.just(name), **each}) for name, each in fields.items()])

@@ -1,0 +1,166 @@
+"""Tests of the camera process: it sees what is there, dies without harm, and garbage on the wire harms nobody."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import signal
+import socket
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from engine.cell import OpenCell
+from engine.errors import CellError, RobotError
+from engine.messages import Pose
+from engine.sensing import OccupancyGrid
+from robots.sim.framing import framed
+from robots.sim.scene import ArmPlacement
+from robots.sim.world import SimWorld
+from robots.vision.known import Known
+from robots.vision.real_time_watch import RealTimeWatch
+from robots.vision.worker import CameraProcess, Wire
+from tests.robots.vision.cell_document import watched
+from tests.robots.vision.watched_cell import block, look, scene, sight, voxels
+
+WHAT = scene(block((0.5, 0.0, 0.3)))
+
+
+@pytest.fixture(autouse=True)
+def by_rays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make images without graphics, which every machine can."""
+    monkeypatch.setenv("FLEXCELL_DEPTH", "rays")
+
+
+def alive(pid: int) -> bool:
+    """Return whether a process is there."""
+    return Path(f"/proc/{pid}").exists()
+
+
+def test_what_the_process_sees_is_what_is_there() -> None:
+    async def main() -> tuple[str, int, int]:
+        process = CameraProcess()
+        await process.start(sight(scene()))
+        try:
+            empty = await process.ask(look(scene()))
+            process.end()
+            process = CameraProcess()
+            await process.start(sight(WHAT))
+            # The block is a fixture, hence known, until told otherwise.
+            process.know(Known())
+            full = await process.ask(look(WHAT))
+            return process.words, len(voxels(empty.grid)), len(voxels(full.grid))
+        finally:
+            process.end()
+
+    words, empty, full = asyncio.run(main())
+    assert words == "by rays, in smaller images"
+    assert empty == 0
+    assert full > 100
+
+
+def test_a_killed_process_fails_the_order_and_leaves_nothing_behind() -> None:
+    async def main() -> int:
+        process = CameraProcess()
+        await process.start(sight(WHAT))
+        pid = process.pid
+        os.kill(pid, signal.SIGSTOP)
+        answer = process.ask(look(WHAT))
+        os.kill(pid, signal.SIGKILL)
+        with pytest.raises(RobotError, match="the camera process was ended by SIGKILL"):
+            await answer
+        with pytest.raises(RobotError, match="SIGKILL"):
+            process.ask(look(WHAT))
+        process.end()
+        assert process.pid == 0
+        return pid
+
+    assert not alive(asyncio.run(main()))
+
+
+def test_a_cell_that_cannot_be_built_is_refused_in_words() -> None:
+    async def main() -> None:
+        process = CameraProcess()
+        nobody = ArmPlacement(name="arm", model="nobody", base=Pose(xyz=(0.0, 0.0, 0.0)))
+        with pytest.raises(CellError, match="nobody"):
+            await process.start(sight(scene(arms=(nobody,))))
+        assert process.pid == 0
+
+    asyncio.run(main())
+
+
+def test_an_order_that_makes_no_sense_is_refused_and_the_next_one_is_carried_out() -> None:
+    async def main() -> int:
+        process = CameraProcess()
+        await process.start(sight(WHAT))
+        try:
+            good = look(WHAT)
+            for bad in (
+                msgspec.structs.replace(good, state=b"123"),
+                msgspec.structs.replace(good, state=b""),
+                msgspec.structs.replace(good, state=good.state[:80]),
+                msgspec.structs.replace(good, cameras=("nobody",)),
+            ):
+                with pytest.raises(CellError):
+                    await process.ask(bad)
+            return (await process.ask(good)).grid.revision
+        finally:
+            process.end()
+
+    assert asyncio.run(main()) >= 1
+
+
+@pytest.mark.parametrize(
+    "garbage", [b"\xff" * 64, framed(b"\xc1garbage"), framed(b""), framed(msgspec.msgpack.encode({"type": "nobody"}))]
+)
+def test_garbage_from_the_process_loses_it_in_words(garbage: bytes) -> None:
+    async def main() -> None:
+        ours, theirs = socket.socketpair()
+        loop = asyncio.get_running_loop()
+        _, wire = await loop.create_connection(lambda: Wire(lambda: "it is gone"), sock=ours)
+        theirs.sendall(garbage)
+        with pytest.raises(RobotError, match="cannot be read"):
+            await wire.opened
+        theirs.close()
+
+    asyncio.run(main())
+
+
+def test_a_watched_cell_survives_the_death_of_its_camera_process(tmp_path: Path) -> None:
+    async def main() -> None:
+        async with OpenCell(watched(tmp_path)) as cell:
+            assert isinstance(cell.world, SimWorld)
+            (cameras,) = (device for device in cell.world.devices() if isinstance(device, RealTimeWatch))
+            changed = asyncio.Event()
+            cameras.subscribe(changed.set)
+            cameras.require()
+
+            async def until(reason: str) -> None:
+                while not re.fullmatch(reason, cameras.stale_reason):
+                    changed.clear()
+                    await asyncio.wait_for(changed.wait(), 60.0)
+
+            await until("")
+            before, pid = cameras.latest, cameras.pid
+            # One that hangs makes the map old; images that it missed are not made up for.
+            os.kill(pid, signal.SIGSTOP)
+            await until("the newest image is .* old")
+            os.kill(pid, signal.SIGCONT)
+            await until("")
+            assert cameras.pid == pid
+            os.kill(pid, signal.SIGKILL)
+            await until(r"the camera process was ended by SIGKILL \(a new one is started\)")
+            await until("")
+            after = cameras.latest
+            assert cameras.pid not in (0, pid)
+            assert before is not None
+            assert after is not None
+            assert after.revision > before.revision
+            assert after.time_s > before.time_s
+            assert cell.bus.topic("cell/occupancy", OccupancyGrid).count >= 2
+            last = cameras.pid
+        assert not alive(last)
+
+    asyncio.run(main())

@@ -1,0 +1,64 @@
+"""A small cell that cameras watch, for tests: an arm between a pillar and a box that can be put anywhere."""
+
+from __future__ import annotations
+
+import msgspec
+import numpy as np
+
+from engine.document.cell_senses import DepthCamera, OccupancyMap
+from engine.messages import Pose, Vector3
+from engine.sensing import OccupancyGrid
+from robots.port import Array
+from robots.sim.cell_model import build_cell
+from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
+from robots.sim.simulation import Simulation
+from robots.vision.camera import CameraSpec, camera_of
+from robots.vision.sight import Look, Sight, state_bytes
+from robots.vision.voxel_box import VoxelBox, occupied_centres, voxel_box
+
+FLOOR = FixtureBody(name="floor", shape="box", size_m=(4.0, 4.0, 0.04), pose=Pose(xyz=(0.0, 0.0, -0.02)))
+PANDA = ArmPlacement(name="arm", model="panda", base=Pose(xyz=(0.0, 0.0, 0.0)))
+BOX = voxel_box(OccupancyMap(center_m=(0.5, 0.0, 0.5), size_m=(1.0, 1.2, 1.0)))
+FRONT = DepthCamera(at=(2.0, 0.0, 1.6), look_at=(0.4, 0.0, 0.3))
+SIDE = DepthCamera(at=(0.5, 2.0, 1.6), look_at=(0.4, 0.0, 0.3))
+
+
+def cameras(**named: DepthCamera) -> tuple[CameraSpec, ...]:
+    """Return the numbers of cameras."""
+    return tuple(camera_of(name, camera) for name, camera in named.items())
+
+
+def block(centre: Vector3, size_m: Vector3 = (0.1, 0.1, 0.1), *, name: str = "block") -> FixtureBody:
+    """Return a block for the physics that nobody has told the map of."""
+    return FixtureBody(name=name, shape="box", size_m=size_m, pose=Pose(xyz=centre))
+
+
+def scene(*unknown: FixtureBody, arms: tuple[ArmPlacement, ...] = (), parts: tuple[PartBody, ...] = ()) -> Scene:
+    """Return a floor, arms, parts and blocks, without weight."""
+    return Scene(step_s=0.002, gravity=False, arms=arms, fixtures=(FLOOR, *unknown), parts=parts)
+
+
+def sight(what: Scene, *seen_by: CameraSpec, box: VoxelBox = BOX) -> Sight:
+    """Return what is looked at."""
+    return Sight(scene=what, cameras=seen_by or cameras(front=FRONT), box=box)
+
+
+def look(what: Scene, names: tuple[str, ...] = ("front",), *, joints: Array | None = None) -> Look:
+    """Return the order to look at a scene as it begins, the first arm's joints changed."""
+    cell = build_cell(what)
+    simulation = Simulation(cell)
+    if joints is not None:
+        simulation._qpos[cell.arms[0].qpos] = joints  # pyright: ignore[reportPrivateUsage]
+    image = np.zeros(simulation.image_layout.size)
+    simulation.write_image(image)
+    return Look(time_s=0.0, state=state_bytes(image), cameras=names, wanted=names)
+
+
+def voxels(grid: OccupancyGrid) -> Array:
+    """Return the centres of the occupied voxels."""
+    return occupied_centres(grid)
+
+
+def renamed(what: Scene, **changes: object) -> Scene:
+    """Return a scene with some fields changed."""
+    return msgspec.structs.replace(what, **changes)
