@@ -126,6 +126,13 @@ class TimedPlanners(Planners):
         self.checked.append((began_s, time.perf_counter()))
         return answer
 
+    async def confirm_way(self, request: WayRequest) -> WayCheck:
+        """Return where a new way is blocked."""
+        began_s = time.perf_counter()
+        answer = await super().confirm_way(request)
+        self.checked.append((began_s, time.perf_counter()))
+        return answer
+
     async def plan(self, request: PlanRequest) -> PlanAnswer:
         """Return a way."""
         began_s = time.perf_counter()

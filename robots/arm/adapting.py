@@ -300,7 +300,7 @@ class AdaptingMotion:
         if isinstance(found, Refusal):
             return f"; {found.message}"
         # What has changed since the search began is seen by this look only.
-        trouble = await self._lookout.ahead(found, from_s=0.0)
+        trouble = await self._lookout.along(found)
         if trouble is not None:
             return f"; on another way {trouble.reason}"
         if self._held or self._cancelled:

@@ -149,6 +149,7 @@ class FreeMotions:
                 raise found.error()
             if not adaptation.watch:
                 return found
+            # Asked of who watches, so that he is there when the arm moves.
             check = await finder.check(found, from_s=0.0, margin_m=finder.margin_m)
             if check.blocked_at_s is None:
                 return found

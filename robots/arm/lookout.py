@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Coroutine
 from dataclasses import dataclass
 
 from engine.errors import FlexcellError
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.way_finder import Leg, WayFinder, in_words
+from robots.planning.request import WayCheck
 from robots.workspace.claims import spoken
 from robots.workspace.workspace import Workspace
 
@@ -48,12 +50,18 @@ class Lookout:
 
     async def ahead(self, leg: Leg, *, from_s: float) -> Trouble | None:
         """Return why the rest of a way that is being gone must not be; None where it is free."""
+        return await self._trouble(self._finder.check(leg, from_s=from_s, margin_m=self._finder.margin_m))
+
+    async def along(self, leg: Leg) -> Trouble | None:
+        """Return why a way that was found just now must not be gone; None where it is free."""
+        return await self._trouble(self._finder.confirm(leg))
+
+    async def _trouble(self, looking: Coroutine[object, object, WayCheck]) -> Trouble | None:
         if self.blind:
+            looking.close()
             return Trouble(reason=self.blind)
         try:
-            check = await asyncio.wait_for(
-                self._finder.check(leg, from_s=from_s, margin_m=self._finder.margin_m), _CHECK_S
-            )
+            check = await asyncio.wait_for(looking, _CHECK_S)
         except TimeoutError:
             return Trouble(reason=f"its way was not looked at within {_CHECK_S:g} s")
         except FlexcellError as error:

@@ -90,7 +90,11 @@ class WayFinder:
 
     async def check(self, leg: Leg, *, from_s: float, margin_m: float) -> WayCheck:
         """Return where the rest of a way is blocked in the scene as it is now; raises as `find` does."""
-        return await self._check(leg.way, from_s, margin_m)
+        return await self._workspace.planners.check_way(self._seen(leg.way, from_s, margin_m))
+
+    async def confirm(self, leg: Leg) -> WayCheck:
+        """Return where a way that was found just now is blocked in the scene as it is now; raises as `find` does."""
+        return await self._workspace.planners.confirm_way(self._seen(leg.way, 0.0, self.margin_m))
 
     async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
         """Return what is within a distance of the arm standing at `joints` (n,); raises as `find` does."""
@@ -138,17 +142,15 @@ class WayFinder:
             raise RobotError("the planner has not timed its way", where=self.arm, hint="plan again")
         return Leg(plan=answer, way=answer.timed, trajectory=answer.timed.trajectory(), margin_m=margin_m)
 
-    async def _check(self, way: SampledWay, from_s: float, margin_m: float) -> WayCheck:
+    def _seen(self, way: SampledWay, from_s: float, margin_m: float) -> WayRequest:
         workspace = self._workspace
-        return await workspace.planners.check_way(
-            WayRequest(
-                scene=workspace.scene_for(self.arm),
-                arm=self.arm,
-                way=way,
-                from_s=from_s,
-                occupancy=workspace.occupancy,
-                margin_m=margin_m,
-            )
+        return WayRequest(
+            scene=workspace.scene_for(self.arm),
+            arm=self.arm,
+            way=way,
+            from_s=from_s,
+            occupancy=workspace.occupancy,
+            margin_m=margin_m,
         )
 
 

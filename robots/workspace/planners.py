@@ -62,6 +62,10 @@ class Planners:
         """Return where a way is blocked."""
         return await self._service("watch").check_way(request)
 
+    async def confirm_way(self, request: WayRequest) -> WayCheck:
+        """Return where a way that was planned just now is blocked: who planned it knows it and answers sooner."""
+        return await self._service("plans").check_way(request)
+
     async def look(self, request: LookRequest) -> CollisionReport:
         """Return what an arm touches."""
         return await self._service("watch").look(request)
