@@ -16,7 +16,6 @@ class Tally:
     stops: int = 0
     replans: int = 0
     reused: int = 0
-    waited_s: float = 0.0
     blocked: str = ""
 
 

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Protocol, Self
 
 import msgspec
@@ -17,6 +13,7 @@ import msgspec
 from engine.clock import Clock
 from engine.errors import CellError, RobotError
 from engine.skills.planning_scene import CollisionReport
+from robots.child_process import how_it_ended, start_child
 from robots.planning.planner import ScenePlanner
 from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
 from robots.planning.worker_messages import (
@@ -35,7 +32,7 @@ from robots.planning.worker_messages import (
 from robots.sim.framing import FrameReader, framed
 
 _START = "from robots.planning.worker_main import main; main()"
-_ROOT = str(Path(__file__).resolve().parents[2])
+_WHAT = "the planning process"
 # The first start on a machine compiles everything.
 _START_S = 300.0
 _OVERDUE_S = 5.0
@@ -228,7 +225,7 @@ class PlanningWorker:
     async def _start(self) -> _Wire:
         ours, theirs = socket.socketpair()
         try:
-            self._process = _started(theirs.fileno())
+            self._process = start_child(_START, (theirs.fileno(),), what=_WHAT)
             theirs.close()
             _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._how_it_ended), sock=ours)
         except BaseException:
@@ -256,16 +253,7 @@ class PlanningWorker:
             process.wait()
 
     def _how_it_ended(self) -> str:
-        """Say why the process is gone, once its socket has closed."""
-        if self._process is None:
-            return "the planning process was ended"
-        try:
-            code = self._process.wait(timeout=1.0)
-        except subprocess.TimeoutExpired:
-            return "the planning process closed its connection"
-        if code < 0:
-            return f"the planning process was ended by {signal.Signals(-code).name}"
-        return f"the planning process ended with exit code {code}"
+        return how_it_ended(self._process, what=_WHAT)
 
 
 def plan_service(clock: Clock) -> InlinePlanner | PlanningWorker:
@@ -279,7 +267,7 @@ _Answer = Answered | Reported | Failed
 class _Wire(asyncio.Protocol):
     """The client's end of the socket."""
 
-    def __init__(self, how_it_ended: _Reason) -> None:
+    def __init__(self, how_it_ended: Callable[[], str]) -> None:
         self._how_it_ended = how_it_ended
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(FromWorker).decode
@@ -343,22 +331,3 @@ class _Wire(asyncio.Protocol):
 
 def _gone(reason: str) -> RobotError:
     return RobotError(reason, hint="plan again; a new process is started")
-
-
-class _Reason(Protocol):
-    def __call__(self) -> str: ...
-
-
-def _started(descriptor: int) -> subprocess.Popen[bytes]:
-    environment = {
-        **os.environ,
-        # The process must import this very package, wherever this one found it.
-        "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
-        "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
-    }
-    command = [sys.executable, "-P", "-c", _START, str(descriptor)]
-    try:
-        return subprocess.Popen(command, pass_fds=(descriptor,), env=environment, stdin=subprocess.DEVNULL)
-    except OSError as error:
-        raise RobotError(f"the planning process does not start: {error}", where=sys.executable) from error

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import os
-import signal
 import socket
 import subprocess
-import sys
 from collections import deque
 from collections.abc import Callable
-from pathlib import Path
 
 import msgspec
 
 from engine.errors import CellError, RobotError
+from robots.child_process import how_it_ended, start_child
 from robots.port import Array
 from robots.sim.commands import AnyCommand, Restore, Shutdown
 from robots.sim.framing import FrameReader, framed
@@ -26,7 +24,7 @@ from robots.sim.timing import SIZE, Timing, timing_of
 from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
 
 _START = "from robots.sim.process_main import main; main()"
-_ROOT = str(Path(__file__).resolve().parents[2])
+_WHAT = "the world's process"
 _START_S = 30.0
 _END_S = 6.0
 _RESTORE_S = 5.0
@@ -96,7 +94,7 @@ class ProcessHost:
         state_fd, timing_fd = new_shared_file(), new_shared_file()
         descriptors = (theirs.fileno(), state_fd, timing_fd)
         try:
-            self._process = _started(descriptors)
+            self._process = start_child(_START, descriptors, what=_WHAT)
             # Closed before the process can be gone, else its end would not be heard.
             theirs.close()
             loop = asyncio.get_running_loop()
@@ -158,15 +156,7 @@ class ProcessHost:
                 self._process.wait()
 
     def _how_it_ended(self) -> str:
-        """Say why the process is gone, once its socket has closed."""
-        assert self._process is not None
-        try:
-            code = self._process.wait(timeout=1.0)
-        except subprocess.TimeoutExpired:
-            return "the world's process closed its connection"
-        if code < 0:
-            return f"the world's process was ended by {signal.Signals(-code).name}"
-        return f"the world's process ended with exit code {code}"
+        return how_it_ended(self._process, what=_WHAT)
 
     def _opened(self) -> tuple[SnapshotLayout, SharedNumbers]:
         if self._layout is None or self._state is None:
@@ -235,22 +225,6 @@ class _Wire(asyncio.Protocol):
     def close(self) -> None:
         if self._transport is not None:
             self._transport.close()
-
-
-def _started(descriptors: tuple[int, int, int]) -> subprocess.Popen[bytes]:
-    environment = {
-        **os.environ,
-        # The process must import this very package, wherever this one found it.
-        "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
-        # A thread pool for 7 x 7 matrices only takes time from the loop.
-        "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
-    }
-    command = [sys.executable, "-P", "-c", _START, *(str(d) for d in descriptors)]
-    try:
-        return subprocess.Popen(command, pass_fds=descriptors, env=environment, stdin=subprocess.DEVNULL)
-    except OSError as error:
-        raise RobotError(f"the world's process does not start: {error}", where=sys.executable) from error
 
 
 def _not_open() -> RobotError:

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import msgspec
 
 from engine.errors import CellError, RobotError
+from robots.child_process import how_it_ended, start_child
 from robots.sim.framing import FrameReader, framed
 from robots.vision.known import Known
 from robots.vision.sight import Look, Seen, Sight
 from robots.vision.worker_messages import Answer, Begin, FromWorker, Opened, Order, Refused, Tell, ToWorker
 
 _START = "from robots.vision.worker_main import main; main()"
-_ROOT = str(Path(__file__).resolve().parents[2])
+_WHAT = "the camera process"
+# Rendering on the processor would take all cores, and the control loop's with them.
+_SETTINGS = {"LP_NUM_THREADS": "1"}
 # The first start on a machine compiles the kernels and fits the arms' spheres.
 _START_S = 300.0
 _HINT = "a new one is started"
@@ -49,7 +48,7 @@ class CameraProcess:
         """
         ours, theirs = socket.socketpair()
         try:
-            self._process = _started(theirs.fileno())
+            self._process = start_child(_START, (theirs.fileno(),), what=_WHAT, settings=_SETTINGS)
             theirs.close()
             _, wire = await asyncio.get_running_loop().create_connection(lambda: Wire(self._how_it_ended), sock=ours)
             self._wire = wire
@@ -90,16 +89,7 @@ class CameraProcess:
             process.wait()
 
     def _how_it_ended(self) -> str:
-        """Say why the process is gone, once its socket has closed."""
-        if self._process is None:
-            return "the camera process was ended"
-        try:
-            code = self._process.wait(timeout=1.0)
-        except subprocess.TimeoutExpired:
-            return "the camera process closed its connection"
-        if code < 0:
-            return f"the camera process was ended by {signal.Signals(-code).name}"
-        return f"the camera process ended with exit code {code}"
+        return how_it_ended(self._process, what=_WHAT)
 
 
 class Wire(asyncio.Protocol):
@@ -181,20 +171,3 @@ class Wire(asyncio.Protocol):
                 future.set_exception(error)
                 # Who asked may have gone; then nobody else hears of it.
                 future.exception()
-
-
-def _started(descriptor: int) -> subprocess.Popen[bytes]:
-    environment = {
-        **os.environ,
-        # The process must import this very package, wherever this one found it.
-        "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)]),
-        "OPENBLAS_NUM_THREADS": "1",
-        "OMP_NUM_THREADS": "1",
-        # Rendering on the processor would take all cores, and the control loop's with them.
-        "LP_NUM_THREADS": "1",
-    }
-    command = [sys.executable, "-P", "-c", _START, str(descriptor)]
-    try:
-        return subprocess.Popen(command, pass_fds=(descriptor,), env=environment, stdin=subprocess.DEVNULL)
-    except OSError as error:
-        raise RobotError(f"the camera process does not start: {error}", where=sys.executable) from error

@@ -9,11 +9,11 @@ from engine.cause import cause_of
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose, Vector3
+from engine.pose_algebra import moved
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, Speed
 from engine.skills.planning import Margin, Patience
 from engine.skills.planning_scene import CheckCollision, TouchingPair
 from engine.state import Context
-from states.frames import moved
 from states.manipulation.steps import Ended, Step, go_through
 from states.manipulation.straight import go_straight
 from states.motion.move_free import MoveFree

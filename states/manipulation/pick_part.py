@@ -10,13 +10,14 @@ from msgspec import Meta
 
 from engine.event import Cause
 from engine.messages import Pose, Vector3
+from engine.pose_algebra import composed, moved, turn_between_rad
 from engine.skills.arm_control import Mass
 from engine.skills.gripper import Width
 from engine.skills.motion import ForwardKinematics, Speed
 from engine.skills.planning import Margin, Patience
 from engine.skills.planning_scene import TouchingPair
 from engine.state import Context, Outcome, State
-from states.frames import composed, frame_in_world, moved, part_in_world, turn_between_rad
+from states.frames import frame_in_world, part_in_world
 from states.gripper.grasp import Force, Grasp
 from states.hand.close import Close
 from states.hand.naming import Percent

@@ -9,11 +9,12 @@ from msgspec import Meta
 
 from engine.event import Cause
 from engine.messages import Pose, Vector3
+from engine.pose_algebra import composed, inverse
 from engine.skills.motion import ForwardKinematics, Speed
 from engine.skills.planning import Margin, Patience
 from engine.skills.planning_scene import TouchingPair
 from engine.state import Context, Outcome, State
-from states.frames import composed, frame_in_world, inverse, part_in_world
+from states.frames import frame_in_world, part_in_world
 from states.manipulation.approach import Approach
 from states.manipulation.holding import ToolKind, letting_go, still_holding, tool_resource
 from states.manipulation.steps import Ended, Step, go_through

@@ -7,10 +7,10 @@ from typing import Annotated
 from msgspec import Meta
 
 from engine.messages import Pose, Vector3
+from engine.pose_algebra import along, rotated
 from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context
 from states.failed_goal import goal_cause
-from states.frames import along, rotated
 from states.manipulation.steps import Ended
 from states.motion.line_time import line_duration_s
 from states.motion.target import NO_OFFSET, PoseTarget, pose_label

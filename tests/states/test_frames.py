@@ -11,16 +11,8 @@ from hypothesis import strategies as st
 from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import FramePoses, PartPoses, Pose, Quaternion, Vector3
-from states.frames import (
-    along,
-    composed,
-    frame_in_world,
-    inverse,
-    moved,
-    part_in_world,
-    rotated,
-    turn_between_rad,
-)
+from engine.pose_algebra import along, composed, inverse, moved, rotated, turn_between_rad
+from states.frames import frame_in_world, part_in_world
 from tests.states.fake_context import FakeContext
 
 METRES = st.floats(-2.0, 2.0)

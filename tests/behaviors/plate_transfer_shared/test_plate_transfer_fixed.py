@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from engine.messages import Pose
-from states.frames import composed
+from engine.pose_algebra import composed
 from tests.behaviors.application import Application, causes, changed_cell, shipped_cell, without_parts
 from tests.behaviors.plate_transfer_shared.test_plate_transfer_shared import QUICK, TRANSFER, free_motion
 
