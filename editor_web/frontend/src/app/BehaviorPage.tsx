@@ -8,6 +8,7 @@ import { useLive } from '../api/live'
 import { forgive, refuse } from '../api/refusal'
 import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
+import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
 import { isActive } from '../document/live'
@@ -28,13 +29,13 @@ import { FindingList } from '../features/findings/FindingList'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
-import { EventLog } from '../features/log/EventLog'
+import { dockBodies } from '../features/dock/dock'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
 import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { StopCell } from '../features/robots/StopCell'
 import { useFetched } from './useFetched'
-import { Narrow, NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
+import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 
 export interface BehaviorPageProps {
   readonly id: string
@@ -164,6 +165,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       )}
     </div>
   )
+  const dock = dockBodies({ behavior, run, node: node?.path, session, onShow: show })
   const outline = (
     <div className="tab-body is-flush">
       {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={setSelected} />}
@@ -210,12 +212,14 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       <BlockedWays />
       <Requests root={behavior.graph} commands={commands} onShow={show} />
       {isNarrow ? (
-        <Narrow
-          views={{
+        <OpenedTabs
+          label="Views"
+          className="narrow-tabs"
+          bodies={{
             Start: parameters,
             Graph: <NarrowGraph graph={graph} card={card} />,
             Cell: cell,
-            Log: <EventLog />,
+            ...dock,
             Outline: outline,
             Breakpoints: held,
             Problems: problems,
@@ -224,7 +228,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       ) : (
         <Wide
           graph={graph}
-          log={<EventLog />}
+          log={<OpenedTabs label="Below the graph" bodies={dock} className="dock" />}
           cell={cell}
           tabs={
             <SideTabs

@@ -87,24 +87,3 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
     </Tabs>
   )
 }
-
-/** One view at a time, for small screens. */
-export function Narrow({ views }: { views: Readonly<Record<string, ReactNode>> }) {
-  const names = Object.keys(views)
-  return (
-    <Tabs defaultValue={names[0] ?? ''} className="side-tabs narrow-tabs" keepMounted>
-      <Tabs.List>
-        {names.map((name) => (
-          <Tabs.Tab key={name} value={name}>
-            {name}
-          </Tabs.Tab>
-        ))}
-      </Tabs.List>
-      {names.map((name) => (
-        <Tabs.Panel key={name} value={name}>
-          {views[name]}
-        </Tabs.Panel>
-      ))}
-    </Tabs>
-  )
-}

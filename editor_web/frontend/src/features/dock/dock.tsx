@@ -1,0 +1,34 @@
+/** What can be seen of a run below its graph, each in a tab; all but the log are loaded when they are first opened. */
+import { lazy, type ComponentType, type ReactNode } from 'react'
+import type { BehaviorBody, RunLine, SessionBody } from '../../api/types'
+import { EventLog } from '../log/EventLog'
+
+export interface DockProps {
+  readonly behavior: BehaviorBody
+  /** The run that is shown, if any. */
+  readonly run: RunLine | undefined
+  /** Path of the chosen node, if any. */
+  readonly node: string | undefined
+  readonly session: SessionBody | undefined
+  /** Choose a node and bring it into view. */
+  readonly onShow: (path: string) => void
+}
+
+interface DockTab {
+  readonly name: string
+  readonly Body: ComponentType<DockProps>
+}
+
+/** A tab of a module that is loaded when it is first opened. */
+export function later(name: string, load: () => Promise<ComponentType<DockProps>>): DockTab {
+  return { name, Body: lazy(async () => ({ default: await load() })) }
+}
+
+const DOCK_TABS: readonly DockTab[] = [
+  { name: 'Log', Body: EventLog },
+]
+
+/** The bodies of all tabs by their names. */
+export function dockBodies(props: DockProps): Record<string, ReactNode> {
+  return Object.fromEntries(DOCK_TABS.map(({ name, Body }) => [name, <Body key={name} {...props} />]))
+}
