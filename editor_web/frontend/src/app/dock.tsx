@@ -1,7 +1,7 @@
 /** What can be seen of a run below its graph, each in a tab; all but the log are loaded when they are first opened. */
 import { lazy, type ComponentType, type ReactNode } from 'react'
-import type { BehaviorBody, RunLine, SessionBody } from '../../api/types'
-import { EventLog } from '../log/EventLog'
+import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
+import { EventLog } from '../features/log/EventLog'
 
 export interface DockProps {
   readonly behavior: BehaviorBody
