@@ -25,6 +25,21 @@ class SmoothWay:
     first: Array
     second: Array
 
+    def pieces(self) -> Array:
+        """Return the coefficients of each joint's polynomial between two points, (k - 1, 6, n).
+
+        By the share of the length between the two: quintics that have the positions and derivatives at both points,
+        which the lines and the curves of corners are.
+        """
+        h = np.diff(self.along)[:, None]
+        d0, d1 = h * self.first[:-1], h * self.first[1:]
+        b0, b1 = h**2 * self.second[:-1], h**2 * self.second[1:]
+        rise = self.position[1:] - self.position[:-1] - d0 - 0.5 * b0
+        turn, bend = d1 - d0 - b0, b1 - b0
+        third, fourth = 10.0 * rise - 4.0 * turn + 0.5 * bend, -15.0 * rise + 7.0 * turn - bend
+        fifth = 6.0 * rise - 3.0 * turn + 0.5 * bend
+        return np.stack((self.position[:-1], d0, 0.5 * b0, third, fourth, fifth), axis=1)
+
 
 def without_doubles(path: Array) -> Array:
     """Return the waypoints (k, n) without those that lie where the one before does."""

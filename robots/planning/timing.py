@@ -1,4 +1,4 @@
-"""A confirmed way as a trajectory: corners rounded where that is free, as fast as speeds and accelerations allow."""
+"""A confirmed way as a trajectory: corners rounded where that is free, as fast as the limits of the joints allow."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from engine.errors import RobotError
 from robots.model.robot_model import JointLimits
 from robots.motion.joint_profile import ACCELERATION_SHARE
 from robots.planning.rounding import SmoothWay, rounded, without_doubles
-from robots.planning.timing_kernels import passing_rates, passing_times
+from robots.planning.time_law import Limits, quickest
 from robots.port import Array, JointTrajectory
 
 _SAMPLE_S = 0.002
-_VELOCITY_SHARE = 0.995
+# Between two samples a follower may go a little beyond.
+_SHARE = 0.995
 _DEVIATION_RAD, _LONGEST_CUT_RAD = 0.05, 0.5
 _HALVINGS = 4
 # Of a corner, the length of the middle between the two directions; below it the arm turns back and stops there.
@@ -26,11 +27,10 @@ _TURNING_BACK = 0.2
 
 @dataclass(frozen=True, kw_only=True)
 class TimedWay:
-    """A trajectory at rest at both ends, the number of `stops` between them, and the sections it follows."""
+    """A trajectory at rest at both ends, and the number of `stops` between them."""
 
     trajectory: JointTrajectory
     stops: int
-    smooth: tuple[SmoothWay, ...]
 
     @property
     def duration_s(self) -> float:
@@ -49,11 +49,10 @@ def timed(
 
     Corners are rounded by at most `_DEVIATION_RAD`, less where `is_free` refuses the rounding, a way
     (k, n); where it refuses any, the arm stops at the corner. `speed` in (0, 1] is the share of the joint
-    speed limits; of the accelerations half is used at speed 1, as by all motions. Accelerations are
-    continuous along the way but not jerks.
+    speed limits; of the accelerations half is used at speed 1, as by all motions, and all of the jerks at any.
 
     Raises:
-        RobotError: `speed` is not in (0, 1], or the way is empty.
+        RobotError: `speed` is not in (0, 1], the way is empty, or the joints' limits let nothing move.
     """
     if not 0.0 < speed <= 1.0 or len(path) == 0:
         raise RobotError(f"{len(path)} waypoints cannot be passed at speed {speed}", hint="give a speed in (0, 1]")
@@ -62,11 +61,11 @@ def timed(
         standing = JointTrajectory(
             dt_s=_SAMPLE_S, position_rad=np.repeat(way, 2, axis=0), velocity_rad_s=np.zeros((2, path.shape[1]))
         )
-        return TimedWay(trajectory=standing, stops=0, smooth=())
+        return TimedWay(trajectory=standing, stops=0)
     cuts = _free_cuts(way, is_free)
     corners = [0, *(i for i in range(1, len(way) - 1) if cuts[i] == 0.0), len(way) - 1]
     sections = tuple(rounded(way[first : last + 1], cuts[first : last + 1]) for first, last in pairwise(corners))
-    return TimedWay(trajectory=_played(sections, limits, speed), stops=len(sections) - 1, smooth=sections)
+    return TimedWay(trajectory=_played(sections, limits, speed), stops=len(sections) - 1)
 
 
 def _free_cuts(way: Array, is_free: Callable[[Array], bool]) -> Array:
@@ -92,45 +91,20 @@ def _free_cuts(way: Array, is_free: Callable[[Array], bool]) -> Array:
 
 def _played(sections: tuple[SmoothWay, ...], limits: JointLimits, speed: float) -> JointTrajectory:
     """Return the sections one after the other, at rest between them, on one grid of samples."""
-    fastest = np.array(limits.velocity_rad_s) * (speed * _VELOCITY_SHARE)
-    most = np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE)
-    rates = [
-        passing_rates(
-            np.ascontiguousarray(s.first),
-            np.ascontiguousarray(s.second),
-            s.along,
-            fastest,
-            most,
-            np.empty(len(s.along)),
-        )
-        for s in sections
-    ]
-    times = [passing_times(s.along, x) for s, x in zip(sections, rates, strict=True)]
-    ends = np.cumsum([0.0, *(t[-1] for t in times)])
-    if not np.isfinite(ends[-1]):
-        raise RobotError("the way cannot be passed within the joints' accelerations", hint="check the model's limits")
+    allowed = Limits(
+        velocity=np.array(limits.velocity_rad_s) * (speed * _SHARE),
+        acceleration=np.array(limits.acceleration_rad_s2) * (speed * ACCELERATION_SHARE),
+        jerk=np.array(limits.jerk_rad_s3) * _SHARE,
+    )
+    laws = [quickest(section, allowed) for section in sections]
+    ends = np.cumsum([0.0, *(law.duration_s for law in laws)])
     samples = max(2, math.ceil(float(ends[-1]) / _SAMPLE_S) + 1)
     at = np.linspace(0.0, float(ends[-1]), samples)
-    position, velocity = np.empty((samples, len(fastest))), np.empty((samples, len(fastest)))
+    position, velocity = np.empty((samples, len(allowed.jerk))), np.empty((samples, len(allowed.jerk)))
     section_of = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(sections) - 1)
-    for k, (section, x, t) in enumerate(zip(sections, rates, times, strict=True)):
+    for k, law in enumerate(laws):
         mine = section_of == k
-        position[mine], velocity[mine] = _at(section, x, t, at[mine] - ends[k])
+        position[mine], velocity[mine] = law.sampled(at[mine] - ends[k])
     position[0], position[-1] = sections[0].position[0], sections[-1].position[-1]
     velocity[0], velocity[-1] = 0.0, 0.0
     return JointTrajectory(dt_s=float(ends[-1]) / (samples - 1), position_rad=position, velocity_rad_s=velocity)
-
-
-def _at(way: SmoothWay, x: Array, times: Array, at: Array) -> tuple[Array, Array]:
-    """Return positions and velocities (samples, n) at times of a section; between its points x is linear."""
-    i = np.clip(np.searchsorted(times, at, side="right") - 1, 0, len(times) - 2)
-    step = way.along[i + 1] - way.along[i]
-    push = 0.5 * (x[i + 1] - x[i]) / step
-    wait, rate = at - times[i], np.sqrt(x[i])
-    gone = np.clip(rate * wait + 0.5 * push * wait**2, 0.0, step)
-    u, h = (gone / step)[:, None], step[:, None]
-    p0, p1, d0, d1 = way.position[i], way.position[i + 1], way.first[i], way.first[i + 1]
-    rise = (p1 - p0) / h
-    position = p0 + h * (u * d0 + u**2 * (3 * rise - 2 * d0 - d1) + u**3 * (d0 + d1 - 2 * rise))
-    slope = d0 + 2 * u * (3 * rise - 2 * d0 - d1) + 3 * u**2 * (d0 + d1 - 2 * rise)
-    return position, slope * np.maximum(0.0, rate + push * wait)[:, None]

@@ -48,11 +48,10 @@ def passing_rates(first: Array, second: Array, along: Array, fastest: Array, mos
     """Return x, the square of the rate, at each point of a way, at rest at both ends; as fast as is allowed.
 
     `first` and `second` (k, n) are the derivatives of the way at the points `along` (k,), `fastest` and
-    `most` (n,) the joints' speeds and accelerations. `top` (k,) is overwritten.
+    `most` (n,) the joints' speeds and accelerations. `top` (k,), the largest x wanted, is overwritten.
     """
     count = len(along)
     for i in range(count):
-        top[i] = 1e12
         for j in range(first.shape[1]):
             slope = abs(first[i, j])
             if slope > 1e-9:
