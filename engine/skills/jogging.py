@@ -11,10 +11,11 @@ from typing import Annotated
 
 import msgspec
 
-from engine.messages import Message, Vector3
+from engine.messages import Message, Pose, Vector3
 from engine.skill import Action
 from engine.skills.direction import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult, Speed
+from engine.skills.planning import Margin
 
 Silence = Annotated[float, msgspec.Meta(gt=0.0, le=2.0, description="Come to rest after so long a silence, in seconds")]
 Patience = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long a silence, in seconds")]
@@ -28,7 +29,33 @@ class JogCommand(Message, frozen=True, kw_only=True):
     velocity: tuple[float, ...]
 
 
-class JogJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
+class JogScene(Message, frozen=True, kw_only=True):
+    """What of the planning scene a jog minds: nothing where it is not `minded`.
+
+    It stays `margin_m` away from obstacles, other arms and what cameras see, but for the names in `may_touch`,
+    such as a part that is to be gripped. An arm that is nearer already may go away.
+    """
+
+    minded: bool = True
+    margin_m: Margin = 0.005
+    may_touch: tuple[str, ...] = ()
+
+
+class JointJogFeedback(Message, frozen=True, kw_only=True):
+    """Where the arm is, radians, and what holds it back, in words; empty where nothing does."""
+
+    joints: tuple[float, ...]
+    held_by: str = ""
+
+
+class ToolJogFeedback(Message, frozen=True, kw_only=True):
+    """Where the tool centre point is, and what holds the arm back, in words; empty where nothing does."""
+
+    pose: Pose
+    held_by: str = ""
+
+
+class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_only=True):
     """Turn the joints at `velocity_rad_s` for `duration_s`, or as `<arm>/jog` tells when both are left out.
 
     Slows down before a joint limit and stands still at it.
@@ -38,9 +65,10 @@ class JogJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_
     duration_s: Duration | None = None
     watchdog_s: Silence = 0.2
     idle_s: Patience = 5.0
+    scene: JogScene = JogScene()
 
 
-class JogTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
+class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=True):
     """Move the tool at a velocity for `duration_s`, or as `<arm>/jog` tells when both are left out.
 
     `velocity` is m/s along and rad/s about the axes of `frame`, at the tool centre point. Where a
@@ -52,6 +80,7 @@ class JogTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only
     duration_s: Duration | None = None
     watchdog_s: Silence = 0.2
     idle_s: Patience = 5.0
+    scene: JogScene = JogScene()
 
 
 class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
@@ -59,6 +88,7 @@ class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw
 
     step_rad: tuple[float, ...]
     speed: Speed = 0.1
+    scene: JogScene = JogScene()
 
 
 class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -68,3 +98,4 @@ class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_onl
     turn_rad: Vector3 = _STILL
     frame: Axes = "world"
     speed_m_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.5, description="Greatest speed on the way")] = 0.05
+    scene: JogScene = JogScene()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,7 @@ from engine.clock import Clock
 from engine.errors import GoalRejected, RobotError
 from engine.skills.jogging import JogCommand, JogJoints, JogTool
 from robots.arm.countdown import Countdown
+from robots.arm.jog_guard import JogGuard
 from robots.arm.numbers import are_numbers
 from robots.attend import FEEDBACK_S
 from robots.port import Stream
@@ -33,6 +36,7 @@ class JogRun:
         handle: The goal's handle.
         width: How many numbers a velocity has.
         mean: What to send for a velocity as given, at this moment.
+        guard: What looks ahead of it, if anything does; opened and closed by the owner.
 
     Raises:
         GoalRejected: the velocity does not fit the arm, or comes without a duration.
@@ -47,6 +51,7 @@ class JogRun:
         clock: Clock,
         width: int,
         mean: Callable[[Row], Row],
+        guard: JogGuard | None,
     ) -> None:
         self._velocity = velocity
         self._duration_s = goal.duration_s if velocity else goal.idle_s
@@ -54,6 +59,10 @@ class JogRun:
         self._clock = clock
         self._width = width
         self._mean = mean
+        self._guard = guard
+        self._told: Row = (0.0,) * width
+        self._told_s = clock.now_s()
+        self._silence: asyncio.TimerHandle | None = None
         self._stream: Stream | None = None
         self._countdown: Countdown | None = None
         # Its own velocity is repeated with the feedback, which is no silence of anybody.
@@ -72,6 +81,8 @@ class JogRun:
         self._stream = stream
         self._countdown = Countdown(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
         self.look()
+        if self._guard is not None:
+            self._guard.look_on(self._looked)
         return stream
 
     def look(self) -> None:
@@ -100,12 +111,47 @@ class JogRun:
     def close(self) -> None:
         """The stream has ended."""
         self._stream = None
+        self._still_due()
         if self._countdown is not None:
             self._countdown.close()
 
     def _send(self, velocity: Row) -> None:
+        """Send what was told just now."""
+        self._told, self._told_s = velocity, self._clock.now_s()
+        self._still_due()
+        self._pass_on()
+
+    def _pass_on(self) -> None:
         if self._stream is not None:
-            self._stream.send(self._mean(velocity))
+            told = self._mean(self._told)
+            self._stream.send(told if self._guard is None else self._guard.bounded(told))
+
+    def _looked(self) -> None:
+        """The way ahead is another: the arm may go faster, or must go slower; but for a silence it comes to rest.
+
+        What is passed on anew would be no silence for the watchdog of the stream, so that is counted here too.
+        """
+        left_s = self._told_s + self.watchdog_s - self._clock.now_s()
+        if left_s <= 0.0 or self._stream is None:
+            return
+        try:
+            self._pass_on()
+        except RobotError as error:
+            # The goal itself ends with the reason.
+            _log.warning("%s: %s", self._handle.address, error)
+            return
+        self._still_due()
+        self._silence = asyncio.get_running_loop().call_later(left_s, self._fall_silent)
+
+    def _fall_silent(self) -> None:
+        self._told = (0.0,) * self._width
+        with suppress(RobotError):
+            self._pass_on()
+
+    def _still_due(self) -> None:
+        if self._silence is not None:
+            self._silence.cancel()
+            self._silence = None
 
     def _fault(self, velocity: Row) -> str:
         if not are_numbers(velocity):

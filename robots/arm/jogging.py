@@ -3,21 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
+from contextlib import AsyncExitStack
 from typing import Any
 
 import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected
-from engine.skills.jogging import JogCommand, JogJoints, JogTool, StepJoints, StepTool
+from engine.skills.jogging import (
+    JogCommand,
+    JogJoints,
+    JogScene,
+    JogTool,
+    JointJogFeedback,
+    StepJoints,
+    StepTool,
+    ToolJogFeedback,
+)
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 from robots.arm.followed import follow_joints, follow_tool
-from robots.arm.jog_run import JogRun, Row
+from robots.arm.jog_guard import JogGuard, Row, ToJoints
+from robots.arm.jog_run import JogRun
 from robots.arm.motion_runner import Ended, MotionRunner
+from robots.arm.scene_check import SceneCheck
+from robots.control.damped_inverse import joint_velocity, twist_rows
 from robots.model.rigid import Rigid, product, quaternion_of
 from robots.motion.min_jerk import PEAK_ACCELERATION, PEAK_SPEED
-from robots.port import StreamKind
+from robots.port import Array, JointTrajectory, StreamKind
+from robots.workspace.workspace import Workspace
 
 _TWIST = 6
 # A step of the tool is at most this fast in turning, and at most this hard in starting.
@@ -27,10 +41,16 @@ _MOST_TURN_RAD = 3.1
 
 
 class Jogging:
-    """Answers JogJoints, JogTool, StepJoints and StepTool, and listens to `<arm>/jog`."""
+    """Answers JogJoints, JogTool, StepJoints and StepTool, and listens to `<arm>/jog`.
 
-    def __init__(self, runner: MotionRunner) -> None:
+    Args:
+        runner: Of the arm.
+        workspace: The space it shares with others; without one nothing looks ahead of it.
+    """
+
+    def __init__(self, runner: MotionRunner, workspace: Workspace | None = None) -> None:
         self._runner = runner
+        self._workspace = workspace
         self._run: JogRun | None = None
 
     def register(self, bus: SkillBus) -> None:
@@ -46,46 +66,81 @@ class Jogging:
         if self._run is not None:
             self._run.take(command)
 
-    async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
+    async def _jog_joints(self, goal: JogJoints, handle: ActiveGoal[JointJogFeedback]) -> JointMotionResult:
         runner = self._runner
+        guard = self._guard(goal.scene, lambda told, _: told)
 
         def tell() -> None:
-            handle.feedback(JointMotionFeedback(joints=runner.measured(), progress=0.0))
+            handle.feedback(JointJogFeedback(joints=runner.measured(), held_by=guard.held_by if guard else ""))
 
-        run = JogRun(goal, goal.velocity_rad_s, handle, clock=runner.clock, width=runner.model.dof, mean=_as_told)
-        ended = await self._jog("joint_velocity", run, handle, tell)
+        width = runner.model.dof
+        run = JogRun(
+            goal, goal.velocity_rad_s, handle, clock=runner.clock, width=width, mean=lambda told: told, guard=guard
+        )
+        ended = await self._jog("joint_velocity", run, guard, handle, tell)
         return JointMotionResult(joints=runner.measured(), duration_s=ended.duration_s)
 
-    async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
+    async def _jog_tool(self, goal: JogTool, handle: ActiveGoal[ToolJogFeedback]) -> CartMotionResult:
         runner = self._runner
+        guard = self._guard(goal.scene, self._joint_velocity)
 
         def tell() -> None:
-            handle.feedback(CartMotionFeedback(pose=runner.measured_pose(), progress=0.0))
+            handle.feedback(ToolJogFeedback(pose=runner.measured_pose(), held_by=guard.held_by if guard else ""))
 
         def mean(velocity: Row) -> Row:
             axes = runner.frames.axes(goal.frame, tool=runner.measured_tool())
             return tuple(np.concatenate((axes @ velocity[:3], axes @ velocity[3:])).tolist())
 
-        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, mean=mean)
-        ended = await self._jog("tool_twist", run, handle, tell)
+        run = JogRun(goal, goal.velocity, handle, clock=runner.clock, width=_TWIST, mean=mean, guard=guard)
+        ended = await self._jog("tool_twist", run, guard, handle, tell)
         return CartMotionResult(pose=runner.measured_pose(), duration_s=ended.duration_s)
 
-    async def _jog(self, kind: StreamKind, run: JogRun, handle: ActiveGoal[Any], tell: Callable[[], None]) -> Ended:
+    def _guard(self, rule: JogScene, to_joints: ToJoints) -> JogGuard | None:
+        if self._workspace is None or not rule.minded:
+            return None
+        return JogGuard(self._runner, self._workspace, rule=rule, to_joints=to_joints)
+
+    def _joint_velocity(self, twist: Array, joints: Array) -> Array:
+        _, jacobian = self._runner.kinematics.tool_pose_and_jacobian(joints)
+        rows = twist_rows(twist, self._runner.model.dof)
+        return joint_velocity(jacobian[rows], twist[rows])
+
+    async def _jog(
+        self,
+        kind: StreamKind,
+        run: JogRun,
+        guard: JogGuard | None,
+        handle: ActiveGoal[Any],
+        tell: Callable[[], None],
+    ) -> Ended:
         runner = self._runner
-        runner.accept(handle)
+        runner.require_ready(handle)
+        async with AsyncExitStack() as stack:
+            if guard is not None:
+                await runner.planned(handle, lambda _: guard.open())
+                stack.push_async_callback(guard.close)
+            else:
+                runner.accept(handle)
 
-        def look(_stream: object) -> None:
-            run.look()
-            tell()
+            def look(_stream: object) -> None:
+                run.look()
+                tell()
 
-        self._run = run
-        try:
-            return await runner.carry_out(
-                lambda: run.start(runner.port.stream(kind, watchdog_s=run.watchdog_s)), handle, look, mode="jogging"
-            )
-        finally:
-            self._run = None
-            run.close()
+            self._run = run
+            try:
+                return await runner.carry_out(
+                    lambda: run.start(runner.port.stream(kind, watchdog_s=run.watchdog_s)), handle, look, mode="jogging"
+                )
+            finally:
+                self._run = None
+                run.close()
+
+    async def _free(self, planning: Awaitable[JointTrajectory], rule: JogScene) -> JointTrajectory:
+        """Return a planned step that touches nothing; RobotError where there is none."""
+        trajectory = await planning
+        if self._workspace is not None and rule.minded:
+            await SceneCheck(self._runner.name, self._workspace, rule=rule).require_free(trajectory)
+        return trajectory
 
     async def _step_joints(self, goal: StepJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
         runner = self._runner
@@ -96,7 +151,10 @@ class Jogging:
                 hint=f"this arm has {runner.model.dof}",
             )
         trajectory = await runner.planned(
-            handle, lambda start: runner.planner.to_joints(start, start + np.array(goal.step_rad), speed=goal.speed)
+            handle,
+            lambda start: self._free(
+                runner.planner.to_joints(start, start + np.array(goal.step_rad), speed=goal.speed), goal.scene
+            ),
         )
         return await follow_joints(runner, trajectory, handle, mode="jogging")
 
@@ -106,7 +164,10 @@ class Jogging:
         start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
         end = self._stepped(goal, start, handle)
         trajectory = await runner.planned(
-            handle, lambda joints: runner.planner.along_line(joints, end, duration_s=_step_time_s(goal))
+            handle,
+            lambda joints: self._free(
+                runner.planner.along_line(joints, end, duration_s=_step_time_s(goal)), goal.scene
+            ),
         )
         return await follow_tool(runner, trajectory, handle, mode="jogging")
 
@@ -124,10 +185,6 @@ class Jogging:
             )
         axes = self._runner.frames.axes(goal.frame, tool=tool)
         return Rigid(xyz=tool.xyz + axes @ step[:3], xyzw=product(quaternion_of(axes @ step[3:]), tool.xyzw))
-
-
-def _as_told(velocity: Row) -> Row:
-    return velocity
 
 
 def _step_time_s(goal: StepTool) -> float:

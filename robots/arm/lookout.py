@@ -61,7 +61,8 @@ class Lookout:
             looking.close()
             return Trouble(reason=self.blind)
         try:
-            check = await asyncio.wait_for(looking, _CHECK_S)
+            async with asyncio.timeout(_CHECK_S):
+                check = await looking
         except TimeoutError:
             return Trouble(reason=f"its way was not looked at within {_CHECK_S:g} s")
         except FlexcellError as error:

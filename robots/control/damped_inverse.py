@@ -10,6 +10,7 @@ from robots.port import Array
 # sixteen times as fast as its tool moves.
 _NEAR = 0.06
 _DAMPING = 0.06
+_FULL = 6
 
 
 def joint_velocity(jacobian: Array, twist: Array) -> Array:
@@ -22,3 +23,10 @@ def joint_velocity(jacobian: Array, twist: Array) -> Array:
     squares = np.maximum(squares, 0.0)
     damping = _DAMPING**2 * np.maximum(1.0 - squares / _NEAR**2, 0.0)
     return jacobian.T @ (directions @ ((directions.T @ twist) / (squares + damping)))
+
+
+def twist_rows(twist: Array, joints: int) -> slice:
+    """Return which of the six numbers of a twist count: a small arm cannot keep its orientation while it moves."""
+    if joints >= _FULL:
+        return slice(0, 6)
+    return slice(0, 3) if twist[:3].any() else slice(3, 6)

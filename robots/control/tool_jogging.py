@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.control.damped_inverse import joint_velocity
+from robots.control.damped_inverse import joint_velocity, twist_rows
 from robots.control.joint_shaper import JointShaper
 from robots.control.listening import Listening
 from robots.model.robot_model import JointLimits
@@ -16,7 +16,6 @@ _VELOCITY_SHARE = 0.98
 # A joint runs into its limit decelerating with this share of its acceleration.
 _APPROACH_SHARE = 0.5
 _SLOW = 1e-9
-_FULL = 6
 # Faster twists (m/s, rad/s) are taken as this fast in the same direction: no arm goes there, and no product overflows.
 _FASTEST = 100.0
 
@@ -44,7 +43,7 @@ class ToolJogging(Listening):
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
         _, jacobian = state.kinematics.tool_pose_and_jacobian(self.position)
-        rows = self._rows()
+        rows = twist_rows(self._told, len(self.position))
         twist = self._bounded(self._told[rows]) * pace
         velocity = joint_velocity(jacobian[rows], twist)
         share = self._share(velocity)
@@ -61,12 +60,6 @@ class ToolJogging(Listening):
     def _bounded(twist: Array) -> Array:
         fastest = float(np.abs(twist).max())
         return twist if fastest <= _FASTEST else twist / fastest * _FASTEST
-
-    def _rows(self) -> slice:
-        """Return which of the six numbers count: a small arm cannot keep its orientation while it moves."""
-        if len(self.position) >= _FULL:
-            return slice(0, 6)
-        return slice(0, 3) if self._told[:3].any() else slice(3, 6)
 
     def _share(self, velocity: Array) -> float:
         """Return the share of these velocities that keeps every joint below its own."""

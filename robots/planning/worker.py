@@ -187,7 +187,8 @@ class PlanningWorker:
         # Others before it in turn take their time too.
         allowed_s = wire.promised_s + _OVERDUE_S
         try:
-            found = await asyncio.wait_for(asyncio.shield(answer), allowed_s)
+            async with asyncio.timeout(allowed_s):
+                found = await asyncio.shield(answer)
         except TimeoutError as error:
             self._end()
             raise RobotError(
@@ -235,7 +236,8 @@ class PlanningWorker:
             self._end()
             raise
         try:
-            await asyncio.wait_for(asyncio.shield(wire.ready), _START_S)
+            async with asyncio.timeout(_START_S):
+                await asyncio.shield(wire.ready)
         except BaseException:
             wire.close()
             self._end()

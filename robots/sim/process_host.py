@@ -74,7 +74,8 @@ class ProcessHost:
         assert self._wire is not None
         restored = self._wire.next_restored()
         try:
-            await asyncio.wait_for(restored, _RESTORE_S)
+            async with asyncio.timeout(_RESTORE_S):
+                await restored
         except TimeoutError as error:
             raise RobotError(
                 f"the world's process did not restore its state within {_RESTORE_S:g} s", hint="connect the cell again"
@@ -124,7 +125,8 @@ class ProcessHost:
 
     async def _answer(self, wire: _Wire) -> WorldReady:
         try:
-            answer = await asyncio.wait_for(asyncio.shield(wire.first), _START_S)
+            async with asyncio.timeout(_START_S):
+                answer = await asyncio.shield(wire.first)
         except TimeoutError as error:
             raise RobotError(f"the world's process did not answer within {_START_S:g} s") from error
         if isinstance(answer, WorldRefused):

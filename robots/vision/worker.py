@@ -53,7 +53,8 @@ class CameraProcess:
             _, wire = await asyncio.get_running_loop().create_connection(lambda: Wire(self._how_it_ended), sock=ours)
             self._wire = wire
             wire.send(Begin(sight=sight))
-            self.words = (await asyncio.wait_for(asyncio.shield(wire.opened), _START_S)).words
+            async with asyncio.timeout(_START_S):
+                self.words = (await asyncio.shield(wire.opened)).words
         except TimeoutError as error:
             self.end()
             raise RobotError(f"the camera process was not ready within {_START_S:g} s", hint=_HINT) from error

@@ -1,0 +1,222 @@
+"""Jogging minds the planning scene: it stands before what it would touch, and goes away from it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from engine.bus import GoalStatus
+from engine.messages import Pose, Vector3
+from engine.shapes import Box, Obstacle
+from engine.skill import Action
+from engine.skills.jogging import (
+    JogCommand,
+    JogJoints,
+    JogScene,
+    JogTool,
+    StepJoints,
+    StepTool,
+)
+from engine.skills.planning_scene import CheckCollision, CollisionReport, PutObstacle, RemoveObstacle
+from tests.robots.arm.simulated import Simulated, simulated
+from tests.robots.fake_port import FakeStream
+from tests.robots.workspace.fake_cell import FakeCell, fake_cell
+
+DOWN = (0.0, 0.0, -0.25, 0.0, 0.0, 0.0)
+ROUND = (1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+MARGIN_M = JogScene().margin_m
+
+
+def put(name: str, size_m: Vector3, xyz: Vector3) -> PutObstacle:
+    """A box along the world's axes."""
+    return PutObstacle(obstacle=Obstacle.of(name, Box(size_m=size_m), Pose(xyz=xyz)))
+
+
+async def near(cell: Simulated) -> CollisionReport:
+    """What the arm is near to now."""
+    return await cell.bus.call(CheckCollision(robot="left"), to="cell")
+
+
+async def jogged(cell: Simulated, goal: Action[Any, Any]) -> tuple[str, float]:
+    """Jog to the end; returns what held it back last, and how near it came to anything on its way, in metres."""
+    handle = cell.bus.send_goal(goal, to="left")
+    held: list[str] = []
+
+    handle.on_feedback(lambda feedback: held.append(feedback.held_by))
+    await handle.accepted()
+    ending = asyncio.ensure_future(handle.result())
+    nearest = np.inf
+    while not ending.done():
+        nearest = min(nearest, (await near(cell)).distance_m)
+        await asyncio.wait((ending,), timeout=0.05)
+    assert ending.result().status is GoalStatus.SUCCEEDED, ending.result().cause
+    return next((reason for reason in reversed(held) if reason), ""), nearest
+
+
+@pytest.mark.virtual
+async def test_the_tool_told_to_go_through_the_table_stands_above_it() -> None:
+    """As near as its rule allows, at 25 cm/s, without a contact; and it goes up again."""
+    async with simulated() as cell:
+        held_by, nearest_m = await jogged(cell, JogTool(velocity=DOWN, duration_s=4.0))
+        stood = await near(cell)
+        low = await cell.tool()
+        up = await cell.perform(JogTool(velocity=(0.0, 0.0, 0.1, 0.0, 0.0, 0.0), duration_s=0.5))
+        high = await cell.tool()
+    assert "would touch table" in held_by
+    assert nearest_m > 0.0
+    assert stood.distance_m == pytest.approx(MARGIN_M, abs=0.006)
+    assert up.status is GoalStatus.SUCCEEDED
+    assert high.xyz[2] - low.xyz[2] > 0.03
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("speed", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+async def test_a_joint_stops_before_an_obstacle_at_any_speed(speed: float, sign: float) -> None:
+    """Nothing solid: only the scene knows of it."""
+    async with simulated() as cell:
+        await cell.bus.call(put("post", (0.08, 0.08, 1.0), (-0.33, 0.27 * sign, 0.5)), to="cell")
+        velocity = (speed * sign, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        held_by, nearest_m = await jogged(cell, JogJoints(velocity_rad_s=velocity, duration_s=0.6 + 1.2 / speed))
+        back = await cell.perform(JogJoints(velocity_rad_s=tuple(-v for v in velocity), duration_s=0.5))
+        left = await near(cell)
+    assert "would touch post" in held_by
+    assert 0.0 < nearest_m < 0.03
+    assert back.status is GoalStatus.SUCCEEDED
+    assert left.distance_m > nearest_m
+
+
+@pytest.mark.virtual
+async def test_what_comes_into_the_way_of_a_jog_stops_it_and_what_goes_lets_it_go_on() -> None:
+    """While the key is down."""
+    async with simulated() as cell:
+        handle = await cell.begun(JogJoints(velocity_rad_s=ROUND, duration_s=4.0), after_s=0.3)
+        await cell.bus.call(put("gate", (0.6, 0.02, 1.0), (-0.4, 0.35, 0.5)), to="cell")
+        await cell.until(lambda: cell.speed_rad_s() < 0.02, within_s=2.0)
+        stood = cell.joints()
+        nearest = await near(cell)
+        await cell.bus.call(RemoveObstacle(name="gate"), to="cell")
+        end = await handle.result()
+        gone = cell.joints()
+    assert end.status is GoalStatus.SUCCEEDED
+    assert 0.0 < nearest.distance_m < 0.05
+    assert gone[0] > stood[0] + 0.5
+
+
+@pytest.mark.virtual
+async def test_what_may_be_touched_and_what_is_not_minded_stops_nothing() -> None:
+    """The same way three times: held back, by its name let through, and not looked at."""
+    reached: list[float] = []
+    for rule in (JogScene(), JogScene(may_touch=("post",)), JogScene(minded=False)):
+        async with simulated() as cell:
+            await cell.bus.call(put("post", (0.08, 0.08, 1.0), (-0.33, 0.27, 0.5)), to="cell")
+            await cell.perform(JogJoints(velocity_rad_s=ROUND, duration_s=1.2, scene=rule))
+            reached.append(float(cell.joints()[0]))
+    assert reached[0] < reached[1] - 0.3
+    assert reached[1] == pytest.approx(reached[2], abs=0.05)
+
+
+@pytest.mark.virtual
+async def test_a_released_key_stops_the_arm_as_soon_as_without_a_scene() -> None:
+    """What is passed on anew after a look is no sign of life."""
+    rests: list[float] = []
+    for rule in (JogScene(), JogScene(minded=False)):
+        async with simulated() as cell:
+            await cell.begun(JogTool(idle_s=3.0, watchdog_s=0.2, scene=rule))
+            jog = cell.bus.topic("left/jog", JogCommand)
+            for _ in range(10):
+                jog.publish(JogCommand(velocity=(0.0, 0.0, -0.05, 0.0, 0.0, 0.0)))
+                await cell.bus.clock.sleep(0.05)
+            assert cell.speed_rad_s() > 0.02
+            rests.append(await cell.until(lambda: cell.speed_rad_s() < 0.01, within_s=2.0))
+    assert rests[0] < rests[1] + 0.02
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize(
+    "step", [StepTool(step_m=(0.0, 0.0, -0.6), speed_m_s=0.3), StepJoints(step_rad=(0.0, 1.9, 0.0, 0.9, 0.0, 0.0, 0.0))]
+)
+async def test_a_step_that_would_touch_something_is_rejected_and_nothing_moves(step: StepTool | StepJoints) -> None:
+    """With its name."""
+    async with simulated() as cell:
+        before = cell.joints()
+        end = await cell.perform(step)
+        moved = np.abs(cell.joints() - before).max()
+    assert end.status is GoalStatus.REJECTED
+    assert "would touch table" in str(end.cause)
+    assert moved < 1e-3
+
+
+async def told(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], set[float]]:
+    """Jog to the end; returns how it ended, what held it back, and which speeds of the first joint were sent."""
+    handle = cell.bus.send_goal(goal, to="left")
+    held: list[str] = []
+    handle.on_feedback(lambda feedback: held.append(feedback.held_by))
+    end = await handle.result()
+    return end.status, held, {round(row[0], 3) for row in sent(cell)}
+
+
+def sent(cell: FakeCell) -> list[tuple[float, ...]]:
+    """What the jog under way was sent."""
+    assert isinstance(cell.port.motion, FakeStream)
+    return cell.port.motion.sent
+
+
+@pytest.mark.virtual
+async def test_an_arm_that_nobody_looks_ahead_of_stands() -> None:
+    """A planning process that fails, or is silent; cameras that see nothing any more."""
+    slow = (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    async with fake_cell() as cell:
+        assert (await told(cell, JogJoints(velocity_rad_s=slow, duration_s=0.5)))[2] == {0.0, 0.1}
+        handle = cell.bus.send_goal(JogJoints(velocity_rad_s=slow, duration_s=4.0), to="left")
+        held: list[str] = []
+        handle.on_feedback(lambda feedback: held.append(feedback.held_by))
+        await handle.accepted()
+        await cell.bus.clock.sleep(0.3)
+        planner, cameras = cell.planner, cell.cameras
+        troubles: tuple[tuple[Callable[[bool], None], str], ...] = (
+            (lambda on: setattr(planner, "failing", "the process ended" if on else ""), "the process ended"),
+            (lambda on: setattr(planner, "silent_s", 9.0 if on else 0.0), "within 0.3 s"),
+            (lambda on: cameras.go_blind("no image for 2 s" if on else ""), "no image for 2 s"),
+        )
+        for trouble, words in troubles:
+            trouble(True)
+            await cell.bus.clock.sleep(0.4)
+            assert words in held[-1]
+            assert not any(sent(cell)[-1])
+            trouble(False)
+            await cell.bus.clock.sleep(0.4)
+            assert held[-1] == ""
+        await handle.result()
+        assert cell.cameras.required == 0
+
+
+@pytest.mark.virtual
+async def test_a_jog_is_rejected_where_the_scene_cannot_be_looked_at() -> None:
+    """Before anything moves."""
+    async with fake_cell() as cell:
+        cell.planner.failing = "the planning process does not start"
+        end = await cell.bus.send_goal(JogJoints(velocity_rad_s=(0.1,) * 7, duration_s=0.5), to="left").result()
+        assert (end.status, "does not start" in str(end.cause)) == (GoalStatus.REJECTED, True)
+        assert cell.cameras.required == 0
+
+
+@pytest.mark.virtual
+@pytest.mark.parametrize("seed", range(3))
+async def test_no_jog_in_any_direction_touches_what_stands_around(seed: int) -> None:
+    """Three posts at random places around the arm, four jogs of the tool one after the other, fast and askew."""
+    random = np.random.default_rng(seed)
+    async with simulated() as cell:
+        for k in range(3):
+            angle, far = random.uniform(0.7, 2.4) * random.choice((-1.0, 1.0)), random.uniform(0.3, 0.6)
+            place = (-0.55 + far * np.cos(angle), far * np.sin(angle), random.uniform(0.2, 0.8))
+            await cell.bus.call(put(f"post{k}", (0.08, 0.08, 0.5), place), to="cell")
+        assert (await near(cell)).distance_m > 0.0
+        for _ in range(4):
+            twist = np.concatenate((random.normal(size=3) * 0.25, random.normal(size=3) * 0.4))
+            _, nearest_m = await jogged(cell, JogTool(velocity=tuple(twist.tolist()), duration_s=1.5))
+            assert nearest_m > 0.0
