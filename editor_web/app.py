@@ -9,6 +9,7 @@ from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -20,27 +21,40 @@ from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
+from editor_web.past import Pasts
 from editor_web.routes import (
     behaviors,
     breakpoints,
     bus,
     catalogue,
     cell,
+    cell_grip,
+    cell_past,
     control,
+    data,
+    demonstration,
     documents,
     halt,
     live,
     page,
+    past,
+    relations,
     runs,
     session,
+    teaching,
 )
 from editor_web.routes.services import Services
 from editor_web.security import Gate
+from editor_web.teaching.jogging import Jogger
 from editor_web.wire import AskBody, ErrorBody, QuestionBody
 from engine.errors import ControlError, FlexcellError
 from engine.resume import NeedsAnswers
 
 STATIC = Path(__file__).parent / "static"
+# Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none.
+_REFUSALS: dict[int | str, dict[str, Any]] = {
+    status: {"model": ErrorBody} for status in (400, 401, 403, 404, 408, 413, 421, 422, 429)
+}
 
 
 def new_app(
@@ -74,6 +88,8 @@ def new_app(
         port=port,
     )
     app.state.started = OrderedDict[str, str]()
+    app.state.pasts = Pasts(backend)
+    app.state.joggers = dict[str, Jogger]()
     return Gate(app, access=access, limit=limit, hosts=hosts, port=port)
 
 
@@ -86,8 +102,30 @@ def api() -> FastAPI:
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
+        responses=_REFUSALS,
     )
-    for module in (session, breakpoints, behaviors, documents, catalogue, runs, control, halt, bus, live, cell, page):
+    # `relations` before `documents`, whose ids take any address.
+    for module in (
+        session,
+        breakpoints,
+        behaviors,
+        relations,
+        documents,
+        catalogue,
+        runs,
+        past,
+        control,
+        halt,
+        bus,
+        data,
+        live,
+        cell,
+        cell_past,
+        cell_grip,
+        teaching,
+        demonstration,
+        page,
+    ):
         app.include_router(module.router)
     app.include_router(control.interrupted_router)
     app.add_exception_handler(FlexcellError, _refused)

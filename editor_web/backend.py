@@ -7,15 +7,19 @@ attributes, so `engine` imports nothing from here. All calls come from the event
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Protocol
 
 from editor_web.operation import Operation
+from engine.archive import Archive
 from engine.bus.access import BusAccess
+from engine.bus.desk import BusDesk
 from engine.control import ControlView
 from engine.editing import Documents
 from engine.event import Event
 from engine.launch import Moment
 from engine.supervision import Supervision
+from engine.userdata_book import UserdataBook
 
 Unsubscribe = Callable[[], None]
 
@@ -267,8 +271,18 @@ class Backend(Operation, Protocol):
         ...
 
     @property
+    def archive(self) -> Archive:
+        """The past runs and recordings of the project."""
+        ...
+
+    @property
     def bus(self) -> BusAccess:
         """The skill bus, for the command line."""
+        ...
+
+    @property
+    def desk(self) -> BusDesk:
+        """The skill bus, for a person at a screen."""
         ...
 
     def behaviors(self) -> tuple[BehaviorSummary, ...]:
@@ -315,6 +329,17 @@ class Backend(Operation, Protocol):
 
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
         """Return the events of a run with `seq` > `after`, in order."""
+        ...
+
+    def userdata(self, run_id: str) -> UserdataBook:
+        """Return an empty book of a run's userdata, to be read from its events on; raises FlexcellError."""
+        ...
+
+    def recording_files(self, run_id: str) -> tuple[Path, ...]:
+        """Return the recordings of a run, oldest first, of a run under way too; `run_id` may be a recording's path.
+
+        Called on any thread.
+        """
         ...
 
     def latest(self, topic: str) -> object | None:

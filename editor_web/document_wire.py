@@ -73,12 +73,16 @@ class DocumentInfoBody(Wire):
 
 
 class DraftedBody(Wire):
-    """What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read."""
+    """What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read.
+
+    `checked` is false where it was not asked for findings, which may follow from `findings`.
+    """
 
     hash: str
     graph: DocumentNodeBody | None
     document: DocumentInfoBody | None
     findings: tuple[FindingBody, ...]
+    checked: bool
 
 
 class DocumentBody(DraftedBody):
@@ -117,7 +121,13 @@ class TextBody(Wire):
     text: Text
 
 
-class EditsBody(TextBody):
+class DraftBody(TextBody):
+    """A text to draw; without `check` the answer comes sooner, and without findings."""
+
+    check: bool = True
+
+
+class EditsBody(DraftBody):
     """A text and the edits to make in it, all or none; they are those of `engine.editing.edit`."""
 
     edits: Annotated[list[dict[str, object]], Field(max_length=500)]
@@ -175,10 +185,11 @@ class NewIdBody(Wire):
 
 
 class VersionBody(Wire):
-    """One version of a document; `saved_at` is when it was first seen."""
+    """One version of a document: when it was first seen; `by` is `editor`, or `file` where it was found there."""
 
     hash: str
     saved_at: float
+    by: str
     current: bool
 
 

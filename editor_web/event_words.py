@@ -55,7 +55,7 @@ class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
     kind: str
 
 
-class LogLine(msgspec.Struct, frozen=True, kw_only=True):
+class LogLine(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One line of the event log; `level` is debug, info, warning or error, `kind` the event's tag."""
 
     seq: int
@@ -94,7 +94,7 @@ def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
             return event.path, "debug", "entered" if event.visit == 1 else f"entered, visit {event.visit}", None
         case Exited():
             level = {"failed": "error", "stopped": "warning"}.get(status_of(event), "info")
-            how = "stopped" if event.preempted else f"ended with {event.outcome}"
+            how = "stopped" if event.preempted else f"ended with {event.outcome or 'an error'}"
             return event.path, level, f"{how} after {_seconds(duration_s)}", event.cause
         case UserdataWritten():
             return event.path, "debug", f"{event.key} = {_short(event.value)}", None

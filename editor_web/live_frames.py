@@ -80,7 +80,7 @@ class DocumentsChanged(msgspec.Struct, frozen=True, kw_only=True, tag="documents
 
 
 class Ping(msgspec.Struct, frozen=True, kw_only=True, tag="ping", tag_field="k"):
-    """Nothing happened; the connection lives."""
+    """The connection lives; a page that does not answer with `Pong` for a while counts as gone."""
 
     server_time_s: float
 

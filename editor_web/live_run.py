@@ -28,6 +28,8 @@ from engine.event import (
 from engine.skills.planning import PlannedMotion
 
 LOG_LINES = 1000
+# The others change no node.
+_FOLDED = (RunStarted, Entered, Exited, Transitioned, GoalFinished, StatusChanged, Diverted, RunEnded)
 # After these the list of runs may have another word on what the run waits for.
 _TURNS = (RunStarted, StopRequested, RunEnded, Commanded, GateReached, GatePassed, OperatorChanged)
 
@@ -42,7 +44,7 @@ class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
     planning_s: float
 
 
-class NodeLive(msgspec.Struct, frozen=True, kw_only=True):
+class NodeLive(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One node: idle, active, done, failed or stopped.
 
     `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the
@@ -80,20 +82,46 @@ class LiveRun:
         self.lock_reasons: dict[str, str] = {}
         self.nodes: dict[str, NodeLive] = {}
         self.log: deque[LogLine] = deque(maxlen=LOG_LINES)
+        self._containers: frozenset[str] = frozenset()
 
     def apply(self, event: Event) -> Change | None:
         """Fold one event in; None when it was already."""
+        changed = self.advance(event)
+        if changed is None:
+            return None
+        line = log_line(event, duration_s=_duration(event, changed))
+        self.log.append(line)
+        return Change(nodes=changed, line=line, run_changed=isinstance(event, _TURNS))
+
+    def advance(self, event: Event) -> dict[str, NodeLive] | None:
+        """Fold one event in, without a line in the log; the nodes that it changed, None when it was already."""
         if event.seq <= self.seq:
             return None
         self.seq = event.seq
         self.time_s = event.time_s
         if isinstance(event, Commanded):
             self._commanded(event)
-        changed = self._nodes_changed(event)
+        changed = self._nodes_changed(event) if isinstance(event, _FOLDED) else {}
+        for path in changed:
+            if path not in self.nodes:
+                self._note_containers(path)
         self.nodes.update(changed)
-        line = log_line(event, duration_s=_duration(event, changed))
-        self.log.append(line)
-        return Change(nodes=changed, line=line, run_changed=isinstance(event, _TURNS))
+        return changed
+
+    def copy(self) -> LiveRun:
+        """Return one that goes on from here by itself, its log empty."""
+        made = LiveRun(self.run_id)
+        made.seq, made.time_s, made.real_time, made.ended = self.seq, self.time_s, self.real_time, self.ended
+        made.lock_reasons, made.nodes = dict(self.lock_reasons), dict(self.nodes)
+        made._containers = self._containers
+        return made
+
+    def _note_containers(self, path: str) -> None:
+        above = path.rpartition("/")[0]
+        # Never changed in place: copies share it.
+        while above and above not in self._containers:
+            self._containers = self._containers | {above}
+            above = above.rpartition("/")[0]
 
     def _commanded(self, event: Commanded) -> None:
         if event.command == "lock":
@@ -128,18 +156,22 @@ class LiveRun:
         return {}
 
     def _entered(self, event: Entered) -> dict[str, NodeLive]:
-        inside = f"{event.path}/"
-        # What lies inside starts afresh with its container; the counters go on.
-        changed = {
-            path: NodeLive(visits=node.visits)
-            for path, node in self.nodes.items()
-            if path.startswith(inside) and node.status != "idle"
-        }
+        changed: dict[str, NodeLive] = {}
+        if event.path in self._containers:
+            inside = f"{event.path}/"
+            # What lies inside starts afresh with its container; the counters go on.
+            changed = {
+                path: NodeLive(visits=node.visits)
+                for path, node in self.nodes.items()
+                if path.startswith(inside) and node.status != "idle"
+            }
         changed[event.path] = NodeLive(status="active", visits=event.visit, entered_s=event.time_s)
         return changed
 
     def _planned(self, event: GoalFinished) -> dict[str, NodeLive]:
         """A finished goal matters to its node only where its result is a way."""
+        if event.result is None or "tool_path" not in event.result:
+            return {}
         try:
             plan = msgspec.convert(event.result, PlannedMotion)
         except msgspec.ValidationError:

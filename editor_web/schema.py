@@ -15,6 +15,8 @@ import msgspec
 
 from editor_web.app import api
 from editor_web.live_frames import Delta, DocumentsChanged, Hello, Operate, Ping, Pong, Show, Snapshot, Watch
+from editor_web.past import Failure, Moment, Timeline
+from editor_web.teaching_wire import SCHEMAS as TEACHING
 from engine.document.parameter import any_value
 from engine.editing import AnyEdit
 
@@ -51,7 +53,21 @@ def _http_schemas() -> dict[str, Schema]:
 
 def _live_schemas() -> dict[str, Schema]:
     _, components = msgspec.json.schema_components(
-        [Hello, Snapshot, Delta, DocumentsChanged, Ping, Pong, Watch, Operate, Show],
+        [
+            Hello,
+            Snapshot,
+            Delta,
+            DocumentsChanged,
+            Ping,
+            Pong,
+            Watch,
+            Operate,
+            Show,
+            Timeline,
+            Moment,
+            Failure,
+            *TEACHING,
+        ],
         ref_template="#/components/schemas/{name}",
     )
     return dict(components)
@@ -83,6 +99,7 @@ _EDITS = tuple(str(each.__name__) for each in get_args(AnyEdit))
 _SENT = {
     *_EDITS,
     "Edge",
+    "DemonstrationBody",
     "NewDocumentBody",
     "BreakpointBody",
     "MomentBody",
@@ -91,6 +108,7 @@ _SENT = {
     "StartBody",
     "StepBody",
     "StopBody",
+    "TaughtStepBody",
     "SupervisionBody",
     "Watch",
 }

@@ -15,6 +15,7 @@ from http.cookies import CookieError, SimpleCookie
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from editor_web.access import OPERATOR, Access, AttemptLimit
+from editor_web.bodies import TOO_LARGE, bounded, told_too_large
 
 PAGE_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self' data:; "
@@ -72,8 +73,10 @@ class Gate:
             return
         headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         refusal = self._refusal(scope, headers)
-        if refusal is None:
-            await self._app(scope, receive, send if scope["type"] == "websocket" else _with_headers(scope, send))
+        if refusal is None and scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        elif refusal is None:
+            await self._app(scope, bounded(receive), _with_headers(scope, send))
         elif scope["type"] == "websocket":
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": refusal.message})
@@ -84,6 +87,8 @@ class Gate:
         host = headers.get("host", "").lower()
         if host not in self._hosts:
             return _refuse(421, "this server does not answer to that host name")
+        if told_too_large(headers):
+            return _refuse(413, TOO_LARGE)
         origin = headers.get("origin")
         is_websocket = scope["type"] == "websocket"
         unsafe = is_websocket or scope["method"] not in SAFE_METHODS

@@ -16,6 +16,7 @@ from editor_web.access import load_access
 from editor_web.app import STATIC, new_app
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
+from editor_web.connection import TimedConnection
 from engine.errors import FlexcellError
 
 STOP_LIMIT_S = 3
@@ -82,6 +83,7 @@ async def dashboard(
             log_config=None,
             access_log=False,
             server_header=False,
+            http=TimedConnection,
             ws="websockets-sansio",
             ws_max_size=1_000_000,
             ws_per_message_deflate=False,

@@ -11,7 +11,9 @@ from typing import Any, Self
 
 import msgspec
 
+from engine.archive import Archive
 from engine.bus.access import BusAccess, LocalBus
+from engine.bus.desk import BusDesk
 from engine.cause import describe
 from engine.cell import OpenCell
 from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
@@ -27,10 +29,13 @@ from engine.library import BehaviorView, Library
 from engine.nearness import near_names
 from engine.plan import Catalogue, new_plan
 from engine.recorded_run import read_run
+from engine.session_entries import StoredEntries
 from engine.session_operators import Attachment, Operators
+from engine.session_recordings import SessionRecordings, Start
 from engine.session_run import SessionRun
 from engine.skill_port import BusPort
 from engine.supervision import Supervision
+from engine.userdata_book import UserdataBook
 
 EventCallback = Callable[[str, Event], None]
 _KEPT_RUNS = 200
@@ -54,18 +59,30 @@ class RunView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Session:
-    """What the dashboard works on; belongs to the event loop it is made on."""
+    """What the dashboard works on; belongs to the event loop it is made on. With `recordings` its runs are recorded."""
 
-    def __init__(self, cell: OpenCell, *, project: Path, catalogue: Catalogue, journal: Journal) -> None:
+    def __init__(
+        self,
+        cell: OpenCell,
+        *,
+        project: Path,
+        catalogue: Catalogue,
+        journal: Journal,
+        recordings: SessionRecordings | None = None,
+    ) -> None:
         self.cell = cell
         self._library = Library(project, catalogue)
-        self.documents = Documents(project, catalogue)
+        self._entries = StoredEntries(cell)
+        self.documents = Documents(project, catalogue, stored=self._entries.of_cell)
+        self.archive = Archive(project, catalogue, journal.path)
         self._journal = journal
+        self._recordings = recordings
         self._runs: dict[str, SessionRun] = {}
         self._callbacks: tuple[EventCallback, ...] = ()
         self._operators = Operators()
 
     async def __aenter__(self) -> Self:
+        await self._entries.open()
         return self
 
     async def __aexit__(
@@ -77,11 +94,19 @@ class Session:
         tasks = [started.task for started in self._runs.values() if started.task is not None]
         if tasks:
             await asyncio.wait(tasks)
+        if self._recordings is not None:
+            await self._recordings.close()
+        self._entries.close()
 
     @property
     def bus(self) -> BusAccess:
         """The cell's bus, by name and JSON."""
         return LocalBus(self.cell.bus)
+
+    @property
+    def desk(self) -> BusDesk:
+        """The cell's bus, for a person at a screen."""
+        return BusDesk(self.cell.bus)
 
     @property
     def cell_name(self) -> str:
@@ -142,6 +167,8 @@ class Session:
             checkpoint = moment_of(found, plan, seq=begin.seq, path=begin.path)
             known = {name: value for name, value in checkpoint.parameters.items() if name in plan.parameters}
             parameters = {**known, **parameters}
+        # Before the run, whose clock goes from here on.
+        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         run = new_run(
             plan,
             cell=self.cell,
@@ -154,7 +181,10 @@ class Session:
             skills=FaultPort(BusPort(self.cell.bus), faults, clock=self.cell.bus.clock, seed=seed) if faults else None,
             checkpoint=checkpoint,
         )
-        self._add(SessionRun(behavior_id, run, self.cell.bus.clock.now_s()))
+        self._add(
+            SessionRun(behavior_id, run, self.cell.bus.clock.now_s()),
+            Start(documents=documents, inputs=inputs, supervision=watched),
+        )
         return run.id
 
     def interrupted(self) -> tuple[RunRecord, ...]:
@@ -176,24 +206,30 @@ class Session:
             there = found.origin.cell or "no cell"
             raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
         catalogue = self._library.catalogue
+        behavior = self._library.behavior(behavior_id)
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
             found,
-            new_plan(self._library.behavior(behavior_id), catalogue),
+            new_plan(behavior, catalogue),
             catalogue=catalogue,
             answers=answers,
             changed=changed,
             restore=alone and found.origin.seed == self.cell.seed,
         )
+        watched = Supervision(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator)
+        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         run = await resume_run(
             resumption,
             cell=self.cell,
             journal=self._journal,
             catalogue=catalogue,
             answers=answers,
-            supervision=Supervision(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator),
+            supervision=watched,
         )
-        self._add(SessionRun(behavior_id, run, self.cell.bus.clock.now_s(), events=found.events))
+        self._add(
+            SessionRun(behavior_id, run, self.cell.bus.clock.now_s(), events=found.events),
+            Start(documents=documents, inputs=found.origin.inputs, supervision=watched),
+        )
         return run_id
 
     def control(self, run_id: str) -> Control:
@@ -275,6 +311,23 @@ class Session:
         events = self._known(run_id).events
         return events[after:]  # `seq` counts from 1 without gaps
 
+    def userdata(self, run_id: str) -> UserdataBook:
+        """Return an empty book of a run's userdata, to be read from its events on; raises FlexcellError."""
+        run = self._known(run_id).run
+        return UserdataBook(lambda: run.plan)
+
+    def recording_files(self, run_id: str) -> tuple[Path, ...]:
+        """Return the recordings of a run, oldest first, of a run under way too; `run_id` may be a recording's path.
+
+        Empty where the run was not recorded. May be called on any thread.
+
+        Raises:
+            RecordingError: there is no recording at that path in the project.
+        """
+        if run_id.endswith((".mcap", ".mcap.part")):
+            return (self.archive.recording_file(run_id),)
+        return self._recordings.files(run_id) if self._recordings is not None else ()
+
     def latest(self, topic: str) -> object | None:
         """Return the newest message of a bus topic, or None."""
         try:
@@ -293,19 +346,23 @@ class Session:
             callback(found.latest)
         return found.subscribe(callback).close
 
-    async def _execute(self, started: SessionRun) -> None:
-        started.result = await started.run.execute()
+    async def _execute(self, started: SessionRun, start: Start) -> None:
+        if self._recordings is None:
+            started.result = await started.run.execute()
+            return
+        async with self._recordings.around(started.run, start, cell=self.cell):
+            started.result = await started.run.execute()
 
     def _tell(self, run_id: str, event: Event) -> None:
         self._runs[run_id].events.append(event)
         for callback in self._callbacks:
             callback(run_id, event)
 
-    def _add(self, started: SessionRun) -> None:
+    def _add(self, started: SessionRun, start: Start) -> None:
         run = started.run
         self._runs[run.id] = started
         run.watch(lambda event: self._tell(run.id, event))
-        started.task = asyncio.create_task(self._execute(started), name=f"session run {run.id}")
+        started.task = asyncio.create_task(self._execute(started, start), name=f"session run {run.id}")
         self._forget_oldest()
 
     def _cell_file(self) -> str | None:

@@ -28,6 +28,7 @@ from states.manipulation.pick_part import PickPart
 from states.manipulation.place_part import PlacePart
 from states.motion.cart_dmp import FollowCartDmp
 from states.motion.execute_plan import ExecutePlan
+from states.motion.follow_recording import FollowRecording
 from states.motion.guide import Guide
 from states.motion.joint_dmp import FollowJointDmp
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
@@ -66,6 +67,7 @@ _STATES: tuple[type[State], ...] = (
     ExpectPart,
     FollowCartDmp,
     FollowJointDmp,
+    FollowRecording,
     ForgetOccupancy,
     Grasp,
     Guide,

@@ -9,6 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.colours import ramp
 from editor_web.cell_view.groups import root_of
 from editor_web.cell_view.newest import Newest
@@ -52,25 +53,26 @@ def picture(image: DepthImage) -> NDArray[np.uint8]:
 class Cameras:
     """Draws a frustum for each camera, and its newest image in it, at most five times a second."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
+        self._root = root_of("cameras", under=under)
         self._cameras: dict[str, _Camera] = {}
 
     def draw(self, newest: Newest, now_s: float) -> float | None:
         """Draw what has changed; returns when to call again where it is too early now."""
         due: list[float] = []
         for name in {**newest.cameras, **newest.depths}:
-            camera = self._cameras.setdefault(name, _Camera(self._server, name))
+            camera = self._cameras.setdefault(name, _Camera(self._server, name, node=f"{self._root}/{name}"))
             if (next_s := camera.draw(newest.cameras.get(name), newest.depths.get(name), now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
 
 
 class _Camera:
-    def __init__(self, server: viser.ViserServer, name: str) -> None:
+    def __init__(self, server: Canvas, name: str, *, node: str) -> None:
         self._server = server
         self._name = name
-        self._node = f"{root_of('cameras')}/{name}"
+        self._node = node
         self._drawn: tuple[CameraInfo | None, DepthImage | None] = (None, None)
         self._lens: CameraIntrinsics | None = None
         self._handle: viser.CameraFrustumHandle | None = None

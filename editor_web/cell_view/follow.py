@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Protocol
 
 from editor_web.backend import Unsubscribe
@@ -36,6 +37,10 @@ class Topics(Protocol):
     @property
     def bus(self) -> BusAccess:
         """For the listing of the topics."""
+        ...
+
+    def recording_files(self, run_id: str) -> Sequence[Path]:
+        """Return the recordings of a run, oldest first; of one that is named by its path too."""
         ...
 
     def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Unsubscribe:

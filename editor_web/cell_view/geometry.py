@@ -8,6 +8,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.placement import Matrix, Placed, rotation, wxyz
 from engine.errors import FlexcellError
 from engine.messages import Vector3, VisualGeometry
@@ -18,7 +19,7 @@ Shown = viser.MeshHandle | viser.BoxHandle | viser.CylinderHandle | viser.Icosph
 
 
 def add_geometry(
-    server: viser.ViserServer,
+    server: Canvas,
     name: str,
     geometry: VisualGeometry,
     *,
@@ -31,11 +32,10 @@ def add_geometry(
         FlexcellError: its kind is unknown.
         ValueError: its numbers do not make a shape.
     """
-    red, green, blue, alpha = geometry.rgba
-    own: Rgb = (round(red * 255), round(green * 255), round(blue * 255))
+    alpha = geometry.rgba[3]
     # The options are the same for each kind of shape; viser types them separately.
     common: dict[str, Any] = {
-        "color": own if tint is None else tint,
+        "color": colour_of(geometry) if tint is None else tint,
         "opacity": opacity if opacity is not None else None if alpha >= 1.0 else alpha,
         # A ghost that stands where the body is must not flicker against it.
         "scale": 1.0 if opacity is None else _SWELL,
@@ -61,6 +61,12 @@ def add_geometry(
                 where=geometry.name,
                 hint="use box, cylinder, sphere or mesh",
             )
+
+
+def colour_of(geometry: VisualGeometry) -> Rgb:
+    """Return its own colour."""
+    red, green, blue, _ = geometry.rgba
+    return (round(red * 255), round(green * 255), round(blue * 255))
 
 
 def corners(geometry: VisualGeometry, pose: Placed | None) -> Matrix:

@@ -12,6 +12,7 @@ from typing import Literal
 
 import viser
 
+from editor_web.cell_view.canvas import CELL, PAST
 from editor_web.cell_view.lock import PAGE
 
 Group = Literal["voxels", "ways", "obstacles", "cameras", "people", "frames"]
@@ -20,13 +21,13 @@ SHOWN_AT_FIRST: frozenset[Group] = frozenset({"voxels", "ways", "obstacles", "pe
 _KEPT_PAGES = 200
 
 
-def root_of(group: Group) -> str:
-    """Return the name of the node that everything of a group is below."""
-    return f"/{group}"
+def root_of(group: Group, *, under: str = "") -> str:
+    """Return the name of the node that everything of a group is below, itself below the node `under`."""
+    return f"{under}/{group}"
 
 
 class ClientGroups:
-    """Which groups each connected client shows.
+    """Which groups each connected client shows, of the present or of a past moment.
 
     Args:
         server: Of the clients.
@@ -37,17 +38,18 @@ class ClientGroups:
         self._changed = changed
         self._lock = threading.Lock()
         self._choices: dict[str, frozenset[Group]] = {}
-        self._roots: dict[int, dict[Group, viser.FrameHandle]] = {}
-        self._pages: dict[int, str] = {}
+        self._past: frozenset[str] = frozenset()
+        self._roots: dict[int, _Roots] = {}
         # Coroutines, because these run in the context of the connection, where `PAGE` is.
         server.on_client_connect(self._connected)
         server.on_client_disconnect(self._disconnected)
 
     @property
     def shown(self) -> frozenset[Group]:
-        """The groups that at least one client shows now."""
+        """The groups that at least one client shows now, as they are now."""
         with self._lock:
-            return frozenset[Group]().union(*(self._choice(page) for page in self._pages.values()))
+            pages = {roots.page for roots in self._roots.values()} - self._past
+            return frozenset[Group]().union(*(self._choice(page) for page in pages))
 
     def show(self, page: str, groups: frozenset[Group]) -> None:
         """Let the clients of a page, present and to come, show these groups and no others."""
@@ -56,28 +58,82 @@ class ClientGroups:
             self._choices[page] = groups
             while len(self._choices) > _KEPT_PAGES:
                 del self._choices[next(iter(self._choices))]
-            for client, of_page in self._pages.items():
-                if of_page == page:
-                    for group, root in self._roots[client].items():
-                        root.visible = group in groups
+            self._update(page)
         self._changed()
+
+    @property
+    def past(self) -> frozenset[str]:
+        """The pages that show a past moment."""
+        with self._lock:
+            return self._past
+
+    def clear_past(self, client_id: int) -> None:
+        """Remove whatever a client has below `/past`."""
+        with self._lock:
+            roots = self._roots.get(client_id)
+            if roots is not None:
+                roots.clear_past()
+                self._update(roots.page)
+
+    def show_past(self, pages: frozenset[str]) -> None:
+        """Let the clients of these pages show what is below `/past`, and all others what is live."""
+        with self._lock:
+            changed, self._past = self._past ^ pages, pages
+            for page in changed:
+                self._update(page)
+        if changed:
+            self._changed()
 
     def _choice(self, page: str) -> frozenset[Group]:
         return self._choices.get(page, SHOWN_AT_FIRST)
 
+    def _update(self, page: str) -> None:
+        for roots in self._roots.values():
+            if roots.page == page:
+                roots.show(self._choice(page), is_past=page in self._past)
+
     async def _connected(self, client: viser.ClientHandle) -> None:
         page = PAGE.get()
         with self._lock:
-            shown = self._choice(page)
-            self._pages[client.client_id] = page
-            self._roots[client.client_id] = {
-                group: client.scene.add_frame(root_of(group), show_axes=False, visible=group in shown)
-                for group in GROUPS
-            }
+            self._roots[client.client_id] = _Roots(client, page)
+            self._update(page)
         self._changed()
 
     async def _disconnected(self, client: viser.ClientHandle) -> None:
         with self._lock:
-            self._pages.pop(client.client_id, None)
             self._roots.pop(client.client_id, None)
         self._changed()
+
+
+class _Roots:
+    """One client's own nodes above everything that it can show or hide."""
+
+    def __init__(self, client: viser.ClientHandle, page: str) -> None:
+        self.page = page
+        self._live = client.scene.add_frame(CELL, show_axes=False)
+        self._groups = {group: client.scene.add_frame(root_of(group), show_axes=False) for group in GROUPS}
+        self._scene = client.scene
+        self._past, self._past_groups = _past_roots(client.scene)
+
+    def clear_past(self) -> None:
+        """Remove whatever there is below `/past`."""
+        self._past.remove()
+        self._past, self._past_groups = _past_roots(self._scene)
+
+    def show(self, groups: frozenset[Group], *, is_past: bool) -> None:
+        """Show these groups, and the bodies of the cell."""
+        _set_visible(self._live, not is_past)
+        _set_visible(self._past, is_past)
+        for group in GROUPS:
+            _set_visible(self._groups[group], group in groups and not is_past)
+            _set_visible(self._past_groups[group], group in groups)
+
+
+def _past_roots(scene: viser.SceneApi) -> tuple[viser.FrameHandle, dict[Group, viser.FrameHandle]]:
+    root = scene.add_frame(PAST, show_axes=False, visible=False)
+    return root, {group: scene.add_frame(root_of(group, under=PAST), show_axes=False) for group in GROUPS}
+
+
+def _set_visible(frame: viser.FrameHandle, is_visible: bool) -> None:
+    if frame.visible != is_visible:
+        frame.visible = is_visible

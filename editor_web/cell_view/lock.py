@@ -9,23 +9,32 @@ from __future__ import annotations
 import hmac
 import http
 import io
+import logging
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import viser
 import websockets.asyncio.server
 
 KEY_HEADER = "X-Cell-Key"
 PAGE_HEADER = "X-Cell-Page"
+ROLE_HEADER = "X-Cell-Role"
 PAGE: ContextVar[str] = ContextVar("cell_page", default="")
 """The page that a connection of viser belongs to; set in all that is done for that connection."""
+ROLE: ContextVar[str] = ContextVar("cell_role", default="")
+"""What whoever looks at that page may do: a role of `editor_web.access`."""
 _HIDE_PANEL = (
     b"<style>[data-testid=floating-panel],[data-floating-window],[data-dock-region],div:has([data-dock-root])~.mantine-Paper-root,"
     b".mantine-Notifications-root{display:none!important}</style></head>"
 )
+# What viser's reading of a message raises where it is none of viser's own.
+_UNREADABLE = (AssertionError, AttributeError, KeyError, TypeError, ValueError, msgspec.DecodeError)
+_UNSUPPORTED_DATA = 1003
+_log = logging.getLogger("flexcell.cell_view")
 
 
 def page() -> bytes:
@@ -67,7 +76,12 @@ def _locked(key: str) -> Generator[None]:
 
         async def named(connection: Any) -> None:
             PAGE.set(connection.request.headers.get(PAGE_HEADER, ""))
-            await handler(connection)
+            ROLE.set(connection.request.headers.get(ROLE_HEADER, ""))
+            try:
+                await handler(connection)
+            except _UNREADABLE as error:
+                _log.warning("a page sent what the 3D view cannot read; it was sent away: %r", error)
+                await connection.close(_UNSUPPORTED_DATA, "not understood")
 
         return original(named, *args, **{**options, "process_request": checked})
 

@@ -13,8 +13,8 @@ from engine.skills.planning_scene import PlanningSceneState
 class Newest:
     """One reference for each, the newest wins; `arrived` is set with every message.
 
-    `descriptions`, `ways`, `cameras` and `depths` are by the name of the arm or camera. Messages are frozen:
-    whoever reads one sees it whole.
+    `descriptions`, `ways`, `ghosts`, `cameras` and `depths` are by the name of the arm or camera. Messages are
+    frozen: whoever reads one sees it whole.
     """
 
     def __init__(self) -> None:
@@ -25,6 +25,7 @@ class Newest:
         self.occupancy: OccupancyGrid | None = None
         self.descriptions: dict[str, RobotDescription] = {}
         self.ways: dict[str, PathPreview] = {}
+        self.ghosts: dict[str, PathPreview] = {}
         self.occupancy_state: OccupancyState | None = None
         self.cameras: dict[str, CameraInfo] = {}
         self.depths: dict[str, DepthImage] = {}
@@ -52,4 +53,9 @@ class Newest:
                 self.depths = {**self.depths, name: message}
             case _:
                 return
+        self.arrived.set()
+
+    def put_ghost(self, preview: PathPreview) -> None:
+        """Keep what somebody looks at, which nobody goes."""
+        self.ghosts = {**self.ghosts, preview.robot: preview}
         self.arrived.set()

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import logging
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import viser
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.geometry import Rgb
 from editor_web.cell_view.groups import root_of
 from editor_web.cell_view.newest import Newest
 from editor_web.cell_view.placement import Placed, by_name, placed, rigid
 from editor_web.cell_view.solids import add_solid
+from editor_web.cell_view.touching import touching
 from engine.messages import FramePoses, Pose, SceneDescription
 from engine.shapes import Obstacle, Solid
 from engine.skills.planning import PathPreview
@@ -38,8 +39,9 @@ class _Shown:
 class Obstacles:
     """Draws `cell/planning_scene`; what `cell/scene` has under the same name is drawn there."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
+        self._root = root_of("obstacles", under=under)
         self._read: tuple[PlanningSceneState, SceneDescription | None, Mapping[str, PathPreview]] | None = None
         self._drawn: _Shown | None = None
         self._roots: list[viser.FrameHandle] = []
@@ -77,7 +79,7 @@ class Obstacles:
         ]
 
     def _add(self, name: str, solids: tuple[Solid, ...], pose: Pose, colour: Rgb) -> viser.FrameHandle:
-        node = f"{root_of('obstacles')}/{name.replace('/', '.')}"
+        node = f"{self._root}/{name.replace('/', '.')}"
         at = Placed(xyz=pose.xyz, xyzw=pose.xyzw)
         root = self._server.scene.add_frame(node, show_axes=False, position=at.xyz, wxyz=at.wxyz)
         self._roots.append(root)
@@ -104,9 +106,7 @@ def _shown(state: PlanningSceneState, scene: SceneDescription | None, ways: Mapp
     # A fixture of several bodies has them as `name/0`, `name/1`.
     known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
     held = {part.name for part in state.held}
-    reasons = [way.reason for way in ways.values() if way.state == "blocked" and way.reason]
-    names = [each.name for each in (*state.obstacles, *state.held)]
-    blocking = frozenset(n for n in names if any(_names(reason, n) for reason in reasons))
+    blocking = touching(ways, [each.name for each in (*state.obstacles, *state.held)])
     return _Shown(
         obstacles=tuple(
             each
@@ -116,8 +116,3 @@ def _shown(state: PlanningSceneState, scene: SceneDescription | None, ways: Mapp
         held=state.held,
         blocking=blocking,
     )
-
-
-def _names(reason: str, name: str) -> bool:
-    """Say whether `name` stands in `reason` as a word of its own."""
-    return re.search(rf"(?<![\w/]){re.escape(name)}(?![\w/])", reason) is not None

@@ -9,6 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.colours import Stops, ramp
 from editor_web.cell_view.groups import root_of
 from editor_web.cell_view.newest import Newest
@@ -16,7 +17,6 @@ from engine.sensing import OccupancyGrid
 
 _log = logging.getLogger("flexcell.cell_view")
 PERIOD_S = 0.1
-_NODE = f"{root_of('voxels')}/occupied"
 # viser's size is half an edge; a gap between neighbours lets one see that there are many.
 _POINT_SHARE = 0.46
 _HEIGHTS = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
@@ -53,8 +53,9 @@ def surface(taken: NDArray[np.bool_]) -> NDArray[np.bool_]:
 class Voxels:
     """Draws the newest grid, at most ten times a second and only when it has changed; grey when it is out of date."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
+        self._node = f"{root_of('voxels', under=under)}/occupied"
         self._drawn: tuple[OccupancyGrid, bool] | None = None
         self._handle: viser.PointCloudHandle | None = None
         self._next_s = 0.0
@@ -83,10 +84,11 @@ class Voxels:
             if self._handle is None:
                 # Squares, not cubes: in software a browser draws six times as many of them.
                 self._handle = self._server.scene.add_point_cloud(
-                    _NODE, points=points, colors=shades, point_shape="square", precision="float16"
+                    self._node, points=points, colors=shades, point_shape="square", precision="float16"
                 )
             else:
                 self._handle.points = points
                 self._handle.colors = shades
             self._handle.point_size = grid.voxel_m * _POINT_SHARE
             self._handle.position = grid.corner_m
+            self._handle.visible = len(points) > 0

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import viser
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.geometry import Rgb, Shown
 from editor_web.cell_view.placement import wxyz
 from engine.messages import Vector3
@@ -20,7 +20,7 @@ _SIDES = 24
 _SWELL = 1.01
 
 
-def add_solid(server: viser.ViserServer, name: str, solid: Solid, *, colour: Rgb, opacity: float) -> Shown:
+def add_solid(server: Canvas, name: str, solid: Solid, *, colour: Rgb, opacity: float) -> Shown:
     """Draw one solid below the node that `name` is below, translucent.
 
     Raises:

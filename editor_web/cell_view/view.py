@@ -12,16 +12,15 @@ from contextlib import redirect_stdout
 
 import viser
 
-from editor_web.cell_view.bodies import Bodies
-from editor_web.cell_view.cameras import Cameras
+from editor_web.cell_view.drawing import Drawing
 from editor_web.cell_view.follow import Follower, Topics
 from editor_web.cell_view.groups import ClientGroups, Group
+from editor_web.cell_view.handles import Handle, Handles
 from editor_web.cell_view.lock import new_server
 from editor_web.cell_view.newest import Newest
-from editor_web.cell_view.obstacles import Obstacles
-from editor_web.cell_view.occupancy import Voxels
-from editor_web.cell_view.ways import Ways
+from editor_web.cell_view.past_pages import PastPages, Tell
 from engine.errors import FlexcellError
+from engine.skills.planning import PathPreview
 
 PERIOD_S = 1.0 / 30.0
 _log = logging.getLogger("flexcell.cell_view")
@@ -42,6 +41,9 @@ class CellView:
         self.key = secrets.token_urlsafe(32)
         self._server: viser.ViserServer | None = None
         self._groups: ClientGroups | None = None
+        self._past: PastPages | None = None
+        self._handles: Handles | None = None
+        self._backend = backend
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ending = threading.Event()
@@ -66,7 +68,9 @@ class CellView:
         server.scene.set_up_direction("+z")
         server.scene.configure_default_lights(cast_shadow=self._shadows)
         self._groups = ClientGroups(server, changed=self._on_shown)
-        self._thread = threading.Thread(target=self._write, args=(server,), name="cell-view", daemon=True)
+        self._past = PastPages(server, self._groups, find=self._backend.recording_files)
+        handles = self._handles = Handles(server, changed=self._newest.arrived.set)
+        self._thread = threading.Thread(target=self._write, args=(server, handles), name="cell-view", daemon=True)
         self._thread.start()
 
     def request_tunnel(self) -> str | None:
@@ -78,10 +82,29 @@ class CellView:
         if self._groups is not None:
             self._groups.show(page, groups)
 
+    def show_past(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
+        """Let a page see a run as it was at a time of it; `tell` is called, on another thread, when it does."""
+        if self._past is not None:
+            self._past.show(page, run, time_s, tell=tell)
+
+    def show_present(self, page: str) -> None:
+        """Let a page see the cell as it is again."""
+        if self._past is not None:
+            self._past.leave(page)
+
+    def give_handle(self, page: str, handle: Handle | None) -> None:
+        """Give a page, where an operator looks at it, this handle to pull at; None takes it away."""
+        if self._handles is not None:
+            self._handles.give(page, handle)
+
     async def subscribe(self) -> None:
         """Follow the cell's topics, on the event loop's thread."""
         self._loop = asyncio.get_running_loop()
         await self._follower.open()
+
+    def show_ghost(self, preview: PathPreview) -> None:
+        """Show where an arm would be, until another is shown for it; one in the state `none` shows nothing."""
+        self._newest.put_ghost(preview)
 
     async def unsubscribe(self) -> None:
         """Stop following, on the event loop's thread."""
@@ -95,6 +118,9 @@ class CellView:
         if self._thread is not None:
             self._thread.join()
             self._thread = None
+        if self._past is not None:
+            self._past.close()
+            self._past = None
         if self._server is not None:
             with redirect_stdout(io.StringIO()):
                 self._server.stop()
@@ -111,35 +137,13 @@ class CellView:
                 # The loop has just been closed: nothing is followed any more.
                 _log.debug("the last page left after the event loop had ended")
 
-    def _write(self, server: viser.ViserServer) -> None:
-        draw = _Drawing(server)
+    def _write(self, server: viser.ViserServer, handles: Handles) -> None:
+        draw = Drawing(server)
         wait_s: float | None = None
         while not self._ending.is_set():
             self._newest.arrived.wait(wait_s)
             self._newest.arrived.clear()
             next_s = draw.all(self._newest, self.shown)
+            handles.draw(self._newest)
             self._ending.wait(PERIOD_S)
             wait_s = None if next_s is None else max(0.0, next_s - time.monotonic())
-
-
-class _Drawing:
-    """Everything that is drawn, each kind by itself."""
-
-    def __init__(self, server: viser.ViserServer) -> None:
-        self._bodies = Bodies(server)
-        self._ways = Ways(server)
-        self._obstacles = Obstacles(server)
-        self._voxels = Voxels(server)
-        self._cameras = Cameras(server)
-
-    def all(self, newest: Newest, shown: frozenset[Group]) -> float | None:
-        """Draw what has changed; returns when, on the steady clock, to draw again without a new message."""
-        now_s = time.monotonic()
-        self._bodies.draw(newest)
-        self._obstacles.draw(newest)
-        due = (
-            self._ways.draw(newest, now_s, is_shown="ways" in shown),
-            self._voxels.draw(newest, now_s),
-            self._cameras.draw(newest, now_s),
-        )
-        return min((each for each in due if each is not None), default=None)

@@ -10,6 +10,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
+from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.geometry import Rgb, Shown, add_geometry
 from editor_web.cell_view.groups import root_of
 from editor_web.cell_view.linkage import Linkage
@@ -30,17 +31,20 @@ PERIOD_S = 1.0 / 15.0
 
 
 class Ways:
-    """Draws the previews of all arms."""
+    """Draws the previews of all arms: those of plans, or, for `ghosts`, what somebody looks at."""
 
-    def __init__(self, server: viser.ViserServer) -> None:
+    def __init__(self, server: Canvas, *, ghosts: bool = False, under: str = "") -> None:
         self._server = server
+        self._root = root_of("ways", under=under)
+        self._are_ghosts = ghosts
         self._arms: dict[str, _ArmWay] = {}
 
     def draw(self, newest: Newest, now_s: float, *, is_shown: bool) -> float | None:
         """Draw what has changed; returns when to call again where a ghost moves and somebody looks."""
         due: list[float] = []
-        for name, preview in newest.ways.items():
-            way = self._arms.setdefault(name, _ArmWay(self._server, name))
+        for name, preview in (newest.ghosts if self._are_ghosts else newest.ways).items():
+            node = f"{self._root}/{'taught/' if self._are_ghosts else ''}{name}"
+            way = self._arms.setdefault(name, _ArmWay(self._server, name, node=node))
             way.draw(preview, newest, now_s)
             if is_shown and (next_s := way.animate(now_s)) is not None:
                 due.append(next_s)
@@ -48,9 +52,9 @@ class Ways:
 
 
 class _ArmWay:
-    def __init__(self, server: viser.ViserServer, name: str) -> None:
+    def __init__(self, server: Canvas, name: str, *, node: str) -> None:
         self._server = server
-        self._node = f"{root_of('ways')}/{name}"
+        self._node = node
         self._name = name
         self._arm: tuple[SceneDescription | None, RobotDescription | None] | None = None
         self._preview: PathPreview | None = None
@@ -144,9 +148,7 @@ class _ArmWay:
 class _Ghost:
     """A translucent copy of an arm."""
 
-    def __init__(
-        self, server: viser.ViserServer, node: str, scene: SceneDescription, description: RobotDescription
-    ) -> None:
+    def __init__(self, server: Canvas, node: str, scene: SceneDescription, description: RobotDescription) -> None:
         self._linkage = Linkage(description.urdf)
         self._base = rigid(description.base)
         self._arm = description.name

@@ -1,23 +1,27 @@
-"""The skill bus for the command line: list, echo, publish, call, goal; everything in the skills' own JSON."""
+"""The skill bus for the command line and the page: what there is, call, publish, goals; all in the skills' own JSON."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator
+from collections.abc import AsyncGenerator, Coroutine
 from contextlib import aclosing
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 
+from editor_web.bus_wire import BusBoard, BusFields, BusForm, BusParameterBody, TopicFields
+from editor_web.goal_stream import GoalStream
+from editor_web.pruned import pruned
 from editor_web.routes.services import ServicesOf
+from editor_web.signals import signal_fields
+from editor_web.traffic import shape_of
 from editor_web.wire import BusMessageBody, BusRequestBody, ErrorBody
-from engine.bus.access import BusAccess
-from engine.bus.action import GoalEnd
 
 router = APIRouter(prefix="/api/v1/bus", tags=["bus"], responses={422: {"model": ErrorBody}})
 CLIENT_CLOSED_REQUEST = 499
+R = TypeVar("R")
 
 
 def _json(value: object) -> Response:
@@ -62,14 +66,67 @@ async def call_service(body: BusRequestBody, services: ServicesOf) -> Response:
 @router.post("/goal")
 async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Request) -> Response:
     """Send a goal and return its end; it is cancelled when the client goes. This moves the robot."""
-    end = await _performed(services.backend.bus, body, request)
+    work = services.backend.bus.perform(body.address, body.request)
+    end = await while_there(work, request, name=f"goal {body.address}")
     if end is None:
         return Response(status_code=CLIENT_CLOSED_REQUEST)
     return _json({"status": end.status.value, "result": end.result, "cause": end.cause})
 
 
-async def _performed(bus: BusAccess, body: BusRequestBody, request: Request) -> GoalEnd[Any] | None:
-    goal = asyncio.create_task(bus.perform(body.address, body.request), name=f"goal {body.address}")
+@router.get("/board")
+async def get_board(services: ServicesOf) -> Response:
+    """Return topics, services, actions and parameters with what they are for; `shape` tells when to ask again."""
+    desk = services.backend.desk
+    parameters = (msgspec.structs.replace(each, value=pruned(each.value)) for each in desk.parameters())
+    return _json(
+        BusBoard(shape=shape_of(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters))
+    )
+
+
+@router.get("/form")
+async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> Response:
+    """Return the JSON Schema of the request at an address, or of the messages of a topic."""
+    desk = services.backend.desk
+    schema = desk.message_schema(topic) if topic else desk.request_schema(address)
+    return _json(BusForm(name=topic or address, schema=schema))
+
+
+@router.get("/fields")
+async def get_fields(services: ServicesOf) -> Response:
+    """Return the numbers of the newest message of every topic, to be plotted."""
+    desk = services.backend.desk
+    topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
+    return _json(
+        BusFields(
+            topics=tuple(
+                TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields
+            )
+        )
+    )
+
+
+@router.put("/parameter")
+async def set_parameter(body: BusParameterBody, services: ServicesOf) -> Response:
+    """Set a parameter and return its value then. This may change what a robot does."""
+    return _json(pruned(services.backend.desk.set_parameter(body.name, body.value)))
+
+
+@router.post("/goals")
+async def send_goal(body: BusRequestBody, services: ServicesOf) -> Response:
+    """Send a goal and tell its course, a JSON object a line; cancelled when the client goes. This moves the robot."""
+    desk = services.backend.desk
+    return GoalStream(desk, desk.send(body.address, body.request))
+
+
+@router.post("/goals/{goal}/cancel", status_code=202)
+async def cancel_goal(goal: str, services: ServicesOf) -> None:
+    """Ask for the stop of a goal that a person sent; its own stream tells the end."""
+    services.backend.desk.cancel(goal)
+
+
+async def while_there(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:
+    """Return what `work` returns; it is cancelled, and None returned, when the client goes before."""
+    goal = asyncio.create_task(work, name=name)
     gone = asyncio.create_task(_until_gone(request), name="goal-client")
     try:
         await asyncio.wait({goal, gone}, return_when=asyncio.FIRST_COMPLETED)

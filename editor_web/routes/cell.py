@@ -15,8 +15,8 @@ from starlette.websockets import WebSocketDisconnect
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, page
-from editor_web.routes.services import ServicesOf, services_of
+from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, CellView, page
+from editor_web.routes.services import ServicesOf, role_of, services_of
 
 router = APIRouter(include_in_schema=False)
 # As viser's own limit: its render answers are large.
@@ -52,7 +52,8 @@ async def cell_socket(socket: WebSocket, name: str = "") -> None:
         await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     try:
-        async with _viser(view, socket.scope.get("subprotocols", []), name=name) as inner:
+        offered = socket.scope.get("subprotocols", [])
+        async with _viser(view, offered, name=name, role=role_of(socket)) as inner:
             await socket.accept(subprotocol=inner.subprotocol)
             async with asyncio.TaskGroup() as tasks:
                 tasks.create_task(_inwards(socket, inner), name="cell-inwards")
@@ -63,12 +64,12 @@ async def cell_socket(socket: WebSocket, name: str = "") -> None:
 
 @asynccontextmanager
 async def _viser(
-    view: CellView, offered: list[str], *, name: str
+    view: CellView, offered: list[str], *, name: str, role: str
 ) -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
     connection = await websockets.asyncio.client.connect(
         f"ws://127.0.0.1:{view.port}/",
         subprotocols=[Subprotocol(p) for p in offered if p.startswith("viser-v")],
-        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: name},
+        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: name, ROLE_HEADER: role},
         max_size=MAX_MESSAGE_BYTES,
         compression=None,
         proxy=None,

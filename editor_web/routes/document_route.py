@@ -1,4 +1,4 @@
-"""Routes of documents: bounded bodies, 404 for what is not there, 409 with both texts for what changed meanwhile."""
+"""Routes of documents: 404 for what is not there, 409 with both texts for what changed meanwhile."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 from fastapi import Request, Response
 from fastapi.responses import JSONResponse
+from fastapi.routing import APIRoute
 
 from editor_web.document_wire import ConflictBody, MergeConflictBody
-from editor_web.routes.limited import LimitedRoute
 from editor_web.wire import ErrorBody
 from engine.editing import DocumentConflict, NoSuchDocument
 
 
-class DocumentRoute(LimitedRoute):
+class DocumentRoute(APIRoute):
     """A route whose handler may raise what `engine.editing.Documents` raises."""
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Annotated
 
-from fastapi import APIRouter, HTTPException, Query
+import msgspec
+from fastapi import APIRouter, HTTPException, Query, Response
 
 from editor_web.document_wire import (
     ConflictBody,
@@ -12,13 +14,13 @@ from editor_web.document_wire import (
     CopyBody,
     DifferenceBody,
     DocumentBody,
+    DraftBody,
     DraftedBody,
     EditedBody,
     EditsBody,
     KeyFlowBody,
     NewDocumentBody,
     NewIdBody,
-    RefusalBody,
     SaveBody,
     SavedBody,
     TextBody,
@@ -27,8 +29,8 @@ from editor_web.document_wire import (
 )
 from editor_web.routes.document_route import DocumentRoute
 from editor_web.routes.services import Services, ServicesOf
-from editor_web.wire import ErrorBody
-from engine.editing import Opened, apply_edits, copy_nodes, read_edits
+from editor_web.wire import ErrorBody, FindingBody
+from engine.editing import Examination, Opened, copy_nodes, read_edits
 from engine.editing.comparison import compare_texts
 
 router = APIRouter(
@@ -46,24 +48,29 @@ def create_document(body: NewDocumentBody, services: ServicesOf) -> DocumentBody
     return _document(services, made)
 
 
-@router.post("/{document_id:path}/draft")
-def draft(document_id: str, body: TextBody, services: ServicesOf) -> DraftedBody:
+@router.post("/{document_id:path}/draft", response_model=DraftedBody)
+def draft(document_id: str, body: DraftBody, services: ServicesOf) -> Response:
     """Draw and check a text as if it were the document's; text that cannot be read has findings and no graph."""
-    return DraftedBody.model_validate(services.documents.examine(document_id, body.text))
+    documents = services.documents
+    look = documents.examine if body.check else documents.draw
+    return _packed(look(document_id, body.text))
 
 
-@router.post("/{document_id:path}/edits")
-def edit(document_id: str, body: EditsBody, services: ServicesOf) -> EditedBody:
+@router.post("/{document_id:path}/findings")
+def find(document_id: str, body: TextBody, services: ServicesOf) -> list[FindingBody]:
+    """Check a text as if it were the document's, without drawing it."""
+    return [FindingBody.model_validate(each) for each in services.documents.findings(document_id, body.text)]
+
+
+@router.post("/{document_id:path}/edits", response_model=EditedBody)
+def edit(document_id: str, body: EditsBody, services: ServicesOf) -> Response:
     """Make edits in a text, all or none; nothing is saved."""
     documents = services.documents
     edits, refusal = read_edits(body.edits)
-    text, changed = body.text, tuple[str, ...]()
-    if refusal is None:
-        done = apply_edits(body.text, edits, file=document_id, knowledge=documents.knowledge(document_id))
-        text, changed, refusal = done.text, done.changed, done.refused
-    drafted = DraftedBody.model_validate(documents.examine(document_id, text))
-    refused = RefusalBody.model_validate(refusal) if refusal is not None else None
-    return EditedBody(text=text, changed=changed, refused=refused, **dict(drafted))
+    done, found = documents.edit(document_id, body.text, edits)
+    if body.check:
+        found = documents.examine(document_id, done.text)
+    return _packed(found, text=done.text, changed=done.changed, refused=refusal or done.refused)
 
 
 @router.post("/{document_id:path}/data_flow")
@@ -96,7 +103,9 @@ def list_versions(document_id: str, services: ServicesOf) -> list[VersionBody]:
     """List the versions of a document, newest first, also of a deleted one."""
     found = services.documents.versions(document_id)
     now = services.documents.hash_on_disk(document_id)
-    return [VersionBody(hash=each.hash, saved_at=each.saved_at_s, current=each.hash == now) for each in found]
+    return [
+        VersionBody(hash=each.hash, saved_at=each.saved_at_s, by=each.by, current=each.hash == now) for each in found
+    ]
 
 
 @router.get("/{document_id:path}/versions/{digest}")
@@ -108,7 +117,7 @@ def get_version(document_id: str, digest: str, services: ServicesOf) -> VersionT
         raise HTTPException(404, "this version is not kept")
     text = services.documents.version(document_id, digest)
     current = digest == services.documents.hash_on_disk(document_id)
-    return VersionTextBody(hash=digest, saved_at=version.saved_at_s, current=current, text=text)
+    return VersionTextBody(hash=digest, saved_at=version.saved_at_s, by=version.by, current=current, text=text)
 
 
 @router.get("/{document_id:path}/diff")
@@ -123,10 +132,12 @@ def get_difference(
     return DifferenceBody.model_validate(compare_texts(old, new, file=document_id))
 
 
-@router.get("/{document_id:path}")
-def get_document(document_id: str, services: ServicesOf) -> DocumentBody:
-    """Return a document as it is on disk, drawn and checked."""
-    return _document(services, services.documents.open(document_id))
+@router.get("/{document_id:path}", response_model=DocumentBody)
+def get_document(document_id: str, services: ServicesOf, check: bool = True) -> Response:
+    """Return a document as it is on disk, drawn and checked; without `check` sooner, and without findings."""
+    opened = services.documents.open(document_id)
+    look = services.documents.examine if check else services.documents.draw
+    return _packed(look(opened.id, opened.text), id=opened.id, text=opened.text, saved_at=opened.saved_at_s)
 
 
 @router.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
@@ -140,6 +151,12 @@ def save_document(document_id: str, body: SaveBody, services: ServicesOf) -> Sav
 def delete_document(document_id: str, services: ServicesOf) -> None:
     """Remove a document; its text stays among its versions."""
     services.documents.delete(document_id)
+
+
+def _packed(found: Examination, **beside: object) -> Response:
+    """Return an answer of a wire's model without making one of each node: its fields are the same."""
+    body = {each.name: getattr(found, each.name) for each in fields(found)} | beside
+    return Response(msgspec.json.encode(body), media_type="application/json")
 
 
 def _document(services: Services, opened: Opened) -> DocumentBody:

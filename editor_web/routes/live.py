@@ -21,6 +21,8 @@ from engine.errors import FlexcellError
 router = APIRouter()
 PERIOD_S = 0.05
 PING_S = 5.0
+SILENCE_S = 12.0
+"""A page answers each ping; one that is silent for longer is out of reach, whatever its socket says."""
 SEND_LIMIT_S = 5.0
 TRY_AGAIN_LATER = 1013
 _decoder: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
@@ -33,7 +35,7 @@ class _Closed(Exception):
 
 @router.websocket("/api/v1/live")
 async def live(socket: WebSocket) -> None:
-    """Serve one page until it goes or falls behind by more than `SEND_LIMIT_S`."""
+    """Serve one page until it goes, falls behind by more than `SEND_LIMIT_S`, or is silent for `SILENCE_S`."""
     services = services_of(socket)
     await socket.accept()
     client = services.hub.join()
@@ -83,8 +85,13 @@ class _Operator:
 async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, view: CellView | None) -> None:
     while True:
         try:
-            request = _decoder.decode(await socket.receive_text())
+            async with asyncio.timeout(SILENCE_S):
+                request = _decoder.decode(await socket.receive_text())
         except WebSocketDisconnect as error:
+            raise _Closed from error
+        except TimeoutError as error:
+            _log.warning("a page was silent for %.0f s; it counts as gone", SILENCE_S)
+            await _close(socket, "silent")
             raise _Closed from error
         except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
             await socket.close(1008, "expected a watch or pong message")
@@ -102,12 +109,16 @@ async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, v
 
 
 async def _stream(socket: WebSocket, client: LiveClient) -> None:
+    clock = asyncio.get_running_loop()
+    ping_s = clock.time() + PING_S
     while True:
+        if clock.time() >= ping_s:
+            await _send(socket, Ping(server_time_s=time.time()))
+            ping_s = clock.time() + PING_S
         try:
-            async with asyncio.timeout(PING_S):
+            async with asyncio.timeout_at(ping_s):
                 await client.dirty.wait()
         except TimeoutError:
-            await _send(socket, Ping(server_time_s=time.time()))
             continue
         frame = client.frame()
         if frame is not None:
@@ -122,17 +133,17 @@ async def _send(socket: WebSocket, frame: Frame) -> None:
             await socket.send_text(msgspec.json.encode(frame).decode())
     except TimeoutError as error:
         _log.warning("a page that is %.0f s behind was sent away; it will come back for a snapshot", SEND_LIMIT_S)
-        await _close_slow(socket)
+        await _close(socket, "too slow")
         raise _Closed from error
     except (WebSocketDisconnect, RuntimeError) as error:
         # Starlette raises RuntimeError for a send after the close.
         raise _Closed from error
 
 
-async def _close_slow(socket: WebSocket) -> None:
+async def _close(socket: WebSocket, reason: str) -> None:
     try:
         async with asyncio.timeout(1.0):
-            await socket.close(TRY_AGAIN_LATER, "too slow")
+            await socket.close(TRY_AGAIN_LATER, reason)
     except (TimeoutError, WebSocketDisconnect, RuntimeError):
-        # Its buffer is full: the close frame cannot be delivered either; the socket ends with this task.
+        # Nobody takes the close frame either; the socket ends with this task.
         _log.debug("the close frame could not be delivered")

@@ -36,7 +36,10 @@ def icon(services: ServicesOf) -> Response:
 @router.get("/")
 @router.get("/behaviors/{rest:path}")
 @router.get("/runs/{rest:path}")
+@router.get("/past")
+@router.get("/recordings/{rest:path}")
 @router.get("/edit/{rest:path}")
+@router.get("/teach")
 def index(services: ServicesOf, rest: str = "") -> Response:
     """Serve the page; what `rest` means is the page's business."""
     del rest

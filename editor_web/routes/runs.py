@@ -35,7 +35,7 @@ def get_run(run_id: str, services: ServicesOf) -> RunBody:
         raise HTTPException(404, error.message) from error
 
 
-@router.post("", status_code=201, responses={422: {"model": ErrorBody}})
+@router.post("", status_code=201, responses={200: {"model": StartedBody}, 422: {"model": ErrorBody}})
 async def start_run(
     body: StartBody,
     services: ServicesOf,

@@ -100,11 +100,18 @@ class LocalBus:
         Raises:
             BusError: nobody carries it out there, it is a service, the goal does not fit, or a run holds the resource.
         """
+        return await self.ended(self.send(address, goal))
+
+    def send(self, address: str, goal: object) -> GoalHandle[Any, Any]:
+        """Send a goal, to be followed by `ended`; raises what `perform` raises."""
         namespace, _, _ = address.rpartition("/")
         typed = self._typed(address, goal)
         if not issubclass(self._bus.request_type(address), Action):
             raise BusError("this is a service, not an action", where=address, hint="use `flexcell bus call`")
-        handle: GoalHandle[Any, Any] = self._bus.send_goal(typed, to=namespace, holder=VISITOR)
+        return self._bus.send_goal(typed, to=namespace, holder=VISITOR)
+
+    async def ended(self, handle: GoalHandle[Any, Any]) -> GoalEnd[Any]:
+        """Wait for the end of a goal that was sent; cancelled, the goal is cancelled and awaited first."""
         try:
             return await handle.result()
         except asyncio.CancelledError:

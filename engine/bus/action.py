@@ -119,6 +119,11 @@ class GoalHandle(Generic[R, F]):
         return self._goal.holder.run
 
     @property
+    def holder(self) -> Holder:
+        """Who sent it."""
+        return self._goal.holder
+
+    @property
     def finished(self) -> bool:
         """True once the handler has ended."""
         return self._task.done()

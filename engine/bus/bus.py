@@ -60,7 +60,7 @@ class SkillBus:
 
     def __init__(self, clock: Clock) -> None:
         self.clock = clock
-        self.leases = LeaseTable()
+        self.leases = LeaseTable(now_s=clock.now_s)
         self.parameters = ParameterServer()
         self._loop = asyncio.get_running_loop()
         self._topics: dict[str, Topic[Any]] = {}
@@ -123,6 +123,15 @@ class SkillBus:
         if name not in self._topics:
             raise BusError("no such topic", where=name, hint=near_names(name, self._topics))
         return self._topics[name]
+
+    def topics(self) -> tuple[Topic[Any], ...]:
+        """Return all topics, in the order in which they were made."""
+        return tuple(self._topics.values())
+
+    def skills(self) -> dict[str, type[Skill[Any]]]:
+        """Return the services and actions by their addresses."""
+        servers = {**self._services, **self._actions}
+        return {address: server.skill for address, server in servers.items()}
 
     def command_topics(self) -> tuple[str, ...]:
         """Return the topics on which a server does what is published, sorted."""

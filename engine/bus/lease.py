@@ -24,11 +24,27 @@ class Holder(msgspec.Struct, frozen=True):
         return f"run {self.run} at {self.branch}" if self.branch else f"run {self.run}"
 
 
-class LeaseTable:
-    """All leases of one bus; used on the loop thread only."""
+class Lease(msgspec.Struct, frozen=True, kw_only=True):
+    """Who commands `resource`, since `since_s` of the bus's clock; `branch` is empty for what a run merely keeps."""
 
-    def __init__(self) -> None:
+    resource: str
+    run: str
+    branch: str
+    since_s: float
+
+
+class LeaseTable:
+    """All leases of one bus; used on the loop thread only.
+
+    Args:
+        now_s: The clock that tells since when a lease is held.
+    """
+
+    def __init__(self, *, now_s: Callable[[], float] = lambda: 0.0) -> None:
+        self._now_s = now_s
         self._owners: dict[str, str] = {}
+        self._owned_since_s: dict[str, float] = {}
+        self._leased_since_s: dict[str, float] = {}
         self._branches: dict[str, list[Holder]] = {}
         self._waiting: list[tuple[str, Callable[[], None]]] = []
 
@@ -42,7 +58,12 @@ class LeaseTable:
         for resource in wanted:
             self.refuse_foreign(resource, holder)
         for resource in wanted:
-            self._owners[_root(resource)] = holder.run
+            root = _root(resource)
+            if root not in self._owners:
+                self._owned_since_s[root] = self._now_s()
+            if resource not in self._branches:
+                self._leased_since_s[resource] = self._now_s()
+            self._owners[root] = holder.run
             self._branches.setdefault(resource, []).append(holder)
 
     def release(self, resources: Iterable[str], holder: Holder) -> None:
@@ -53,12 +74,15 @@ class LeaseTable:
                 held.remove(holder)
             if not held:
                 self._branches.pop(resource, None)
+                self._leased_since_s.pop(resource, None)
 
     def release_run(self, run: str) -> None:
         """Give back everything a run owned."""
         self._owners = {name: owner for name, owner in self._owners.items() if owner != run}
         kept = {name: [h for h in held if h.run != run] for name, held in self._branches.items()}
         self._branches = {name: held for name, held in kept.items() if held}
+        self._owned_since_s = {name: at_s for name, at_s in self._owned_since_s.items() if name in self._owners}
+        self._leased_since_s = {name: at_s for name, at_s in self._leased_since_s.items() if name in self._branches}
         freed = [(name, callback) for name, callback in self._waiting if name not in self._owners]
         self._waiting = [entry for entry in self._waiting if entry not in freed]
         for _, callback in freed:
@@ -78,6 +102,17 @@ class LeaseTable:
         rows = {name: f"run {owner}" for name, owner in self._owners.items()}
         rows.update({name: str(held[-1]) for name, held in self._branches.items()})
         return tuple(sorted(rows.items()))
+
+    def held(self) -> tuple[Lease, ...]:
+        """Return every lease with its holder, sorted by resource."""
+        rows = {
+            name: Lease(resource=name, run=owner, branch="", since_s=self._owned_since_s[name])
+            for name, owner in self._owners.items()
+        }
+        for name, held in self._branches.items():
+            run, branch = held[-1].run, held[-1].branch
+            rows[name] = Lease(resource=name, run=run, branch=branch, since_s=self._leased_since_s[name])
+        return tuple(rows[name] for name in sorted(rows))
 
     def refuse_foreign(self, resource: str, holder: Holder) -> None:
         """Raise LeaseRefused where somebody else than `holder` commands the resource; leases nothing."""

@@ -22,9 +22,11 @@ _log = logging.getLogger("flexcell.bus")
 class Subscription(Generic[M]):
     """One subscriber; `close` ends it and may be called more than once."""
 
-    def __init__(self, topic: Topic[M], callback: Callable[[M], None]) -> None:
+    def __init__(self, topic: Topic[M], callback: Callable[[M], None], *, asks: bool = True) -> None:
         self._topic = topic
         self.callback = callback
+        self.asks = asks
+        """Whether messages are to be made for it."""
 
     def close(self) -> None:
         """Receive nothing more."""
@@ -89,9 +91,19 @@ class Topic(Generic[M]):
         return self._provider() if self._provider is not None else self._latest
 
     @property
+    def latest_at_s(self) -> float | None:
+        """When the newest message was published, on the bus's clock; None before the first."""
+        return self._stamps_s[-1] if self._stamps_s else None
+
+    @property
+    def is_made_on_demand(self) -> bool:
+        """Whether a provider makes the newest message when somebody looks."""
+        return self._provider is not None
+
+    @property
     def subscriber_count(self) -> int:
-        """How many listen; a publisher may skip building what nobody reads."""
-        return len(self._subscriptions)
+        """How many ask for messages; a publisher may skip building what nobody reads."""
+        return sum(each.asks for each in self._subscriptions)
 
     @property
     def rate_hz(self) -> float:
@@ -128,6 +140,12 @@ class Topic(Generic[M]):
     def subscribe(self, callback: Callable[[M], None]) -> Subscription[M]:
         """Call `callback` on the loop thread with each new message until closed."""
         subscription = Subscription(self, callback)
+        self._subscriptions = (*self._subscriptions, subscription)
+        return subscription
+
+    def overhear(self, callback: Callable[[M], None]) -> Subscription[M]:
+        """Call `callback` on the loop thread with what is published anyway; nothing is made for it."""
+        subscription = Subscription(self, callback, asks=False)
         self._subscriptions = (*self._subscriptions, subscription)
         return subscription
 

@@ -16,14 +16,12 @@ from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
 from engine.document import load_behavior, load_source
 from engine.document.cell import load_cell
-from engine.document.entries import load_entries
+from engine.document.entries import SECTIONS, load_entries
 from engine.errors import DocumentError, Position
 from engine.plan import Catalogue
 from engine.registry import load_states
 
-_ENTRIES = tuple(
-    (key, "entries") for key in ("joints", "poses", "dmps", "cart_dmps", "cart_offsets", "trajectories", "records")
-)
+_ENTRIES = tuple((key, "entries") for key in SECTIONS.values())
 
 
 def check(

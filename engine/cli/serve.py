@@ -21,6 +21,7 @@ from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
+from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
 from engine.teaching import HelpingHand, teachable
 from engine.watchdog import Watchdog
 
@@ -38,17 +39,46 @@ def serve(
     seed: Annotated[
         int | None, typer.Option(help="Seed of the jitter of parts; they lie exactly without one.", min=0)
     ] = None,
+    record: Annotated[
+        bool, typer.Option("--record/--no-record", help="Record every run to `recordings/` in the state folder.")
+    ] = True,
+    recordings_kept: Annotated[int, typer.Option(help="So many recordings are kept at most.", min=1)] = KEPT,
+    recordings_size: Annotated[
+        float, typer.Option(help="So large they are at most, together, in MB; the oldest go first.", min=1)
+    ] = SIZE_MB,
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
     loaded = load_cell(cell) if cell is not None else None
     state.mkdir(parents=True, exist_ok=True)
-    asyncio.run(_serve(loaded, port=port, host=host, project=project, state=state, seed=seed, open_page=open_))
+    recordings = (
+        SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
+    )
+    asyncio.run(
+        _serve(
+            loaded,
+            port=port,
+            host=host,
+            project=project,
+            state=state,
+            seed=seed,
+            recordings=recordings,
+            open_page=open_,
+        )
+    )
     raise typer.Exit(ExitCode.INTERRUPTED)
 
 
 async def _serve(
-    cell: Cell | None, *, port: int, host: str, project: Path, state: Path, seed: int | None, open_page: bool
+    cell: Cell | None,
+    *,
+    port: int,
+    host: str,
+    project: Path,
+    state: Path,
+    seed: int | None,
+    recordings: SessionRecordings | None,
+    open_page: bool,
 ) -> None:
     new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
     catalogue = load_states()
@@ -64,8 +94,10 @@ async def _serve(
     with Journal.open(state) as journal, Watchdog():
         async with (
             OpenCell(cell, seed=seed) as opened,
-            HelpingHand(opened.bus, robots=teachable(opened.bus), folder=state / "captures"),
-            Session(opened, project=project, catalogue=catalogue, journal=journal) as session,
+            HelpingHand(
+                opened.bus, robots=teachable(opened.bus), folder=state / "captures", file=state / "triggers.yaml"
+            ),
+            Session(opened, project=project, catalogue=catalogue, journal=journal, recordings=recordings) as session,
         ):
             serving = asyncio.create_task(
                 new_dashboard(session, token_file=state / "tokens", host=host, port=port, on_ready=ready),

@@ -22,7 +22,7 @@ from engine.store import EntryChange, Store, migrate
 
 app = typer.Typer(help="Read and write named entries of a cell: joint configurations, poses, primitives, records.")
 
-Kind = Annotated[str, typer.Argument(help="joints, pose, dmp, cart_dmp, cart_offsets, trajectory or record.")]
+Kind = Annotated[str, typer.Argument(help="joints, pose, dmp, cart_dmp, trajectory, gripper, detection, record …")]
 Name = Annotated[str, typer.Argument(help="Name of the entry.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Expected = Annotated[

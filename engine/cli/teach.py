@@ -15,6 +15,7 @@ from rich.table import Table
 
 from engine.bus.remote import RemoteBus
 from engine.cli.exit_code import ExitCode
+from engine.cli.teach_propose import propose
 from engine.errors import BusError
 from engine.skill import Service
 from engine.skills.entries import EntryRecord
@@ -43,6 +44,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Number = Annotated[int, typer.Argument(help="Number of the capture, see `flexcell teach status`.")]
 _STATE = Path(".flexcell")
 _NAMESPACE = "teach"
+app.command("propose")(propose)
 
 
 @app.command("set")

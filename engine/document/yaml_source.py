@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NoReturn, Protocol, cast
@@ -99,6 +99,37 @@ def parse_source(content: bytes | str, *, file: str) -> Source:
     Raises:
         DocumentError: the text is not an acceptable document; `where` is the position.
     """
+    reading = StrictReading(content, file=file)
+    for _ in reading:
+        pass
+    return reading.source()
+
+
+class StrictReading:
+    """The reading of a text event by event, for who looks at it more closely than its data: iterate, then `source`.
+
+    `said` is the value that the last event was or began. While iterating raises what `parse_source` does.
+    """
+
+    def __init__(self, content: bytes | str, *, file: str) -> None:
+        self._text = _acceptable(content, file)
+        self._file = file
+        self._builder = _Builder(file)
+
+    @property
+    def said(self) -> object:
+        """The scalar that was read last, or the dict or list that has begun."""
+        return self._builder.said
+
+    def source(self) -> Source:
+        """Return the document, when all of it was iterated over."""
+        return self._builder.source()
+
+    def __iter__(self) -> Iterator[object]:
+        return _events(self._text, self._file, self._builder)
+
+
+def _acceptable(content: bytes | str, file: str) -> str:
     text = _decode(content, file) if isinstance(content, bytes) else content
     if len(text) > MAX_BYTES:
         raise _too_large(file)
@@ -111,7 +142,7 @@ def parse_source(content: bytes | str, *, file: str) -> Source:
         _refuse(file, line, column, f"the character {shown} is not allowed in a document", "remove or escape it")
     if file.endswith(".json"):
         text = SURROGATE_PAIR.sub(one_code_point, text)
-    return _read_events(text, file)
+    return text
 
 
 def _decode(content: bytes, file: str) -> str:
@@ -168,14 +199,15 @@ class _Event(Protocol):
     tags: dict[str, str] | None
 
 
-def _read_events(text: str, file: str) -> Source:
-    builder = _Builder(file)
+def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     # PyYAML's C parser is untyped: the cast contains it here.
     parser = yaml.CSafeLoader(text)
     next_event = cast(Callable[[], _Event | None], parser.get_event)
     try:
         while (event := next_event()) is not None:
-            if builder.take(event):
+            ended = builder.take(event)
+            yield event
+            if ended:
                 break
     except yaml.MarkedYAMLError as error:
         mark = cast("_Mark | None", error.problem_mark or error.context_mark)
@@ -185,7 +217,6 @@ def _read_events(text: str, file: str) -> Source:
         raise DocumentError(str(error).splitlines()[0], where=Position(file=file, line=1, column=1)) from None
     finally:
         parser.dispose()
-    return builder.source()
 
 
 def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int, text: str) -> DocumentError:
@@ -209,6 +240,7 @@ class _Builder:
         self._file = file
         self._documents = 0
         self._nodes = 0
+        self.said: object = None
         self._root: list[object] = []
         self._root_place = Place(0, 0, 0, 0)
         # One row per open container: the container, its place, and the pending key of a mapping.
@@ -269,7 +301,7 @@ class _Builder:
         if type(container) is dict and self._key is None:
             self._take_key(event, value, plain)
             return
-        resolved = self._resolve(event, value) if plain else value
+        resolved = self.said = self._resolve(event, value) if plain else value
         self._add(resolved, mark.line, mark.column)
 
     def _take_key(self, event: _Event, key: str, plain: bool) -> None:
@@ -290,6 +322,7 @@ class _Builder:
             self._refuse(event, "a key must be text, not a mapping or list", "put `${…}` and `{…}` in quotes")
         if len(self._stack) >= MAX_DEPTH:
             self._refuse(event, f"nested deeper than {MAX_DEPTH} levels", "split the document with behavior references")
+        self.said = container
         outer = (self._container, self._place, None)
         place = self._add(container, mark.line, mark.column)
         place.children = {}

@@ -48,9 +48,13 @@ class Refusal:
 
 @dataclass(frozen=True, kw_only=True)
 class Edited:
-    """A text after edits, and the paths of the nodes that they made or changed; where refused, as it was."""
+    """A text after edits, and the paths of the nodes that they made or changed; where refused, as it was.
+
+    `draft` is the text as read, where edits were made.
+    """
 
     text: str
+    draft: Draft | None = None
     changed: tuple[str, ...] = ()
     refused: Refusal | None = None
 
@@ -77,25 +81,34 @@ def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, knowledg
         file: Name of the document, for positions.
         knowledge: The states and behaviors around it.
     """
-    index = 0
     try:
-        bench = Bench(Draft(text, file=file), knowledge)
+        draft = Draft(text, file=file)
+    except DocumentError as error:
+        return Edited(text=text, refused=Refusal(message=error.message, hint=error.hint or "", index=0))
+    return apply_to(draft, edits, knowledge=knowledge)
+
+
+def apply_to(draft: Draft, edits: Sequence[edit.AnyEdit], *, knowledge: Knowledge) -> Edited:
+    """Apply edits to a text that was read already; its `draft` is used up."""
+    index, text = 0, draft.given
+    try:
+        bench = Bench(draft, knowledge)
         for each in edits:
             _MAKERS[type(each)](bench, each)
             bench.stale()
             index += 1
-        made = bench.draft.text()
+        made = draft.rewritten()
     except (EditRefused, DocumentError) as error:
         return Edited(
             text=text,
             refused=Refusal(message=error.message, hint=error.hint or "", index=min(index, max(0, len(edits) - 1))),
         )
-    if len(made) > MAX_TEXT:
+    if len(made.given) > MAX_TEXT:
         refusal = Refusal(
             message="the document would become too large", hint="split it with behavior references", index=index
         )
         return Edited(text=text, refused=refusal)
-    return Edited(text=made, changed=bench.changed())
+    return Edited(text=made.given, draft=made, changed=bench.changed())
 
 
 def copy_nodes(text: str, paths: Sequence[str], *, file: str, knowledge: Knowledge) -> str:

@@ -133,14 +133,17 @@ class Restructuring:
         self.bench.stale()
         after = {id(spot.data): spot for spot in self.bench.outline.spots.values()}
         before = {spot.path: spot for spot in self._spots}
+        inside: dict[str, dict[str, Spot]] = {spot.path: {} for spot in self._spots}
+        for spot in self._spots:
+            if spot.parent is not None:
+                inside[spot.parent.path][spot.name] = spot
         for spot in self._spots:
             now = after.get(id(spot.data))
             if now is None:
                 continue
-            inside = {child.name: child for child in self._spots if child.parent is spot}
-            self._follow_container(now, inside, after, instead or {})
+            self._follow_container(now, inside[spot.path], after, instead or {})
             if spot.parent is not None and spot.parent.kind in NAMED:
-                beside = {each.name: each for each in self._spots if each.parent is spot.parent}
+                beside = inside[spot.parent.path]
                 self._follow_leads(now, spot.parent, beside, after, instead or {}, stray)
         for key in ("view", "notes"):
             self._follow_paths(key, before, after)

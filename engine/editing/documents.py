@@ -6,7 +6,7 @@ import json
 import re
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -14,16 +14,19 @@ from typing import cast
 from engine.check.subject import Catalogue
 from engine.document.loader import parse_behavior
 from engine.document.yaml_source import MAX_BYTES, parse_source
+from engine.editing.apply import Edited
 from engine.editing.catalogue import ReferableView, referable_views
 from engine.editing.data_flow import KeyFlow, data_flow
+from engine.editing.desk import Desk
 from engine.editing.draft import Draft
-from engine.editing.examination import Examination, examine, hash_of, strays
-from engine.editing.knowledge import Knowledge
+from engine.editing.edit import AnyEdit
+from engine.editing.examination import Examination, hash_of, strays
+from engine.editing.knowledge import Knowledge, Stored
 from engine.editing.merging import MergeConflict, merge_texts
 from engine.editing.templates import new_text
 from engine.editing.versions import Version, Versions, write_whole
 from engine.errors import DocumentError, Position
-from engine.library import Library
+from engine.library import FindingView, Library
 
 _ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
 _LATER = re.compile(r"\.breakpoints\.ya?ml$")
@@ -61,13 +64,23 @@ class Documents:
         project: The folder of the project.
         catalogue: The states by name.
         now_s: The wall clock, seconds since 1970.
+        stored: The entries of open cells, by the file of the cell; where it knows none the seed counts.
     """
 
-    def __init__(self, project: Path, catalogue: Catalogue, *, now_s: Callable[[], float] = time.time) -> None:
+    def __init__(
+        self,
+        project: Path,
+        catalogue: Catalogue,
+        *,
+        now_s: Callable[[], float] = time.time,
+        stored: Stored = lambda _: None,
+    ) -> None:
         self.catalogue = catalogue
+        self._stored = stored
         self._project = project.resolve()
         self._versions = Versions(self._project / ".flexcell" / "versions", now_s=now_s)
         self._writing = threading.Lock()
+        self._desk = Desk()
         self._library = Library(self._project, catalogue)
 
     @property
@@ -99,7 +112,7 @@ class Documents:
 
     def knowledge(self, document_id: str) -> Knowledge:
         """Return what is known around a document."""
-        return Knowledge(self.catalogue, self.file_of(document_id).parent, self._project)
+        return Knowledge(self.catalogue, self.file_of(document_id).parent, self._project, self._stored)
 
     def open(self, document_id: str) -> Opened:
         """Return a document and keep its text as a version, for whoever saves it later.
@@ -117,7 +130,20 @@ class Documents:
 
     def examine(self, document_id: str, text: str) -> Examination:
         """Draw and check a text as if it were the document's."""
-        return examine(text, file=self.file_of(document_id), knowledge=self.knowledge(document_id))
+        return self._desk.examine(text, file=self.file_of(document_id), knowledge=self.knowledge(document_id))
+
+    def draw(self, document_id: str, text: str) -> Examination:
+        """Draw a text as if it were the document's; what is wrong with it is looked for by `examine`."""
+        return self._desk.draw(text, file=self.file_of(document_id), knowledge=self.knowledge(document_id))
+
+    def findings(self, document_id: str, text: str) -> tuple[FindingView, ...]:
+        """Check a text as if it were the document's, without drawing it again."""
+        return self._desk.findings(text, file=self.file_of(document_id), knowledge=self.knowledge(document_id))
+
+    def edit(self, document_id: str, text: str, edits: Sequence[AnyEdit]) -> tuple[Edited, Examination]:
+        """Make edits in a text, all or none, and draw what comes of it; nothing is saved."""
+        knowledge = self.knowledge(document_id)
+        return self._desk.edit(text, edits, file=self.file_of(document_id), knowledge=knowledge)
 
     def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
         """Return who writes and who reads each key of a text.
@@ -155,7 +181,7 @@ class Documents:
             if there.hash != base_hash:
                 raise self._conflict(there, text, base_hash)
             write_whole(file, text)
-            self._versions.keep(document_id, text)
+            self._versions.keep(document_id, text, by="editor")
         return self._read(document_id, file)
 
     def create(self, document_id: str, *, template: str = "machine", name: str = "") -> Opened:
@@ -169,6 +195,15 @@ class Documents:
         if file.suffix == ".json":
             text = json.dumps(parse_source(text, file=document_id).data, indent=2, ensure_ascii=False) + "\n"
         return self._put(document_id, file, text)
+
+    def add(self, document_id: str, text: str) -> Opened:
+        """Make a document of a text.
+
+        Raises:
+            DocumentError: the id is taken, or the text is no behavior.
+        """
+        _require_document(text, document_id)
+        return self._put(document_id, self.file_of(document_id), text)
 
     def duplicate(self, document_id: str, new_id: str) -> Opened:
         """Make a copy of a document; raises DocumentError where the new id is taken."""
@@ -223,6 +258,23 @@ class Documents:
         self.file_of(document_id)
         return self._versions.text(document_id, digest)
 
+    def deleted(self) -> tuple[tuple[str, Version], ...]:
+        """Return the documents that have gone and of which a version is kept: id and newest version, newest first."""
+        with self._writing:
+            gone = [each for each in self._versions.ids() if not (self._project / each).exists()]
+            found = [(each, self._versions.all(each)[0]) for each in gone if _ID.fullmatch(each)]
+        return tuple(sorted(found, key=lambda each: -each[1].saved_at_s))
+
+    def restore(self, document_id: str) -> Opened:
+        """Write a document that was deleted again, as it was last.
+
+        Raises:
+            NoSuchDocument: no version of it is kept.
+            DocumentError: there is one under its id.
+        """
+        file, newest = self.file_of(document_id), self.versions(document_id)[0]
+        return self._put(document_id, file, self.version(document_id, newest.hash))
+
     def stamps(self) -> dict[str, tuple[int, int]]:
         """Return time of change (ns) and size of every document, by id; cheap enough to be asked each second."""
         found: dict[str, tuple[int, int]] = {}
@@ -263,7 +315,7 @@ class Documents:
             _require_free(file, document_id)
             file.parent.mkdir(parents=True, exist_ok=True)
             write_whole(file, text)
-            self._versions.keep(document_id, text)
+            self._versions.keep(document_id, text, by="editor")
         return self._read(document_id, file)
 
     def _read(self, document_id: str, file: Path) -> Opened:

@@ -6,7 +6,6 @@ import copy
 from collections.abc import Mapping
 from typing import Any, cast
 
-from engine.document.yaml_source import parse_source
 from engine.editing.matching import same
 from engine.editing.rewriting import Rewriter
 from engine.editing.syntax import Collection, Origin, read_syntax
@@ -18,7 +17,7 @@ class EditRefused(FlexcellError):
 
 
 class Draft:
-    """A document whose `data` may be changed at will; `text` is it as written then.
+    """A document whose `data` may be changed at will; `text` is it as written then, `given` as it was.
 
     Args:
         text: YAML or JSON.
@@ -30,6 +29,7 @@ class Draft:
 
     def __init__(self, text: str, *, file: str) -> None:
         self.file = file
+        self.given = text
         self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
         self._origin = read_syntax(self._plain(text), file=file)
         self._sources: dict[int, Collection] = {}
@@ -83,21 +83,29 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than was asked for.
         """
-        made = Rewriter(self._sources, self.json).document(self._origin, self.data)
-        if not self._says(made):
-            # What ends with a line feed cannot be shown on a last line without one.
-            made += "\n"
-            if not self._says(made):
-                hint = "change the text itself"
-                raise EditRefused("this edit cannot be written into the text as it is laid out", hint=hint)
-        return made.replace("\n", self._newline) if self._newline != "\n" else made
+        return self.rewritten().given
 
-    def _says(self, text: str) -> bool:
-        """Tell whether a text reads as the data, in kind and order."""
+    def rewritten(self) -> Draft:
+        """Return the document as it is now, read again from its text.
+
+        Raises:
+            EditRefused: it cannot be written without changing more than was asked for.
+        """
+        made = Rewriter(self._sources, self.json).document(self._origin, self.data)
+        # What ends with a line feed cannot be shown on a last line without one.
+        again = self._read_back(made) or self._read_back(made + "\n")
+        if again is None:
+            hint = "change the text itself"
+            raise EditRefused("this edit cannot be written into the text as it is laid out", hint=hint)
+        return again
+
+    def _read_back(self, made: str) -> Draft | None:
+        """Return what a text reads as where that is the data, in kind and order."""
         try:
-            return _equal(parse_source(text, file=self.file).data, self.data)
+            again = Draft(made.replace("\n", self._newline) if self._newline != "\n" else made, file=self.file)
         except DocumentError:
-            return False
+            return None
+        return again if _equal(again.data, self.data) else None
 
     def _plain(self, text: str) -> str:
         return text.replace("\r\n", "\n") if self._newline != "\n" else text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
@@ -20,12 +20,16 @@ from engine.library import FindingView
 
 @dataclass(frozen=True, kw_only=True)
 class Examination:
-    """What is known of a text; `graph` and `document` are None where it cannot be read."""
+    """What is known of a text; `graph` and `document` are None where it cannot be read.
+
+    `checked` is False where it was drawn, and nobody has looked yet for what is wrong with it.
+    """
 
     hash: str
     graph: DocumentNode | None
     document: DocumentInfo | None
     findings: tuple[FindingView, ...]
+    checked: bool
 
 
 def hash_of(text: str) -> str:
@@ -35,17 +39,35 @@ def hash_of(text: str) -> str:
 
 def examine(text: str, *, file: Path, knowledge: Knowledge) -> Examination:
     """Draw and check a text as if it stood in `file`."""
-    digest = hash_of(text)
     try:
         draft = Draft(text, file=str(file))
     except DocumentError as error:
-        return Examination(hash=digest, graph=None, document=None, findings=(_invalid(error),))
+        return unread(text, error)
+    return checked(draw(draft, file=file, knowledge=knowledge), text, file=file, knowledge=knowledge)
+
+
+def unread(text: str, error: DocumentError) -> Examination:
+    """Return what is known of a text that cannot be read."""
+    return Examination(hash=hash_of(text), graph=None, document=None, findings=(_invalid(error),), checked=True)
+
+
+def draw(draft: Draft, *, file: Path, knowledge: Knowledge) -> Examination:
+    """Draw a text as if it stood in `file`; one that leads out of the project is not looked at any further."""
     graph = document_graph(draft, knowledge)
-    found = strays(draft, knowledge, file) or _check(text, file, knowledge)
-    nodes = _by_line(graph) if graph is not None else []
-    placed = (_placed(each, nodes) for each in found)
-    findings = tuple(sorted(placed, key=lambda each: (each.line, each.column)))
-    return Examination(hash=digest, graph=graph, document=info_of(draft), findings=findings)
+    out = _in_order(strays(draft, knowledge, file), graph)
+    return Examination(hash=hash_of(draft.given), graph=graph, document=info_of(draft), findings=out, checked=bool(out))
+
+
+def checked(drawn: Examination, text: str, *, file: Path, knowledge: Knowledge) -> Examination:
+    """Return what is known of a text that was drawn, and what is wrong with it."""
+    if drawn.checked:
+        return drawn
+    return replace(drawn, findings=_in_order(_check(text, file, knowledge), drawn.graph), checked=True)
+
+
+def _in_order(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
+    nodes = _by_line(graph) if found and graph is not None else []
+    return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
 
 
 def _check(text: str, file: Path, knowledge: Knowledge) -> list[FindingView]:
@@ -53,7 +75,8 @@ def _check(text: str, file: Path, knowledge: Knowledge) -> list[FindingView]:
         behavior = parse_behavior(text, file=file)
     except DocumentError as error:
         return [_invalid(error, of=file)]
-    return [_view(finding, file) for finding in check_behavior(behavior, knowledge.catalogue)]
+    entries = knowledge.stored(behavior.cell_file) if behavior.cell_file is not None else None
+    return [_view(finding, file) for finding in check_behavior(behavior, knowledge.catalogue, entries)]
 
 
 def strays(draft: Draft, knowledge: Knowledge, file: Path) -> list[FindingView]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from itertools import accumulate
 from typing import cast
 
 import msgspec
 
 from engine.editing.draft import Draft
-from engine.editing.knowledge import Knowledge, rules, texts
+from engine.editing.knowledge import Ends, Knowledge, rules, texts
 from engine.editing.outline import MACHINES, Outline, Plain, Spot
 from engine.editing.syntax import Collection
 from engine.graph import GraphNode, GraphTransition
@@ -106,12 +108,18 @@ class _Drawing:
         self._view = _mapping(draft.data.get("view"))
         self._notes = _mapping(draft.data.get("notes"))
         text = draft.origin.text
-        self._starts = [0, *(index + 1 for index, letter in enumerate(text) if letter == "\n")]
-        self._places = {id(m.value): m.at for found in draft.origin.collections() for m in found.members}
+        self._starts = list(accumulate((len(line) + 1 for line in text.split("\n")), initial=0))[:-1]
+        self._ends: dict[str, Ends] = {}
+        self._places = {
+            id(member.value): member.at
+            for found in draft.origin.collections()
+            for member in found.members
+            if isinstance(member.value, Collection)
+        }
 
     def node(self, spot: Spot) -> DocumentNode:
         data, body = spot.data, spot.body
-        ends = self._knowledge.ends(self._outline, spot)
+        ends = self._knowledge.ends(self._outline, spot, known=self._ends)
         targets = _names(data.get("transitions"))
         wired = spot.parent is not None and spot.parent.kind in MACHINES
         line, column, end_line = self._lines(data)
@@ -188,11 +196,7 @@ class _Drawing:
         return line + 1, at - self._starts[line] + 1, self._line(max(at, source.end - 1)) + 1
 
     def _line(self, offset: int) -> int:
-        low, high = 0, len(self._starts)
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (middle, high) if self._starts[middle] <= offset else (low, middle)
-        return low
+        return bisect_right(self._starts, offset) - 1
 
 
 def _rules(spot: Spot) -> list[tuple[str, dict[str, str]]]:

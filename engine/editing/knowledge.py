@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
+from engine.check.entries import Entries
 from engine.check.subject import Catalogue
 from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
@@ -24,6 +25,10 @@ class Ends:
     success: tuple[str, ...]
 
 
+Stored = Callable[[Path], Entries | None]
+"""The names, by kind, of the entries that the store of a cell holds, by the cell's file; None where it is not open."""
+
+
 @dataclass
 class Knowledge:
     """What is known around a document.
@@ -32,11 +37,13 @@ class Knowledge:
         catalogue: The states by name.
         folder: Where the document lies; references are relative to it.
         project: Folder that references may not lead out of.
+        stored: What the stores of open cells hold.
     """
 
     catalogue: Catalogue
     folder: Path
     project: Path
+    stored: Stored = lambda _: None
     _known: dict[str, Ends | None] = field(default_factory=dict[str, "Ends | None"])
 
     def signature(self, state: str) -> StateSignature | None:
@@ -55,19 +62,33 @@ class Knowledge:
         except (OSError, ValueError):
             return None  # no path that this system can have
 
-    def ends(self, outline: Outline, spot: Spot) -> Ends:
-        """Return how a node can end, apart from timeouts, guards and errors."""
+    def ends(self, outline: Outline, spot: Spot, *, known: dict[str, Ends] | None = None) -> Ends:
+        """Return how a node can end, apart from timeouts, guards and errors.
+
+        Args:
+            outline: All nodes.
+            spot: Which.
+            known: What was found by path before, as long as nothing is changed; more comes to it.
+        """
+        if known is None:
+            return self._found(outline, spot, {})
+        found = known.get(spot.path)
+        if found is None:
+            found = known[spot.path] = self._found(outline, spot, known)
+        return found
+
+    def _found(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
         data = spot.data
         if isinstance(data.get("state"), str):
             return self._of_state(str(data["state"]), data)
         if isinstance(data.get("behavior"), str):
             return self._of_reference(str(data["behavior"])) or _used(data)
         if spot.kind == "concurrency":
-            return self._of_concurrency(outline, spot)
+            return self._of_concurrency(outline, spot, known)
         if spot.kind == "foreach":
             return Ends(FOREACH_OUTCOMES, FOREACH_OUTCOMES[:1])
         if spot.kind in MACHINES:
-            return self._of_machine(outline, spot)
+            return self._of_machine(outline, spot, known)
         return Ends(TREE_OUTCOMES, TREE_OUTCOMES[:1])
 
     def _of_state(self, name: str, data: Plain) -> Ends:
@@ -93,15 +114,15 @@ class Knowledge:
         outcomes = texts(said.get("outcomes"))
         return Ends(outcomes, texts(said.get("success")) or outcomes)
 
-    def _of_concurrency(self, outline: Outline, spot: Spot) -> Ends:
+    def _of_concurrency(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
         found = rules(spot)
         otherwise = spot.body.get("otherwise")
         named = [*(outcome for outcome, _ in found), *([otherwise] if isinstance(otherwise, str) else [])]
-        good = {child.name: self.ends(outline, child).success for child in outline.children(spot)}
+        good = {child.name: self.ends(outline, child, known=known).success for child in outline.children(spot)}
         nominal = [outcome for outcome, when in found if all(due in good.get(name, ()) for name, due in when.items())]
         return Ends(tuple(dict.fromkeys(named)), tuple(dict.fromkeys(nominal)))
 
-    def _of_machine(self, outline: Outline, spot: Spot) -> Ends:
+    def _of_machine(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
         children = {child.name: child for child in outline.children(spot)}
         targets = [target for child in children.values() for _, _, target in leads(child.data)]
         reached: dict[str, None] = {}
@@ -112,7 +133,7 @@ class Knowledge:
                 continue
             reached[name] = None
             if name in children:
-                good = self.ends(outline, children[name]).success
+                good = self.ends(outline, children[name], known=known).success
                 wired = children[name].data.get("transitions")
                 due += (
                     [to for outcome, to in cast("Plain", wired).items() if outcome in good]

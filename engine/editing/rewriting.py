@@ -59,12 +59,10 @@ class Rewriter:
     json: bool
     _homes: dict[int, tuple[Collection, Member]] = field(default_factory=dict[int, tuple[Collection, Member]])
     _blocks: dict[int, bool] = field(default_factory=dict[int, bool])
+    _whole: dict[int, bool] = field(default_factory=dict[int, bool])
 
     def document(self, origin: Origin, data: dict[str, object]) -> str:
         """Return the text of `origin` with `data` in place of its own."""
-        origins = {id(each.origin): each.origin for each in self.sources.values()}
-        for collection in (c for each in origins.values() for c in each.collections()):
-            self._homes |= {id(member.value): (collection, member) for member in collection.members}
         root = origin.root
         column = root.column if isinstance(root, Collection) else 0
         written = self.value(data, Place(column, origin.indent_at(root.start), self.json))
@@ -80,13 +78,42 @@ class Rewriter:
             kept = source is not None and source.flow and not source.members and not source.bare
             return Written(_slice(source) if source is not None and kept else "{}" if isinstance(found, dict) else "[]")
         if source is not None and self._stays_flow(source, found, place):
-            text = self._flow(source, pairs(source, found, self.sources))
+            kept = self._is_whole(source, found)
+            text = _slice(source) if kept else self._flow(source, pairs(source, found, self.sources))
             stays = was is not None and was.value is source
             return Written(text if stays else shifted(text, place.indent - source.origin.indent_at(source.start)))
         if source is not None and not source.flow and not place.flow:
-            text = self._block(source, pairs(source, found, self.sources))
+            kept = self._is_whole(source, found)
+            text = _slice(source) if kept else self._block(source, pairs(source, found, self.sources))
             return Written(shifted(text, place.column - source.column), block=True)
         return self._fresh(found, place)
+
+    def _is_whole(self, source: Collection, value: Plain) -> bool:
+        """Tell whether a value is the one of a text and says what it said, all inside it too: so does its text."""
+        if source.data is not value:
+            return False
+        known = self._whole.get(id(source))
+        if known is None:
+            known = self._whole[id(source)] = source.origin.json == self.json and self._says_as_before(source)
+        return known
+
+    def _says_as_before(self, source: Collection) -> bool:
+        data, members = source.data, source.members
+        if len(data) != len(members):
+            return False
+        values: Iterable[object] = data.values() if isinstance(data, dict) else data
+        if isinstance(data, dict) and any(
+            member.key is None or member.key.value != key for member, key in zip(members, data, strict=True)
+        ):
+            return False
+        for member, value in zip(members, values, strict=True):
+            was = member.value
+            if isinstance(was, Scalar):
+                if was.value is not value and not same(was.value, value):
+                    return False
+            elif not self._is_whole(was, cast("Plain", value)):
+                return False
+        return True
 
     def _stays_flow(self, source: Collection, value: Plain, place: Place) -> bool:
         """Tell whether a value stays between its braces: unless it gets something inside that has lines of its own."""
@@ -195,8 +222,17 @@ class Rewriter:
         if not isinstance(value, dict | list):
             return None
         origin = self._source(cast("Plain", value))
-        home = self._homes.get(id(origin)) if origin is not None else None
+        home = self._home_of(origin) if origin is not None else None
         return home if home is not None and not home[0].flow and isinstance(home[0].data, dict) == mapping else None
+
+    def _home_of(self, origin: Collection) -> tuple[Collection, Member] | None:
+        """Return the entry that a collection of a text was."""
+        if not self._homes:
+            origins = {id(each.origin): each.origin for each in self.sources.values()}
+            for collection in (c for each in origins.values() for c in each.collections()):
+                for member in collection.members:
+                    self._homes[id(member.value)] = (collection, member)
+        return self._homes.get(id(origin))
 
     def _block_entry(self, home: Collection, key: str | None, value: object, member: Member) -> str:
         text, old = home.origin.text, member.value

@@ -5,17 +5,18 @@ What is read here has passed the strict reader; these spans let a writer keep ea
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Protocol, cast
 
 import yaml
 
-from engine.document.yaml_source import SURROGATE_PAIR, one_code_point, parse_source, plain_scalar
+from engine.document.yaml_source import SURROGATE_PAIR, StrictReading
 from engine.errors import DocumentError, Position
 
+_VALUES = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent)
+_ENDS = (yaml.MappingEndEvent, yaml.SequenceEndEvent)
 _LOST = 2
 """By so much two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
 
@@ -101,7 +102,6 @@ class _Event(Protocol):
     value: str
     style: str | None
     flow_style: bool
-    implicit: tuple[bool, bool]
 
 
 def read_syntax(text: str, *, file: str) -> Origin:
@@ -110,36 +110,29 @@ def read_syntax(text: str, *, file: str) -> Origin:
     Raises:
         DocumentError: the strict reader refuses it, or it is no mapping; `where` is the position.
     """
-    source = parse_source(text, file=file)
-    if not isinstance(source.data, dict):
+    origin = Origin(text, file.endswith(".json"))
+    reading = StrictReading(text, file=file)
+    found = _Reader(origin, reading).read()
+    if not isinstance(reading.source().data, dict) or found is None:
         where = Position(file=file, line=1, column=1)
         raise DocumentError("the document is no mapping", where=where, hint="begin with `flexcell: 1`")
-    origin = Origin(text, file.endswith(".json"))
-    origin.root = _Reader(origin).read()
+    origin.root = found
     # A file may be called `.json` and hold YAML, which the reader takes: then it goes on as YAML.
     origin.json = origin.json and isinstance(origin.root, Collection) and origin.root.flow
     return origin
 
 
 class _Reader:
-    def __init__(self, origin: Origin) -> None:
+    def __init__(self, origin: Origin, reading: StrictReading) -> None:
         self._origin = origin
         self._text = origin.text
-        self._shorter: list[int] = []
-        # PyYAML's C parser is untyped: the cast contains it here.
-        self._parser = yaml.CSafeLoader(self._in_yaml())
-        self._next = cast("Callable[[], _Event]", self._parser.get_event)
-
-    def _in_yaml(self) -> str:
-        """Return the text as YAML, in which JSON's two escapes for one character are one; remember where."""
-        if not self._origin.json:
-            return self._text
-
-        def joined(pair: re.Match[str]) -> str:
-            self._shorter.append(pair.end() - _LOST * (len(self._shorter) + 1))
-            return one_code_point(pair)
-
-        return SURROGATE_PAIR.sub(joined, self._text)
+        self._reading = reading
+        # PyYAML is untyped: the cast contains it here.
+        self._events = cast("Iterator[_Event]", iter(reading))
+        self._next = self._events.__next__
+        pairs = SURROGATE_PAIR.finditer(self._text) if origin.json else ()
+        # Where the text that was read is shorter than the one that is looked at.
+        self._shorter = [pair.end() - _LOST * (number + 1) for number, pair in enumerate(pairs)]
 
     def _span(self, event: _Event) -> tuple[int, int]:
         """Return where an event begins and ends in the text as it is."""
@@ -148,29 +141,28 @@ class _Reader:
             return start, end
         return start + _LOST * bisect_right(self._shorter, start), end + _LOST * bisect_right(self._shorter, end)
 
-    def read(self) -> Syntax:
-        try:
-            while True:
-                event = self._next()
-                if _is(event, yaml.StreamStartEvent, yaml.DocumentStartEvent):
-                    continue
-                return self._value(event, outside=0)
-        finally:
-            self._parser.dispose()
+    def read(self) -> Syntax | None:
+        """Read all of the text and return its outermost value; None where it is empty."""
+        found: Syntax | None = None
+        for event in self._events:
+            if found is None and cast("type", type(event)) in _VALUES:
+                found = self._value(event, 0)
+        return found
 
-    def _value(self, event: _Event, *, outside: int) -> Syntax:
+    def _value(self, event: _Event, outside: int) -> Syntax:
         """Read a value; `outside` is where its key or dash ends, for values that are left out."""
-        if _is(event, yaml.ScalarEvent):
+        kind = cast("type", type(event))
+        if kind is yaml.ScalarEvent:
             return self._scalar(event, outside)
-        mapping = _is(event, yaml.MappingStartEvent)
+        mapping = kind is yaml.MappingStartEvent
         start = self._span(event)[0]
         if not event.flow_style:
             start = self._head(start, event.start_mark.column)
-        data: dict[str, object] | list[object] = {} if mapping else []
+        data = cast("dict[str, object] | list[object]", self._reading.said)
         made = Collection(self._origin, start, start, event.flow_style, event.start_mark.column, data)
         while True:
             event = self._next()
-            if _is(event, yaml.MappingEndEvent, yaml.SequenceEndEvent):
+            if cast("type", type(event)) in _ENDS:
                 break
             previous = made.members[-1].stop if made.members else made.start
             made.members.append(self._entry(event, made, previous) if mapping else self._item(event, made, previous))
@@ -195,19 +187,17 @@ class _Reader:
 
     def _entry(self, event: _Event, made: Collection, previous: int) -> Member:
         key = Scalar(*self._span(event), event.value, event.style or "")
-        value = self._value(self._next(), outside=key.end)
+        value = self._value(self._next(), key.end)
         at = self._explicit(key.start, previous)
-        cast("dict[str, object]", made.data)[str(key.value)] = data_of(value)
         return self._placed(made, previous, at, key, value)
 
     def _item(self, event: _Event, made: Collection, previous: int) -> Member:
         if made.flow:
-            value = self._value(event, outside=previous)
+            value = self._value(event, previous)
             at = value.start
         else:
             at = skip_space(self._text, previous)
-            value = self._value(event, outside=at + 1)
-        cast("list[object]", made.data).append(data_of(value))
+            value = self._value(event, at + 1)
         return self._placed(made, previous, at, None, value)
 
     def _placed(self, made: Collection, previous: int, at: int, key: Scalar | None, value: Syntax) -> Member:
@@ -218,9 +208,6 @@ class _Reader:
 
     def _scalar(self, event: _Event, outside: int) -> Scalar:
         (start, end), style = self._span(event), event.style or ""
-        value: object = event.value
-        if event.implicit[0] and not style:
-            value = plain_scalar(event.value)
         if start == end:
             # Left out altogether: it stands behind the colon, if there is one.
             colon = skip_space(self._text, outside)
@@ -229,7 +216,7 @@ class _Reader:
             kept = "+" in self._text[start : self._text.find("\n", start)]
             shown = self._text[start:end]
             end = start + len(shown[:-1] if kept and shown.endswith("\n") else shown.rstrip("\n"))
-        return Scalar(start, end, value, style)
+        return Scalar(start, end, self._reading.said, style)
 
     def _explicit(self, at: int, previous: int) -> int:
         """Return where `? ` stands in front of a key, else the key."""
@@ -253,11 +240,6 @@ class _Reader:
         return stop
 
 
-def data_of(value: Syntax) -> object:
-    """Return the plain data of a value."""
-    return value.value if isinstance(value, Scalar) else value.data
-
-
 def skip_space(text: str, at: int) -> int:
     """Return where something other than space, line ends, commas and comments begins, from `at` on."""
     while at < len(text):
@@ -273,7 +255,3 @@ def skip_space(text: str, at: int) -> int:
 def _line_end(text: str, at: int) -> int:
     found = text.find("\n", at)
     return found if found >= 0 else len(text)
-
-
-def _is(event: object, *kinds: type) -> bool:
-    return type(event) in kinds

@@ -7,21 +7,43 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from engine.editing.examination import hash_of
 from engine.errors import DocumentError
 
 KEPT = 200
 """So many versions of a document are kept; the oldest go first."""
-_NAME = re.compile(r"(\d{13})-([0-9a-f]{64})")
+_NAME = re.compile(r"(\d{13})-([0-9a-f]{64})(\.editor)?")
+By = Literal["editor", "file"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Version:
-    """One version; `saved_at_s` is when it was first seen, seconds since 1970."""
+    """One version; `saved_at_s` is when it was first seen, seconds since 1970.
+
+    `by` says whether the editor wrote it, or it was found in the file: written by another program, or before.
+    """
 
     hash: str
     saved_at_s: float
+    by: By = "file"
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """One file of the folder of a document."""
+
+    stamp: int
+    digest: str
+    by: By
+
+    @property
+    def name(self) -> str:
+        return f"{self.stamp:013d}-{self.digest}{'.editor' if self.by == 'editor' else ''}"
+
+    def version(self) -> Version:
+        return Version(hash=self.digest, saved_at_s=self.stamp / 1000, by=self.by)
 
 
 class Versions:
@@ -31,31 +53,38 @@ class Versions:
         self._folder = folder
         self._now_s = now_s
 
-    def keep(self, document_id: str, text: str) -> Version:
+    def keep(self, document_id: str, text: str, *, by: By = "file") -> Version:
         """Keep a text unless it is kept already; what is kept again becomes the newest."""
         digest = hash_of(text)
         known = self._files(document_id)
         newest = known[-1] if known else None
-        if newest is not None and newest[1] == digest:
-            return Version(hash=digest, saved_at_s=newest[0] / 1000)
-        stamp = max(int(self._now_s() * 1000), newest[0] + 1 if newest is not None else 0)
+        if newest is not None and newest.digest == digest:
+            return newest.version()
+        stamp = max(int(self._now_s() * 1000), newest.stamp + 1 if newest is not None else 0)
         folder = self._folder / document_id
         folder.mkdir(parents=True, exist_ok=True)
-        old = next((each for each in known if each[1] == digest), None)
-        target = folder / f"{stamp:013d}-{digest}"
+        old = next((each for each in known if each.digest == digest), None)
+        made = _Kept(stamp, digest, by)
         if old is not None:
-            (folder / f"{old[0]:013d}-{digest}").replace(target)
+            (folder / old.name).replace(folder / made.name)
         else:
-            write_whole(target, text)
-        for millis, gone in self._files(document_id)[:-KEPT]:
-            (folder / f"{millis:013d}-{gone}").unlink(missing_ok=True)
-        return Version(hash=digest, saved_at_s=stamp / 1000)
+            write_whole(folder / made.name, text)
+        for gone in self._files(document_id)[:-KEPT]:
+            (folder / gone.name).unlink(missing_ok=True)
+        return made.version()
 
     def all(self, document_id: str) -> tuple[Version, ...]:
         """Return the versions of a document, newest first."""
-        return tuple(
-            Version(hash=digest, saved_at_s=stamp / 1000) for stamp, digest in reversed(self._files(document_id))
-        )
+        return tuple(each.version() for each in reversed(self._files(document_id)))
+
+    def ids(self) -> tuple[str, ...]:
+        """Return the ids of all documents that there are versions of, sorted."""
+        found = {
+            file.parent.relative_to(self._folder).as_posix()
+            for file in self._folder.rglob("*")
+            if _NAME.fullmatch(file.name)
+        }
+        return tuple(sorted(found))
 
     def text(self, document_id: str, digest: str) -> str:
         """Return a version.
@@ -63,9 +92,9 @@ class Versions:
         Raises:
             DocumentError: it is not kept, or no longer.
         """
-        for stamp, known in self._files(document_id):
-            if known == digest:
-                return (self._folder / document_id / f"{stamp:013d}-{known}").read_bytes().decode("utf-8")
+        for kept in self._files(document_id):
+            if kept.digest == digest:
+                return (self._folder / document_id / kept.name).read_bytes().decode("utf-8")
         raise DocumentError("this version is not kept", where=document_id, hint="see the list of versions")
 
     def rename(self, old_id: str, new_id: str) -> None:
@@ -77,12 +106,13 @@ class Versions:
                 if _NAME.fullmatch(file.name):
                     file.replace(new / file.name)
 
-    def _files(self, document_id: str) -> list[tuple[int, str]]:
+    def _files(self, document_id: str) -> list[_Kept]:
         folder = self._folder / document_id
         if not folder.is_dir():
             return []
         found = (_NAME.fullmatch(file.name) for file in folder.iterdir())
-        return sorted((int(name[1]), name[2]) for name in found if name)
+        kept = [_Kept(int(name[1]), name[2], "editor" if name[3] else "file") for name in found if name]
+        return sorted(kept, key=lambda each: (each.stamp, each.digest))
 
 
 def write_whole(file: Path, text: str) -> None:

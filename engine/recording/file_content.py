@@ -6,6 +6,7 @@ Whatever is in a file that calls itself a recording, reading it ends in records 
 
 from __future__ import annotations
 
+import fcntl
 import zlib
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
@@ -73,7 +74,7 @@ def read_content(path: Path, topic: str) -> FileContent:
     Raises:
         RecordingError: the file cannot be read, is no MCAP file, or is damaged.
     """
-    with _reading(path) as stream:
+    with reading(path) as stream:
         return _by_index(stream, topic) or _in_sequence(stream, topic)
 
 
@@ -89,12 +90,26 @@ def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
         RecordingError: it is no MCAP file.
     """
     with path.open("rb") as stream:
+        keep_from_removal(stream)
         _require_magic(stream, path)
         yield lambda: _records(stream, _MAGIC)
 
 
+def keep_from_removal(stream: BinaryIO) -> None:
+    """Tell those who remove old recordings that this one is read, as long as it is open."""
+    try:
+        fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return  # it is being written, and so in use anyway; or this file system knows no locks
+
+
 @contextmanager
-def _reading(path: Path) -> Generator[BinaryIO]:
+def reading(path: Path) -> Generator[BinaryIO]:
+    """Open a recording; whatever the parsing in the block stumbles over is told as a damaged file.
+
+    Raises:
+        RecordingError: the file cannot be read, is no MCAP file, or is damaged.
+    """
     try:
         with path.open("rb") as stream:
             _require_magic(stream, path)
@@ -115,14 +130,22 @@ def _require_magic(stream: BinaryIO, path: Path) -> None:
         raise RecordingError("this is not an MCAP file", where=path, hint="give what --record wrote")
 
 
+def read_index(stream: BinaryIO) -> list[McapRecord] | None:
+    """Return the records of the index at the end of a file; None where there is none.
+
+    Raises:
+        ValueError: the file is damaged.
+    """
+    start = _index_start(stream, stream.seek(0, 2))
+    return None if start is None else list(_records(stream, start))
+
+
 def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
     """Read with the index at the end of the file; None where there is none."""
-    size = stream.seek(0, 2)
-    start = _index_start(stream, size)
-    if start is None:
+    index = read_index(stream)
+    if index is None:
         return None
     content = FileContent(complete=True)
-    index = list(_records(stream, start))
     wanted = {record.id for record in index if isinstance(record, Channel) and record.topic == topic}
     for record in index:
         match record:
@@ -235,8 +258,25 @@ def _parsed(opcode: int, content: bytes) -> Iterator[McapRecord]:
         yield record
 
 
+def unfolded(chunk: Chunk) -> bytes:
+    """Return the records in a chunk as bytes.
+
+    Raises:
+        ValueError: it is too large, or damaged.
+    """
+    _require_size(chunk)
+    data = zstandard.ZstdDecompressor().decompress(chunk.data) if chunk.compression == "zstd" else chunk.data
+    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+        raise ValueError("the checksum of a chunk is wrong")
+    return data
+
+
 def _unfolded(chunk: Chunk) -> list[McapRecord]:
+    _require_size(chunk)
+    return breakup_chunk(chunk, validate_crc=True)
+
+
+def _require_size(chunk: Chunk) -> None:
     told = zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
     if not 0 <= told <= MAX_CHUNK:
         raise ValueError(f"a chunk says that it unfolds to {told} bytes")
-    return breakup_chunk(chunk, validate_crc=True)

@@ -37,9 +37,10 @@ class LiveFile:
         path: Where it is.
         stream: The open file.
         inline: Write on the calling thread.
+        max_topic_bytes: What messages that may be left out may take.
     """
 
-    def __init__(self, path: Path, stream: BinaryIO, *, inline: bool) -> None:
+    def __init__(self, path: Path, stream: BinaryIO, *, inline: bool, max_topic_bytes: int | None = None) -> None:
         self.path = path
         self.failure: str | None = None
         """Why the recording ended early; None while all is well."""
@@ -49,6 +50,8 @@ class LiveFile:
         self._writer = Writer(stream, use_chunking=False)
         self._schemas: dict[str, int] = {}
         self._channels = 0
+        self._max_topic_bytes = max_topic_bytes
+        self._topic_bytes = 0
         self._taken = 0
         self._written = 0
         self._jobs: queue.SimpleQueue[tuple[_Job, int] | None] = queue.SimpleQueue()
@@ -58,7 +61,7 @@ class LiveFile:
             self._thread.start()
 
     @classmethod
-    def open(cls, path: Path, *, inline: bool) -> LiveFile:
+    def open(cls, path: Path, *, inline: bool, max_topic_bytes: int | None = None) -> LiveFile:
         """Create the file and keep other processes from writing to it.
 
         Raises:
@@ -73,7 +76,7 @@ class LiveFile:
             raise RecordingError(
                 f"the recording cannot be created: {reason}", where=path, hint="give a file in a folder that exists"
             ) from error
-        live = cls(path, stream, inline=inline)
+        live = cls(path, stream, inline=inline, max_topic_bytes=max_topic_bytes)
         live._do(lambda writer: writer.start(profile=PROFILE, library="flexcell"))
         return live
 
@@ -100,7 +103,14 @@ class LiveFile:
         self._do(lambda writer: writer.add_message(channel, at_ns, message, at_ns, sequence), size=len(message))
 
     def write_if_quick(self, channel: int, at_ns: int, message: bytes, *, sequence: int = 0) -> None:
-        """Add a message, or leave it out while the disk does not keep up."""
+        """Add a message, or leave it out while the disk does not keep up, or where such messages have their share."""
+        if self._max_topic_bytes is not None:
+            if self._topic_bytes > self._max_topic_bytes:
+                return
+            self._topic_bytes += len(message)
+            if self._topic_bytes > self._max_topic_bytes:
+                _log.warning("%s is as large as it may be: only events are recorded from here on", self.path)
+                return
         if self._taken - self._written > MAX_TOPIC_BACKLOG:
             self.left_out += 1
             return

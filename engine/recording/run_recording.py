@@ -42,6 +42,12 @@ class RecordingOrder:
     """At most that many messages of a topic are kept a second; 0 keeps none."""
     topics: Sequence[str] = ("*",)
     """Names of topics, may hold `*` and `?`."""
+    left_out: Sequence[str] = ()
+    """Names of topics that are not recorded, whatever `topics` says."""
+    overheard: Sequence[str] = ()
+    """Names of topics that are recorded while somebody else listens, for what costs much to make."""
+    max_topic_bytes: int | None = None
+    """What topics may take before only events are recorded; of the growing file, which is not compressed."""
 
 
 class RunRecording:
@@ -84,7 +90,7 @@ class RunRecording:
             except RecordingError as error:
                 # What cannot be read any more is no reason to refuse the next recording.
                 _log.warning("a recording was cut off here and is lost: %s", error)
-        return cls(order, LiveFile.open(part, inline=inline))
+        return cls(order, LiveFile.open(part, inline=inline, max_topic_bytes=order.max_topic_bytes))
 
     def attach(
         self,
@@ -123,7 +129,14 @@ class RunRecording:
         self._open_channels()
         run.watch(self._take)
         if order.rate_hz > 0:
-            self._tap = TopicTap(file, now_ns=self._now_ns, rate_hz=order.rate_hz, patterns=order.topics)
+            self._tap = TopicTap(
+                file,
+                now_ns=self._now_ns,
+                rate_hz=order.rate_hz,
+                patterns=order.topics,
+                left_out=order.left_out,
+                overheard=order.overheard,
+            )
             self._tap.open(bus)
 
     async def __aenter__(self) -> Self:
@@ -133,17 +146,26 @@ class RunRecording:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Close the file and finish it; a failure is a warning, as the run is over and well."""
+        self.detach()
+        closing = asyncio.get_running_loop().run_in_executor(None, self._finish)
+        await asyncio.shield(closing)
+
+    def detach(self) -> None:
+        """Record nothing more of the run."""
         if self._run is not None:
             self._run.recorder.unwatch(self._take)
         if self._tap is not None:
             self._tap.close()
-        closing = asyncio.get_running_loop().run_in_executor(None, self._finish)
-        await asyncio.shield(closing)
+            self._tap = None
 
-    def _finish(self) -> None:
+    def close(self) -> None:
+        """Write what waits and leave the file as it grew, `<path>.part`; may wait for the disk."""
         self._file.close()
         if self._file.left_out:
             _log.warning("%d messages were left out of %s: the disk is too slow", self._file.left_out, self._order.path)
+
+    def _finish(self) -> None:
+        self.close()
         try:
             finish(part_file(self._order.path), self._order.path)
         except RecordingError as error:

@@ -41,14 +41,27 @@ class TopicTap:
         now_ns: The time of the recording.
         rate_hz: At most that many messages of a topic are kept a second.
         patterns: Names, may hold `*` and `?`.
+        left_out: Names that are not recorded all the same.
+        overheard: Names that are recorded without being asked for.
     """
 
-    def __init__(self, file: LiveFile, *, now_ns: Callable[[], int], rate_hz: float, patterns: Sequence[str]) -> None:
+    def __init__(
+        self,
+        file: LiveFile,
+        *,
+        now_ns: Callable[[], int],
+        rate_hz: float,
+        patterns: Sequence[str],
+        left_out: Sequence[str] = (),
+        overheard: Sequence[str] = (),
+    ) -> None:
         self._file = file
         self._now_ns = now_ns
         self._period_ns = round(1e9 / rate_hz)
         self._rate_hz = rate_hz
         self._patterns = tuple(patterns)
+        self._left_out = tuple(left_out)
+        self._overheard = tuple(overheard)
         self._recorded: dict[str, _Recorded] = {}
         self._subscriptions: list[tuple[Topic[Any], Subscription[Any]]] = []
         self._unwatch: Callable[[], None] = lambda: None
@@ -72,7 +85,7 @@ class TopicTap:
         self._subscriptions.clear()
 
     def _add(self, topic: Topic[Any]) -> None:
-        if not any(fnmatchcase(topic.name, pattern) for pattern in self._patterns):
+        if not _matches(topic.name, self._patterns) or _matches(topic.name, self._left_out):
             return
         if not issubclass(topic.kind, msgspec.Struct):
             _log.warning("topic %s is not recorded: its messages are no structs", topic.name)
@@ -85,7 +98,8 @@ class TopicTap:
             # Types and messages are a robot's; what cannot be written must not hurt who publishes it.
             _log.exception("topic %s is not recorded", topic.name)
             return
-        subscription = topic.subscribe(lambda message: self._take(topic.name, message))
+        listen = topic.overhear if _matches(topic.name, self._overheard) else topic.subscribe
+        subscription = listen(lambda message: self._take(topic.name, message))
         self._subscriptions.append((topic, subscription))
 
     def _channels(self, topic: Topic[Any]) -> _Recorded:
@@ -115,3 +129,7 @@ class TopicTap:
         if recorded.view is not None:
             shown = msgspec.json.encode(recorded.view.show(message, now_ns))
             self._file.write_if_quick(recorded.view_channel, now_ns, shown, sequence=recorded.count)
+
+
+def _matches(name: str, patterns: tuple[str, ...]) -> bool:
+    return any(fnmatchcase(name, pattern) for pattern in patterns)

@@ -125,7 +125,8 @@ class Cut(Message, frozen=True, kw_only=True):
 class JointFit(Message, frozen=True, kw_only=True):
     """How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end.
 
-    `joint` is the one with the greatest error, counted from 0.
+    `joint` is the one with the greatest error, counted from 0. `rms_m` and `max_m` are how far that puts the tool
+    centre point off, None where nobody knew the arm.
     """
 
     kernels: int
@@ -134,6 +135,8 @@ class JointFit(Message, frozen=True, kw_only=True):
     end_rad: float
     joint: int
     cut: Cut
+    rms_m: float | None = None
+    max_m: float | None = None
 
 
 class CartFit(Message, frozen=True, kw_only=True):

@@ -8,13 +8,17 @@ from engine.messages import Message
 from engine.skill import Service
 
 
-class EntryRecord(Message, frozen=True, kw_only=True):
-    """A named entry as stored: `value` has the fields of its `kind`; `revision` counts its changes."""
+class EntryRecord(Message, frozen=True, kw_only=True, omit_defaults=True):
+    """A named entry as stored: `value` has the fields of its `kind`; `revision` counts its changes.
+
+    `tags` is None where nothing is said of them.
+    """
 
     kind: str
     name: str
     value: dict[str, object]
     revision: int
+    tags: tuple[str, ...] | None = None
 
 
 class ReadEntry(Service[EntryRecord], frozen=True, kw_only=True):

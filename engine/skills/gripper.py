@@ -13,6 +13,17 @@ Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the p
 FingerSpeed = Annotated[float, msgspec.Meta(gt=0.0, description="Speed of the opening in metres per second")]
 
 
+class GripperAction(Message, frozen=True, kw_only=True):
+    """What a gripper was doing when it was taught: `held` something `width_m` wide, or stood that far open.
+
+    `force_n` is what it pressed with, 0 where nobody said.
+    """
+
+    width_m: Annotated[float, msgspec.Meta(ge=0.0, le=10.0)]
+    held: bool
+    force_n: Annotated[float, msgspec.Meta(ge=0.0, le=1000.0)] = 0.0
+
+
 class GripperFeedback(Message, frozen=True, kw_only=True):
     """The measured opening on the way."""
 

@@ -12,10 +12,11 @@ from engine.primitive import CartDmp, JointDmp
 from engine.skill import Service
 from engine.skills.dmp import CartFit, JointFit
 from engine.skills.entries import EntryRecord
+from engine.skills.gripper import GripperAction
 
 TriggerType = Literal["rising_edge", "falling_edge", "hold"]
-Callback = Literal["joint_save", "pose_save", "tf_save", "joint_dmp_save", "cart_dmp_save", "grav_comp"]
-CaptureForm = Literal["joints", "pose", "dmp", "cart_dmp", "trajectory"]
+Callback = Literal["joint_save", "pose_save", "tf_save", "gripper_save", "joint_dmp_save", "cart_dmp_save", "grav_comp"]
+CaptureForm = Literal["joints", "pose", "dmp", "cart_dmp", "trajectory", "gripper"]
 """The kinds of entries that a capture can be saved as."""
 
 
@@ -35,7 +36,7 @@ class Trigger(Message, frozen=True, kw_only=True):
     with `trig_value`: `rising_edge` fires when they begin to be equal, `falling_edge` when they end to be,
     `hold` lasts as long as they are.
     `joint_dmp_N` is the number of kernels of the primitive, 0 lets the fit decide. `tf_save` captures where
-    `source_frame` is in `target_frame`.
+    `source_frame` is in `target_frame`, `gripper_save` how far the gripper is open and whether it holds something.
     """
 
     trig_name: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
@@ -83,6 +84,7 @@ class Capture(Message, frozen=True, kw_only=True):
     joint_fit: JointFit | None = None
     cart_dmp: CartDmp | None = None
     cart_fit: CartFit | None = None
+    gripper: GripperAction | None = None
 
 
 class TriggerStatus(Message, frozen=True, kw_only=True):
@@ -125,6 +127,19 @@ class FireTrigger(Service[TeachStatus], frozen=True, kw_only=True):
 
     trig_name: str
     pressed: bool = True
+
+
+class TeachNow(Service[TeachStatus], frozen=True, kw_only=True):
+    """Do what a trigger with this `callback` would do to `robot`, without one.
+
+    `pressed` begins a recording or lets the arm float, not `pressed` ends it; the others look at `pressed` only.
+    """
+
+    callback: Callback
+    robot: str
+    pressed: bool = True
+    source_frame: str = ""
+    target_frame: str = "world"
 
 
 class ReadCapture(Service[Capture], frozen=True, kw_only=True):

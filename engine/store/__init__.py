@@ -5,7 +5,9 @@ server (which needs pymongo); `register_store` puts a store on the bus.
 """
 
 from engine.demonstration import Trajectory
+from engine.detection_template import DetectionTemplate, TemplateImage
 from engine.primitive import CartDmp, CartOffsets, JointDmp
+from engine.skills.gripper import GripperAction
 from engine.store.contract import ChangeListener, EntryChange, EntryKey, Store, Value
 from engine.store.kinds import RECORD, STANDARD_KINDS, EntryKind, Joints, read_as, verified_value
 from engine.store.migration import Migration, migrate
@@ -19,14 +21,17 @@ __all__ = [
     "CartDmp",
     "CartOffsets",
     "ChangeListener",
+    "DetectionTemplate",
     "EntryChange",
     "EntryKey",
     "EntryKind",
+    "GripperAction",
     "JointDmp",
     "Joints",
     "Migration",
     "SqliteStore",
     "Store",
+    "TemplateImage",
     "Trajectory",
     "Value",
     "migrate",

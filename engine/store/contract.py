@@ -9,9 +9,10 @@ from typing import Protocol, Self
 import msgspec
 
 from engine.skills.entries import EntryRecord
+from engine.store.models import Model
 
-Value = Mapping[str, object] | msgspec.Struct
-"""An entry's value on its way in: its fields, or a message that has them."""
+Value = Mapping[str, object] | msgspec.Struct | Model
+"""An entry's value on its way in: its fields, or a message or pydantic model that has them."""
 
 
 class EntryKey(msgspec.Struct, frozen=True, kw_only=True, order=True):
@@ -153,7 +154,7 @@ class Store(Protocol):
         ...
 
     async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
-        """Return entries with their values, sorted by kind and name; `seed` takes them back."""
+        """Return entries with their values and tags, sorted by kind and name; `seed` takes them back."""
         ...
 
     async def seed(
@@ -165,8 +166,8 @@ class Store(Protocol):
         breaks off half way is completed by seeding again.
 
         Args:
-            entries: Their revisions are ignored.
-            overwrite: Write also those that are there with another value.
+            entries: Their revisions are ignored; without tags they keep those they have.
+            overwrite: Write also those that are there with another value or other tags.
             by: Who writes them.
             reason: Why.
         """

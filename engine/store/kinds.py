@@ -10,11 +10,14 @@ from typing import Annotated, TypeVar
 import msgspec
 
 from engine.demonstration import Trajectory
+from engine.detection_template import DetectionTemplate
 from engine.errors import StoreError
 from engine.messages import Message, Pose
 from engine.nearness import near_names
 from engine.primitive import CartDmp, CartOffsets, JointDmp
 from engine.skills.entries import EntryRecord
+from engine.skills.gripper import GripperAction
+from engine.store.models import Model, fields_of_model, first_fault, is_model_type
 
 T = TypeVar("T")
 
@@ -25,10 +28,14 @@ _UNIT_TOLERANCE = 1e-3
 
 
 class Joints(Message, frozen=True, kw_only=True):
-    """A joint configuration in radians (metres for sliding joints), in the order of `names` or of the robot."""
+    """A joint configuration in radians (metres for sliding joints), in the order of `names` or of the robot.
+
+    `model` is that of the robot it was taught with; empty where nobody said.
+    """
 
     joints: Annotated[tuple[float, ...], msgspec.Meta(min_length=1)]
     names: tuple[str, ...] = ()
+    model: str = ""
 
     def __post_init__(self) -> None:
         if self.names and len(self.names) != len(self.joints):
@@ -39,16 +46,25 @@ class Joints(Message, frozen=True, kw_only=True):
 class EntryKind:
     """One kind: the type its values have (None for any object) and a check beyond the type.
 
-    `check` returns what is wrong in words, empty when nothing is.
+    The type is a msgspec Struct or a pydantic model. `check` returns what is wrong in words, empty when nothing is.
     """
 
-    type: type[msgspec.Struct] | None
+    type: type[msgspec.Struct] | type[Model] | None
     check: Callable[[msgspec.Struct], str] | None = None
 
 
 def _check_pose(value: msgspec.Struct) -> str:
-    norm = math.hypot(*value.xyzw) if isinstance(value, Pose) else 1.0
-    return "" if abs(norm - 1.0) <= _UNIT_TOLERANCE else f"the quaternion xyzw has length {norm:.4g} instead of 1"
+    return _fault_of_turn("the pose", value if isinstance(value, Pose) else None)
+
+
+def _check_template(value: msgspec.Struct) -> str:
+    assert isinstance(value, DetectionTemplate)
+    return _fault_of_turn("pose", value.pose) or _fault_of_turn("camera_pose", value.camera_pose)
+
+
+def _fault_of_turn(what: str, pose: Pose | None) -> str:
+    norm = 1.0 if pose is None else math.hypot(*pose.xyzw)
+    return "" if abs(norm - 1.0) <= _UNIT_TOLERANCE else f"the quaternion of {what} has length {norm:.4g} instead of 1"
 
 
 STANDARD_KINDS: Mapping[str, EntryKind] = {
@@ -58,6 +74,8 @@ STANDARD_KINDS: Mapping[str, EntryKind] = {
     "cart_dmp": EntryKind(CartDmp),
     "cart_offsets": EntryKind(CartOffsets),
     "trajectory": EntryKind(Trajectory),
+    "gripper": EntryKind(GripperAction),
+    "detection": EntryKind(DetectionTemplate, _check_template),
     RECORD: EntryKind(None),
 }
 """The kinds every store knows; give a store a larger mapping to register more."""
@@ -72,9 +90,12 @@ def verified_value(kinds: Mapping[str, EntryKind], kind: str, value: object, *, 
     known = kinds.get(kind)
     if known is None:
         raise StoreError(f"there is no kind of entry called {kind!r}", where=where, hint=near_names(kind, kinds))
-    plain = msgspec.to_builtins(value) if isinstance(value, msgspec.Struct) else value
+    plain = _plain(value)
     if known.type is None:
         return plain
+    if is_model_type(known.type):
+        return _modelled(known.type, kind, plain, where=where)
+    assert issubclass(known.type, msgspec.Struct)
     try:
         typed = msgspec.convert(plain, known.type)
     except (msgspec.ValidationError, RecursionError) as error:
@@ -93,10 +114,29 @@ def read_as(record: EntryRecord, kind: type[T]) -> T:
         StoreError: the entry holds something else.
     """
     try:
+        if is_model_type(kind):
+            return kind.model_validate(record.value)
         return msgspec.convert(record.value, kind)
-    except msgspec.ValidationError as error:
+    except ValueError as error:
         raise StoreError(
-            f"this entry does not read as {kind.__name__}: {error}", where=f"{record.kind} {record.name}"
+            f"this entry does not read as {kind.__name__}: {first_fault(error)}", where=f"{record.kind} {record.name}"
+        ) from error
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, msgspec.Struct):
+        return msgspec.to_builtins(value)
+    return value.model_dump(mode="json") if isinstance(value, Model) and not isinstance(value, type) else value
+
+
+def _modelled(model: type[Model], kind: str, plain: object, *, where: str) -> object:
+    """Return the value with what the model fills in, as plain data."""
+    try:
+        return model.model_validate(plain).model_dump(mode="json")
+    except (ValueError, RecursionError) as error:
+        fault = first_fault(error) if isinstance(error, ValueError) else "it is nested too deeply"
+        raise StoreError(
+            f"this is no {kind}: {fault}", where=where, hint=f"give the fields {', '.join(fields_of_model(model))}"
         ) from error
 
 

@@ -23,7 +23,10 @@ _UNAUTHORIZED = 13
 _OUT_OF_DISK = 14031
 _DOCUMENT_TOO_LARGE = (10334, 17419, 17420)
 _TOO_LARGE = ("the entry is larger than MongoDB takes (16 MiB)", "store it in parts")
-_REACH = "check that mongod runs there, that the address and port are right, and that no firewall is between"
+_REACH = (
+    "check that mongod runs there and its disk has room, that the address and port are right, and that no firewall is"
+    " between"
+)
 _IN_DOUBT = "a write that was under way may have taken effect: read the entry before writing it again"
 
 

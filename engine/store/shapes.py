@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from engine.skills.entries import EntryRecord
 from engine.store.contract import EntryChange, EntryKey
 from engine.store.limits import decode_value
@@ -11,6 +13,11 @@ from engine.store.row import Row
 def record_of(row: Row) -> EntryRecord:
     """Return an entry with its value."""
     return EntryRecord(kind=row.kind, name=row.name, value=decode_value(row.value or "{}"), revision=row.revision)
+
+
+def exported_of(row: Row) -> EntryRecord:
+    """Return an entry with its value and its tags."""
+    return msgspec.structs.replace(record_of(row), tags=row.tags)
 
 
 def key_of(row: Row) -> EntryKey:

@@ -17,7 +17,7 @@ from engine.store.following import Following
 from engine.store.kinds import EntryKind, verified_value
 from engine.store.limits import encode_value, is_name_start, verify_name, verify_note, verify_tags
 from engine.store.row import Draft, Row, Selection, Stamp
-from engine.store.shapes import change_of, key_of, record_of, row_from
+from engine.store.shapes import change_of, exported_of, key_of, record_of, row_from
 from engine.store.table import Table
 from engine.store.words import searched
 
@@ -117,9 +117,9 @@ class TableStore:
         return await self._do(self._table.ever)
 
     async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
-        """Return entries with their values, sorted by kind and name."""
+        """Return entries with their values and tags, sorted by kind and name."""
         selection = Selection(kind=kind, prefix=prefix)
-        return await self._do(lambda: tuple(map(record_of, self._table.select(selection, values=True))))
+        return await self._do(lambda: tuple(map(exported_of, self._table.select(selection, values=True))))
 
     async def seed(
         self, entries: Iterable[EntryRecord], *, overwrite: bool = False, by: str = "", reason: str = ""
@@ -129,7 +129,7 @@ class TableStore:
         stamp = self._stamp("seed", by, reason)
 
         def write() -> tuple[Row, ...]:
-            drafts = [self._draft(entry.kind, entry.name, entry.value, None) for entry in given]
+            drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in given]
             return self._table.seed(drafts, stamp, overwrite=overwrite)
 
         return tuple(map(key_of, await self._change(write)))

@@ -11,6 +11,7 @@ from engine.cause import cause_of, describe
 from engine.errors import FlexcellError, SkillFailed
 from engine.messages import FramePoses, JointState, Pose
 from engine.skills.dmp import LearnCartDmp, LearnJointDmp
+from engine.skills.gripper import GripperAction, ReadGripper
 from engine.skills.motion import ForwardKinematics
 from engine.skills.teaching import Capture, CaptureForm, CaptureSummary, Trigger
 from engine.teaching.buffer import CaptureBuffer
@@ -46,6 +47,21 @@ class Capturing:
                 names=state.names,
                 joints=tuple(state.position_rad),
                 pose=await self._pose(robot),
+            )
+        )
+
+    async def gripper(self, trigger: Trigger, robot: str) -> Capture:
+        """Capture how far the gripper is open and whether it holds something, with where the arm is."""
+        state = self._joint_state(robot)
+        measured = await self._bus.call(ReadGripper(), to=f"{robot}/gripper")
+        force_n = measured.force_n if measured.held else 0.0
+        return self._keep(
+            Capture(
+                summary=self._summary(trigger, robot, "gripper"),
+                names=state.names,
+                joints=tuple(state.position_rad),
+                pose=await self._pose(robot),
+                gripper=GripperAction(width_m=max(0.0, measured.width_m), held=measured.held, force_n=force_n),
             )
         )
 

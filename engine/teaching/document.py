@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Literal
 
 from engine.document.conversion import Strict, convert
-from engine.document.yaml_source import DataPath, load_source
+from engine.document.yaml_source import DataPath, Source, load_source, parse_source
 from engine.errors import DocumentError
 from engine.skills.teaching import Trigger
 
@@ -37,7 +37,19 @@ def load_triggers(path: Path | str) -> tuple[Trigger, ...]:
     Raises:
         DocumentError: it cannot be read, is none, or uses a name twice; `where` is the position.
     """
-    source = load_source(Path(path))
+    return _triggers(load_source(Path(path)))
+
+
+def parse_triggers(text: str, *, file: str) -> tuple[Trigger, ...]:
+    """Read the text of a trigger document; `file` is its name in positions.
+
+    Raises:
+        DocumentError: it is none, or uses a name twice; `where` is the position.
+    """
+    return _triggers(parse_source(text, file=file))
+
+
+def _triggers(source: Source) -> tuple[Trigger, ...]:
     bare = isinstance(source.data, list)
     triggers = convert(source, list[Trigger]) if bare else convert(source, TeachDocument).triggers
     seen: set[str] = set()

@@ -12,9 +12,10 @@ from typing import Any, Self
 
 from engine.bus import GoalHandle, SkillBus
 from engine.cause import cause_of, describe
-from engine.errors import BusError, FlexcellError, SkillFailed
+from engine.errors import BusError, DocumentError, FlexcellError, SkillFailed
 from engine.skills.entries import EntryRecord
 from engine.skills.guiding import FinishGuiding, GuideArm
+from engine.skills.proposing import Proposal, ProposeBehavior
 from engine.skills.teaching import (
     ButtonState,
     Capture,
@@ -24,19 +25,24 @@ from engine.skills.teaching import (
     ReadTeachStatus,
     SaveCapture,
     SetTriggers,
+    TeachNow,
     TeachStatus,
     Trigger,
     TriggerStatus,
 )
+from engine.skills.trigger_document import ReadTriggerDocument, TriggerDocument, WriteTriggerDocument
 from engine.teaching.buffer import CaptureBuffer
 from engine.teaching.capturing import Capturing
 from engine.teaching.edges import Edge, EdgeDetector
+from engine.teaching.proposing import propose
 from engine.teaching.recording import JointRecording
 from engine.teaching.saving import save
+from engine.teaching.trigger_file import TriggerFile
 
 NAMESPACE = "teach"
 STATUS = f"{NAMESPACE}/status"
 _RECORDS = ("joint_dmp_save", "cart_dmp_save")
+_BY_HAND = "by hand"
 _log = logging.getLogger("flexcell.teaching")
 
 
@@ -67,17 +73,24 @@ class HelpingHand:
         bus: With the robots and the store.
         robots: The arms that can be taught, by their names on the bus.
         folder: Where captures are kept until they are saved or discarded; None to keep them in memory.
-        triggers: Listened to from the start.
+        triggers: Listened to from the start, where `file` holds none.
+        file: Where the triggers are kept; None to keep them in memory.
     """
 
     def __init__(
-        self, bus: SkillBus, *, robots: Sequence[str], folder: Path | None = None, triggers: Sequence[Trigger] = ()
+        self,
+        bus: SkillBus,
+        *,
+        robots: Sequence[str],
+        folder: Path | None = None,
+        triggers: Sequence[Trigger] = (),
+        file: Path | None = None,
     ) -> None:
         self._bus = bus
         self._robots = tuple(robots)
         self._buffer = CaptureBuffer(folder)
         self._capturing = Capturing(bus, self._buffer)
-        self._triggers = tuple(triggers)
+        self._file = TriggerFile(file, triggers)
         self._listening: list[_Listening] = []
         self._recordings: dict[str, tuple[Trigger, JointRecording]] = {}
         self._guides: dict[str, GoalHandle[Any, Any]] = {}
@@ -91,11 +104,19 @@ class HelpingHand:
         bus.advertise_service(ReadTeachStatus, self._read_status, namespace=NAMESPACE)
         bus.advertise_service(SetTriggers, self._set_triggers, namespace=NAMESPACE)
         bus.advertise_service(FireTrigger, self._fire_trigger, namespace=NAMESPACE)
+        bus.advertise_service(TeachNow, self._teach_now, namespace=NAMESPACE)
+        bus.advertise_service(ReadTriggerDocument, self._read_document, namespace=NAMESPACE)
+        bus.advertise_service(WriteTriggerDocument, self._write_document, namespace=NAMESPACE)
         bus.advertise_service(ReadCapture, self._read_capture, namespace=NAMESPACE)
         bus.advertise_service(SaveCapture, self._save_capture, namespace=NAMESPACE)
         bus.advertise_service(DiscardCapture, self._discard_capture, namespace=NAMESPACE)
+        bus.advertise_service(ProposeBehavior, self._propose, namespace=NAMESPACE)
         self._worker = asyncio.create_task(self._work(), name="helping hand")
-        self._listen(self._triggers)
+        try:
+            self._listen(self._file.load())
+        except DocumentError as error:
+            # The rest of teaching works without triggers; whoever mends the file sees the line.
+            self._say(f"the triggers are not in force: {describe(cause_of(error))}")
         return self
 
     async def __aexit__(
@@ -165,6 +186,8 @@ class HelpingHand:
                 self._took(await self._capturing.joints(trigger, robot or ""))
             case "pose_save":
                 self._took(await self._capturing.pose(trigger, robot or ""))
+            case "gripper_save":
+                self._took(await self._capturing.gripper(trigger, robot or ""))
             case _:
                 self._took(await self._capturing.frame(trigger, robot or ""))
 
@@ -283,9 +306,37 @@ class HelpingHand:
         names = [trigger.trig_name for trigger in request.triggers]
         if len(set(names)) < len(names):
             raise SkillFailed("two triggers have the same name", where=NAMESPACE, hint="give each its own name")
+        return self._obey(self._file.write(request.triggers))
+
+    async def _read_document(self, _request: ReadTriggerDocument) -> TriggerDocument:
+        return TriggerDocument(file=self._file.name, text=self._file.text)
+
+    async def _write_document(self, request: WriteTriggerDocument) -> TeachStatus:
+        return self._obey(self._file.write_text(request.text))
+
+    def _obey(self, triggers: Sequence[Trigger]) -> TeachStatus:
         for robot in tuple(self._recordings):
             self._end_recording(robot)
-        self._listen(request.triggers)
+        self._listen(triggers)
+        return self.status
+
+    async def _teach_now(self, request: TeachNow) -> TeachStatus:
+        lasts = request.callback in (*_RECORDS, "grav_comp")
+        if request.callback in _RECORDS and not request.pressed:
+            # Whichever trigger began it.
+            self._end_recording(request.robot)
+        else:
+            trigger = Trigger(
+                trig_name=_BY_HAND,
+                robot_ns=request.robot,
+                trig_topic=_BY_HAND,
+                trig_type="hold" if lasts else "rising_edge",
+                trig_callback=request.callback,
+                source_frame=request.source_frame,
+                target_frame=request.target_frame,
+            )
+            self.fired(trigger, Edge.PRESSED if request.pressed else Edge.RELEASED)
+        await self._due.join()
         return self.status
 
     async def _fire_trigger(self, request: FireTrigger) -> TeachStatus:
@@ -311,3 +362,6 @@ class HelpingHand:
         self._buffer.discard(request.id)
         self._tell()
         return self.status
+
+    async def _propose(self, request: ProposeBehavior) -> Proposal:
+        return await propose(self._bus, request)

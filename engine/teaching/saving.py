@@ -5,8 +5,8 @@ from __future__ import annotations
 import msgspec
 
 from engine.bus import SkillBus
-from engine.errors import SkillFailed
-from engine.messages import Message, Pose
+from engine.errors import BusError, SkillFailed
+from engine.messages import Message, Pose, RobotDescription
 from engine.skills.dmp import LearnCartDmp, LearnJointDmp
 from engine.skills.entries import EntryRecord, WriteEntry
 from engine.skills.motion import ForwardKinematics
@@ -47,10 +47,12 @@ async def _value(bus: SkillBus, capture: Capture, form: CaptureForm) -> tuple[Me
     robot = capture.summary.robot
     match form:
         case "joints" if capture.joints:
-            return Joints(joints=capture.joints, names=capture.names), capture
+            return Joints(joints=capture.joints, names=capture.names, model=_model(bus, robot)), capture
         case "pose" if capture.pose is not None or capture.joints:
             pose = capture.pose or await _pose(bus, capture)
             return pose, msgspec.structs.replace(capture, pose=pose)
+        case "gripper" if capture.gripper is not None:
+            return capture.gripper, capture
         case "trajectory" if capture.trajectory is not None:
             return capture.trajectory, capture
         case "dmp" if capture.trajectory is not None:
@@ -71,6 +73,15 @@ async def _value(bus: SkillBus, capture: Capture, form: CaptureForm) -> tuple[Me
                 where="teach",
                 hint="a configuration can be joints or pose, a recording anything",
             )
+
+
+def _model(bus: SkillBus, robot: str) -> str:
+    """Return the model of a robot; empty where it does not say."""
+    try:
+        said = bus.find_topic(f"{robot}/description").latest
+    except BusError:
+        return ""
+    return said.model if isinstance(said, RobotDescription) else ""
 
 
 async def _pose(bus: SkillBus, capture: Capture) -> Pose:

@@ -25,6 +25,7 @@ from robots.arm.motion_runner import MotionRunner
 from robots.arm.outputs import Outputs
 from robots.arm.path_motions import PathMotions
 from robots.arm.tool_frames import WORLD
+from robots.arm.tracing import Tracing
 from robots.gripper.grip_judgement import Grip
 from robots.gripper.tool_server import ToolServer
 from robots.model.rigid import Rigid
@@ -82,10 +83,11 @@ class ArmServer:
         self._groups: tuple[SkillGroup, ...] = (
             PathMotions(runner),
             InverseMotions(runner),
+            Tracing(runner),
             DmpMotions(runner),
             ForceMotions(runner),
             ContactMotions(runner),
-            Jogging(runner),
+            Jogging(runner, workspace),
             Guiding(runner),
             DirectControl(runner),
             ArmControl(runner, report),

@@ -97,8 +97,17 @@ class DmpMotions:
                 where=self._runner.name,
                 hint=f"this arm has {', '.join(names)}",
             )
+        # A motion may be planned meanwhile, with the planner's own kinematics.
+        kinematics = self._runner.kinematics.twin()
         return await self._learned(
-            lambda: learn_joint_dmp(recorded, kernels=request.N, a_z=request.a_z, a_x=request.a_x, trim=request.trim)
+            lambda: learn_joint_dmp(
+                recorded,
+                kernels=request.N,
+                a_z=request.a_z,
+                a_x=request.a_x,
+                trim=request.trim,
+                tool_at=lambda joints: kinematics.tool_pose(joints).xyz,
+            )
         )
 
     async def _learn_cart_dmp(self, request: LearnCartDmp) -> LearnedCartDmp:

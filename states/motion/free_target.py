@@ -6,13 +6,14 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from engine.skills.motion import PoseMatch
+from engine.skills.motion import ForwardKinematics, InverseKinematics, PoseMatch
 from engine.skills.planning import MotionTarget
 from engine.state import Context
 from states.motion.target import (
     JointTarget,
     Offset,
     PoseTarget,
+    before,
     joints_label,
     pose_label,
     resolve_joints,
@@ -54,3 +55,16 @@ async def resolve_free(
     if joints is not None:
         return MotionTarget(joints=await resolve_joints(ctx, joints))
     return MotionTarget(pose=await resolve_pose(ctx, pose or PoseTarget(), offset_m), match=match)
+
+
+async def before_target(ctx: Context, robot: str, target: MotionTarget, back_m: float) -> MotionTarget:
+    """Return where the tool is `back_m` before a target; of joints, with the arm standing as it does there.
+
+    Raises:
+        SkillFailed: the arm does not reach there.
+    """
+    if target.pose is not None:
+        return MotionTarget(pose=before(target.pose, back_m), match=target.match)
+    there = before(await ctx.call(ForwardKinematics(joints=target.joints), to=robot), back_m)
+    found = await ctx.call(InverseKinematics(pose=there, seed=target.joints), to=robot)
+    return MotionTarget(joints=found.joints)

@@ -3,20 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
+from msgspec import Meta
+
+from engine.cause import cause_of, under
+from engine.errors import SkillFailed
 from engine.skills import planning
 from engine.skills.motion import PoseMatch, Speed
-from engine.skills.planning import KeepOrientation, Margin, Patience, PlannerName, PlanningTime
+from engine.skills.planning import KeepOrientation, Margin, MotionTarget, Patience, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.free_end import reason_of, stayed_blocked
-from states.motion.free_target import GoalJoints, GoalPose, Seed, Watch, free_label, require_one, resolve_free
-from states.motion.target import NO_OFFSET, Offset, RobotName
+from states.motion.free_target import (
+    GoalJoints,
+    GoalPose,
+    Seed,
+    Watch,
+    before_target,
+    free_label,
+    require_one,
+    resolve_free,
+)
+from states.motion.primitive import MotionStart, resolve_start
+from states.motion.target import NO_OFFSET, Back, Offset, RobotName
+
+Start = Annotated[
+    MotionStart | None,
+    Meta(description="A taught motion to whose start to go: `{dmp: name}`, `{trajectory: name}` …"),
+]
 
 
 class MoveFree(State, frozen=True, kw_only=True):
     """Move to `joints` or `pose` along a way that touches nothing of the planning scene and nothing the cameras see.
+
+    Or to where a taught motion begins (`start_of`); with `back_m` only to in front of the target.
 
     What comes into the way is gone around, or waited for: `blocked` after `patience_s` of that. `no_way`
     when start, goal or limits leave none; then nothing has moved. All but `reached` write the `reason`.
@@ -31,7 +52,9 @@ class MoveFree(State, frozen=True, kw_only=True):
     robot: RobotName
     joints: GoalJoints = None
     pose: GoalPose = None
+    start_of: Start = None
     offset_m: Offset = NO_OFFSET
+    back_m: Back = 0.0
     match: PoseMatch = "pose"
     speed: Speed = 0.3
     patience_s: Patience = 60.0
@@ -43,7 +66,10 @@ class MoveFree(State, frozen=True, kw_only=True):
     seed: Seed = 0
 
     def __post_init__(self) -> None:
-        require_one(self.joints, self.pose)
+        if self.start_of is None:
+            require_one(self.joints, self.pose)
+        elif self.joints is not None or self.pose is not None:
+            raise ValueError("give `joints`, `pose` or `start_of`")
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
@@ -59,13 +85,29 @@ class MoveFree(State, frozen=True, kw_only=True):
             keep_orientation=self.keep_orientation,
             speed=self.speed,
         )
-        target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
+        try:
+            target = await self._target(ctx)
+        except SkillFailed as error:
+            cause = under(self._missed(), cause_of(error), where=ctx.path, kind=self.state_name)
+            return Outcome("no_way", {"reason": reason_of(cause)}, cause)
         adaptation = planning.Adaptation(watch=self.watch, patience_s=self.patience_s)
         goal = planning.MoveFree(target=target, options=options, adaptation=adaptation)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
-        what = f"{self.robot} did not reach {free_label(self.joints, self.pose, self.offset_m)}"
-        cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+        cause = goal_cause(self._missed(), goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         name = "no_way" if end.status == "rejected" else "blocked" if stayed_blocked(end) else "failed"
         return Outcome(name, {"reason": reason_of(cause)}, cause)
+
+    async def _target(self, ctx: Context) -> MotionTarget:
+        if self.start_of is not None:
+            target = await resolve_start(ctx, self.start_of)
+        else:
+            target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
+        return await before_target(ctx, self.robot, target, self.back_m) if self.back_m else target
+
+    def _missed(self) -> str:
+        start = self.start_of
+        where = start.label if start is not None else free_label(self.joints, self.pose, self.offset_m)
+        back = f"{self.back_m:.3g} m before " if self.back_m else ""
+        return f"{self.robot} did not reach {back}{where}"

@@ -12,13 +12,27 @@ from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.line_time import line_duration_s
-from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose, shifted
+from states.motion.target import (
+    NO_OFFSET,
+    Back,
+    JointTarget,
+    Offset,
+    PoseTarget,
+    RobotName,
+    before,
+    joints_label,
+    pose_label,
+    resolve_joints,
+    resolve_pose,
+    shifted,
+)
 
 
 class MoveLinear(State, frozen=True, kw_only=True):
     """Move the tool centre point on a straight line, with minimum jerk and SLERP.
 
-    Without `target` the line starts where the tool is and goes by `offset_m`: `[0, 0, 0.1]` lifts.
+    To the pose `target`, or to where the tool is with `joints`. Without either the line starts where the tool is and
+    goes by `offset_m`: `[0, 0, 0.1]` lifts; or by `back_m`.
     """
 
     state_name: ClassVar[str] = "motion.MoveLinear"
@@ -27,7 +41,9 @@ class MoveLinear(State, frozen=True, kw_only=True):
 
     robot: RobotName
     target: Annotated[PoseTarget | None, Meta(description="`{xyz, xyzw, frame}`, or `{entry: name}`")] = None
+    joints: Annotated[JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`")] = None
     offset_m: Offset = NO_OFFSET
+    back_m: Back = 0.0
     duration_s: Annotated[float, Meta(gt=0, description="Travel time", extra_json_schema={"unit": "s"})] | None = None
     speed_m_s: (
         Annotated[float, Meta(gt=0, description="Greatest speed on the way", extra_json_schema={"unit": "m/s"})] | None
@@ -36,8 +52,10 @@ class MoveLinear(State, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if (self.duration_s is None) == (self.speed_m_s is None):
             raise ValueError("give either `duration_s` or `speed_m_s`")
-        if self.target is None and self.offset_m == NO_OFFSET:
-            raise ValueError("give `target`, `offset_m` or both")
+        if self.target is not None and self.joints is not None:
+            raise ValueError("give either `target` or `joints`")
+        if self.target is None and self.joints is None and self.offset_m == NO_OFFSET and not self.back_m:
+            raise ValueError("give `target`, `joints`, `offset_m` or `back_m`")
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""
@@ -49,19 +67,27 @@ class MoveLinear(State, frozen=True, kw_only=True):
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
-        what = f"{self.robot} did not reach {pose_label(self.target, self.offset_m)} on a straight line"
+        what = f"{self.robot} did not reach {self._label()} on a straight line"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("failed", cause=cause)
 
+    def _label(self) -> str:
+        back = f"{self.back_m:.3g} m before " if self.back_m else ""
+        return back + (joints_label(self.joints) if self.joints is not None else pose_label(self.target, self.offset_m))
+
     async def _goal(self, ctx: Context) -> CartLinTask:
         if self.target is not None and self.duration_s is not None:
-            pose = await resolve_pose(ctx, self.target, self.offset_m)
+            pose = before(await resolve_pose(ctx, self.target, self.offset_m), self.back_m)
             return CartLinTask(pose=pose, duration_s=self.duration_s)
         start = await ctx.call(ForwardKinematics(), to=self.robot)
-        if self.target is None:
-            pose = shifted(start, self.offset_m, where=ctx.path)
-        else:
+        if self.target is not None:
             pose = await resolve_pose(ctx, self.target, self.offset_m)
+        else:
+            there = start
+            if self.joints is not None:
+                there = await ctx.call(ForwardKinematics(joints=await resolve_joints(ctx, self.joints)), to=self.robot)
+            pose = shifted(there, self.offset_m, where=ctx.path)
+        pose = before(pose, self.back_m)
         return CartLinTask(pose=pose, duration_s=self.duration_s or self._travel_time_s(start, pose, ctx.path))
 
     def _travel_time_s(self, start: Pose, end: Pose, where: str) -> float:

@@ -7,9 +7,12 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from engine.demonstration import Trajectory
+from engine.messages import Pose
 from engine.primitive import CartDmp, JointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import Speed
+from engine.skills.planning import MotionTarget
 from engine.state import Context
 from engine.store.kinds import read_as
 
@@ -36,6 +39,53 @@ class CartDmpEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     entry: Annotated[
         str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "cart_dmp"})
     ]
+
+
+class MotionStart(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Where the motion begins that the named entry holds when the state runs: one of these kinds."""
+
+    dmp: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"entry": "dmp"})] = ""
+    cart_dmp: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"entry": "cart_dmp"})] = ""
+    trajectory: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"entry": "trajectory"})] = ""
+
+    def __post_init__(self) -> None:
+        if sum(map(bool, (self.dmp, self.cart_dmp, self.trajectory))) != 1:
+            raise ValueError("give one of `dmp`, `cart_dmp` and `trajectory`")
+
+    @property
+    def label(self) -> str:
+        """Its name in a message."""
+        kind, name = next((kind, name) for kind, name in msgspec.structs.asdict(self).items() if name)
+        return f"the start of {kind} entry {name}"
+
+
+class RecordingEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The recorded motion that the named entry holds when the state runs."""
+
+    entry: Annotated[
+        str, Meta(min_length=1, description="Name of the entry in the store", extra_json_schema={"entry": "trajectory"})
+    ]
+
+
+async def resolve_start(ctx: Context, start: MotionStart) -> MotionTarget:
+    """Return where a taught motion begins.
+
+    Raises:
+        EntryNotFound: the store has no such entry.
+    """
+    if start.dmp:
+        return MotionTarget(joints=(await resolve_joint_dmp(ctx, JointDmpEntry(entry=start.dmp), time_scale=1.0)).start)
+    if start.cart_dmp:
+        return MotionTarget(
+            pose=(await resolve_cart_dmp(ctx, CartDmpEntry(entry=start.cart_dmp), time_scale=1.0)).start
+        )
+    record = await ctx.call(ReadEntry(kind="trajectory", name=start.trajectory), to="store")
+    led = read_as(record, Trajectory)
+    if led.joints:
+        return MotionTarget(joints=led.joints[0])
+    x, y, z, *turn = led.poses[0]
+    qx, qy, qz, qw = turn
+    return MotionTarget(pose=Pose(xyz=(x, y, z), xyzw=(qx, qy, qz, qw), frame=led.frame))
 
 
 async def resolve_joint_dmp(ctx: Context, dmp: JointDmpEntry, *, time_scale: float) -> JointDmp:

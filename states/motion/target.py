@@ -12,6 +12,7 @@ from msgspec import Meta
 
 from engine.errors import StateError
 from engine.messages import Pose, Quaternion, Vector3
+from engine.pose_algebra import moved, rotated
 from engine.skills.entries import ReadEntry
 from engine.state import Context
 from engine.store.kinds import Joints, read_as
@@ -21,6 +22,15 @@ Offset = Annotated[
     Vector3, Meta(description="Added to the target, along the axes of the world", extra_json_schema={"unit": "m"})
 ]
 NO_OFFSET: Vector3 = (0.0, 0.0, 0.0)
+Back = Annotated[
+    float,
+    Meta(
+        ge=0,
+        le=1,
+        description="How far before the target, against the z axis that the tool has there",
+        extra_json_schema={"unit": "m"},
+    ),
+]
 
 
 class EntryTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -89,6 +99,11 @@ async def resolve_pose(ctx: Context, target: PoseTarget, offset_m: Vector3) -> P
     else:
         pose = Pose(xyz=target.xyz or NO_OFFSET, xyzw=target.xyzw, frame=target.frame)
     return shifted(pose, offset_m, where=ctx.path)
+
+
+def before(pose: Pose, back_m: float) -> Pose:
+    """Move a pose of the tool against its own z axis."""
+    return moved(pose, rotated(pose.xyzw, (0.0, 0.0, -back_m))) if back_m else pose
 
 
 def shifted(pose: Pose, offset_m: Vector3, *, where: str) -> Pose:

@@ -10,9 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from editor_web.operation import Attached, InterruptedRun
+from engine.archive import Archive
+from engine.bus import SkillBus
 from engine.bus.access import BusAccess
 from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
+from engine.bus.desk import BusDesk
+from engine.clock import LoopClock
 from engine.control import Breakpoint, Control
 from engine.editing import Documents
 from engine.errors import BusError, ControlError, FlexcellError
@@ -31,6 +35,7 @@ from engine.event import (
 from engine.hot_change import ChangeReport
 from engine.launch import Moment
 from engine.supervision import Supervision
+from engine.userdata_book import UserdataBook
 from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER, Behavior, Node, Run
 from tests.editor_web.fake_scene import frames_at, new_scene
 
@@ -72,9 +77,11 @@ class FakeBackend:
         documents: Documents | None = None,
     ) -> None:
         self.cell_name = "dual_panda"
+        self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or Documents(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
         self.step_s = step_s
+        self.recorded: dict[str, tuple[Path, ...]] = {}
         self._behaviors = {b.id: b for b in behaviors}
         self._runs: dict[str, Run] = {}
         self._events: dict[str, list[Event]] = {}
@@ -84,12 +91,19 @@ class FakeBackend:
         self._callbacks: list[Callable[[str, Event], None]] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
         self.known_bus: BusAccess = TopicBus(self._topics)
+        self.known_desk: BusDesk | None = None
         self._topic_callbacks: dict[str, list[Callable[[object], None]]] = {}
         self.listeners_changed = asyncio.Event()
 
     @property
     def bus(self) -> BusAccess:
         return self.known_bus
+
+    @property
+    def desk(self) -> BusDesk:
+        if self.known_desk is None:
+            self.known_desk = BusDesk(SkillBus(LoopClock()))
+        return self.known_desk
 
     def behaviors(self) -> tuple[Behavior, ...]:
         return tuple(sorted(self._behaviors.values(), key=lambda b: b.id))
@@ -146,6 +160,12 @@ class FakeBackend:
     def events(self, run_id: str, *, after: int = 0) -> list[Event]:
         self.run(run_id)
         return [e for e in self._events[run_id] if e.seq > after]
+
+    def userdata(self, run_id: str) -> UserdataBook:
+        raise FlexcellError("this fake keeps no userdata", where=run_id)
+
+    def recording_files(self, run_id: str) -> tuple[Path, ...]:
+        return self.recorded.get(run_id, ())
 
     def latest(self, topic: str) -> object | None:
         return self._topics.get(topic)

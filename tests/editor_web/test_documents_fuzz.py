@@ -49,6 +49,7 @@ texts = st.one_of(
 ROUTES = [
     ("POST", f"{AT}/draft"), ("POST", f"{AT}/edits"), ("POST", f"{AT}/copy"), ("PUT", AT), ("POST", "/documents"),
     ("POST", f"{AT}/rename"), ("POST", f"{AT}/duplicate"), ("GET", f"{AT}/diff"), ("GET", f"{AT}/versions/x"),
+    ("POST", f"{AT}/fixes"), ("POST", f"{AT}/compare"), ("POST", f"{AT}/move"), ("GET", f"{AT}/versions/x/drawn"),
 ]  # fmt: skip
 
 
@@ -89,6 +90,8 @@ def test_texts_and_edits_of_any_kind_are_answered(
 ) -> None:
     sent(client, "POST", f"{AT}/draft", {"text": text})
     sent(client, "POST", f"{AT}/copy", {"text": text, "paths": [path]})
+    sent(client, "POST", f"{AT}/fixes", {"text": text})
+    sent(client, "POST", f"{AT}/compare", {"before": SHIFT, "after": text})
     status, answer = sent(client, "POST", f"{AT}/edits", {"text": text, "edits": edits})
     if status == 200 and answer["refused"] is not None:
         assert answer["text"] == text

@@ -17,6 +17,7 @@ from engine.event import Event
 from engine.journal import Journal
 from engine.registry import load_states
 from engine.session import Session
+from engine.session_recordings import RECORDINGS, SessionRecordings
 from engine.state import State
 from tests.editor_web.fake_arm import FakeArm
 from tests.engine.fake_states import CATALOGUE
@@ -150,7 +151,14 @@ class Workshop:
         catalogue = {**load_states(), **CATALOGUE, **self._states}
         self._furnish(cell.bus)
         session = await self._open.enter_async_context(
-            Session(cell, project=self.project, catalogue=catalogue, journal=journal)
+            Session(
+                cell,
+                project=self.project,
+                catalogue=catalogue,
+                journal=journal,
+                # As `flexcell serve` does; what the 3D view shows of the past it takes from there.
+                recordings=SessionRecordings(self.project / ".flexcell" / RECORDINGS) if self._cell_view else None,
+            )
         )
         arm = FakeArm(cell.bus, "left")
         running = await self._open.enter_async_context(

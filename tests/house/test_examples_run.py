@@ -20,6 +20,7 @@ from engine.control.breakpoint import breakpoints_file
 from engine.demonstration import Trajectory
 from engine.document import parse_behavior
 from engine.document.cell import load_cell
+from engine.document.entries import load_entries
 from engine.document.faults import parse_faults
 from engine.registry import load_states
 from engine.skills.entries import WriteEntry
@@ -33,6 +34,7 @@ PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "d
 CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
 TRIGGERS = "\ntriggers:"
+TAGS = "\ntags:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:")
 STORES = ("store:",)
 PARTS_OF_TREES = ("condition:", "behaviour:")
@@ -131,9 +133,16 @@ def test_triggers_are_taken(tmp_path: Path, text: str) -> None:
     assert len(load_triggers(file)) == text.count("trig_name:")
 
 
+@shown(holding=TAGS)
+def test_entries_are_taken_with_their_tags(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "entries.yaml"
+    file.write_text(text, encoding="utf-8")
+    assert any(record.tags for record in load_entries(file).records())
+
+
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS, TRIGGERS)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS, TRIGGERS, TAGS)
     begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

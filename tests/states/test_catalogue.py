@@ -41,6 +41,7 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "motion.ExecutePlan",
         "motion.FollowCartDmp",
         "motion.FollowJointDmp",
+        "motion.FollowRecording",
         "motion.Guide",
         "motion.LearnCartDmp",
         "motion.LearnJointDmp",

@@ -38,6 +38,7 @@ _FEWEST_POINTS = 400
 # Until which share of the duration an arm that rests at the end is held to rest.
 _REST_AFTER = 1.4
 _MOST_TURN_RAD = 6.0
+_TOOL_SAMPLES = 1000
 # Keeps the regression solvable where kernels overlap nearly wholly; too small to be seen in the motion.
 _RIDGE = 1e-9
 
@@ -54,9 +55,17 @@ class _Part:
 
 
 def learn_joint_dmp(
-    recorded: Trajectory, *, kernels: int = 0, a_z: float = 48.0, a_x: float = 2.0, trim: bool = True
+    recorded: Trajectory,
+    *,
+    kernels: int = 0,
+    a_z: float = 48.0,
+    a_x: float = 2.0,
+    trim: bool = True,
+    tool_at: Callable[[Array], Array] | None = None,
 ) -> LearnedJointDmp:
     """Return the joint DMP of a recording and how well it fits; `kernels` 0 chooses their number.
+
+    With `tool_at`, which gives the place (m) of the tool at joints, also how far the tool is off.
 
     Raises:
         RobotError: the recording has no joints, too few samples, or nothing moves in it.
@@ -74,7 +83,8 @@ def learn_joint_dmp(
     def error(one: LearnedJointDmp) -> tuple[float, bool]:
         return one.fit.rms_rad, one.fit.max_rad <= GOOD_RAD
 
-    return _best(learned, error, _numbers(kernels, part))
+    best = _best(learned, error, _numbers(kernels, part))
+    return best if tool_at is None else _with_tool(best, part, wanted, tool_at)
 
 
 def learn_cart_dmp(
@@ -244,6 +254,19 @@ def _joint_fit(dmp: JointDmp, part: _Part, wanted: Array) -> JointFit:
         joint=int(np.argmax(np.abs(error).max(axis=0))),
         cut=part.cut,
     )
+
+
+def _with_tool(
+    learned: LearnedJointDmp, part: _Part, wanted: Array, tool_at: Callable[[Array], Array]
+) -> LearnedJointDmp:
+    """Add how far the tool is off, at no more than so many samples of the whole."""
+    path = roll_out_joints(learned.dmp)
+    rows = np.unique(np.linspace(0, len(wanted) - 1, min(len(wanted), _TOOL_SAMPLES)).astype(int))
+    made = _at(part.shares[rows], path.shares, path.position)
+    pairs = zip(made, wanted[rows], strict=True)
+    away = np.array([np.linalg.norm(tool_at(one) - tool_at(other)) for one, other in pairs])
+    fit = msgspec.structs.replace(learned.fit, rms_m=float(np.sqrt((away**2).mean())), max_m=float(away.max()))
+    return msgspec.structs.replace(learned, fit=fit)
 
 
 def _cart_fit(dmp: CartDmp, part: _Part, xyz: Array, xyzw: Array) -> CartFit:

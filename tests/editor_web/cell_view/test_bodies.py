@@ -8,7 +8,7 @@ import viser
 
 from editor_web.cell_view.bodies import Bodies, body_node
 from editor_web.cell_view.newest import Newest
-from tests.editor_web.fake_sights import description, frames_with_a_person, scene_with_a_person
+from tests.editor_web.fake_sights import description, frames_with_a_person, scene_with_a_person, way
 
 
 def newest_at(time_s: float) -> Newest:
@@ -46,6 +46,34 @@ def test_people_find_their_group_once_the_arms_are_known(server: viser.ViserServ
         newest.put(arm, description(arm))
     bodies.draw(newest)
     assert is_there(server, "/cell/anna.hand", "/people/anna.hand", "/frames/world") == [False, True, True]
+
+
+def colours(server: viser.ViserServer) -> dict[str, tuple[int, ...]]:
+    """The colours of the table, a tray, and the links of both arms."""
+    nodes = {"table": "world/0", "tray": "world/1", "left/fore": "left.fore/5", "right/fore": "right.fore/8"}
+    found: dict[str, tuple[int, ...]] = {}
+    for name, node in nodes.items():
+        shape = server.scene.get_handle_by_name(f"/cell/{node}")
+        assert isinstance(shape, viser.BoxHandle)
+        found[name] = tuple(shape.color)
+    return found
+
+
+def test_the_two_bodies_that_would_touch_are_red_until_the_way_is_free(server: viser.ViserServer) -> None:
+    bodies, newest = Bodies(server), newest_at(0.0)
+    for arm in ("left", "right"):
+        newest.put(arm, description(arm))
+    bodies.draw(newest)
+    plain = colours(server)
+    newest.put("left", way("left", "blocked", reason="left/fore would touch tray_north and 1 more"))
+    bodies.draw(newest)
+    assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "tray"}
+    newest.put("left", way("left", "blocked", reason="left/fore would touch right/fore"))
+    bodies.draw(newest)
+    assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "right/fore"}
+    newest.put("left", way("left", "moving"))
+    bodies.draw(newest)
+    assert colours(server) == plain
 
 
 def test_what_is_drawn_once_is_only_moved(server: viser.ViserServer) -> None:

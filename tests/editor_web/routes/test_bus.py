@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncGenerator
+from typing import Annotated, Any
 
 import httpx
 import msgspec
 import pytest
 
-from engine.bus import ActiveGoal, SkillBus
+from engine.bus import ActiveGoal, Holder, SkillBus
 from engine.bus.access import LocalBus
+from engine.bus.desk import BusDesk
 from engine.bus.remote import RemoteBus
 from engine.clock import LoopClock
 from engine.errors import BusError
@@ -133,3 +136,100 @@ async def test_the_bus_is_closed_to_who_is_not_logged_in(serve: Serve) -> None:
         assert (await stranger.get("/api/v1/bus")).status_code == 401
         for path in ("call", "goal", "publish"):
             assert (await stranger.post(f"/api/v1/bus/{path}", json={"address": "left/rest"})).status_code == 403
+
+
+async def _lines(response: httpx.Response) -> AsyncGenerator[dict[str, Any]]:
+    async for line in response.aiter_lines():
+        yield msgspec.json.decode(line)
+
+
+async def test_the_page_gets_what_there_is_with_words_and_forms(serve: Serve) -> None:
+    """Docstrings, schemas, numbers to plot, parameters."""
+    async with SkillBus(LoopClock()) as bus:
+        backend, _ = wired(bus)
+        backend.known_desk = BusDesk(bus)
+        bus.parameters.declare("left/gain", Annotated[float, msgspec.Meta(ge=0)], 0.5, description="How stiff it is")
+        async with serve(backend) as served:
+            board = (await served.http.get("/api/v1/bus/board")).json()
+            assert [(each["kind"], each["name"], each["doc"]) for each in board["skills"]] == [
+                ("service", "left/double", "A service."),
+                ("action", "left/rest", "An action that lasts until it is cancelled."),
+            ]
+            assert board["topics"] == [
+                {"name": "left/number", "type": "Number", "doc": "A message.", "takes_commands": False}
+            ]
+            assert [(each["name"], each["value"], each["schema"]["minimum"]) for each in board["parameters"]] == [
+                ("left/gain", 0.5, 0)
+            ]
+            form = (await served.http.get("/api/v1/bus/form", params={"address": "left/double"})).json()["schema"]
+            assert form["$defs"]["Double"]["properties"] == {"value": {"type": "integer"}}
+            fields = (await served.http.get("/api/v1/bus/fields")).json()["topics"]
+            assert fields == [
+                {"topic": "left/number", "type": "Number", "fields": [{"path": "value", "label": "value", "unit": ""}]}
+            ]
+            changed = await served.http.put("/api/v1/bus/parameter", json={"name": "left/gain", "value": 2.0})
+            assert (changed.status_code, changed.json(), bus.parameters.get("left/gain")) == (200, 2.0, 2.0)
+            for path, problem in (("form?address=left/dobule", "nobody answers"), ("form?topic=x", "no such topic")):
+                refused = await served.http.get(f"/api/v1/bus/{path}")
+                assert (refused.status_code, problem in refused.json()["message"]) == (422, True)
+            wrong = await served.http.put("/api/v1/bus/parameter", json={"name": "left/gain", "value": -1})
+            assert (wrong.status_code, wrong.json()["where"]) == (422, "left/gain")
+
+
+async def test_a_goal_of_the_page_tells_its_course_and_can_be_cancelled(serve: Serve) -> None:
+    """The end comes when the device rests; the lease is given back."""
+    async with SkillBus(LoopClock()) as bus:
+        backend, device = wired(bus)
+        backend.known_desk = BusDesk(bus)
+        async with serve(backend) as served:
+            body = {"address": "left/rest"}
+            async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:
+                lines = _lines(response)
+                sent = await anext(lines)
+                assert sent["k"] == "sent"
+                while (line := await anext(lines))["status"] != "active":
+                    pass
+                assert [each.run for each in bus.leases.held()] == ["cli"]
+                cancelled = await served.http.post(f"/api/v1/bus/goals/{sent['goal']}/cancel")
+                assert cancelled.status_code == 202
+                *_, line = [each async for each in lines]
+                assert (line["status"], device.rested.is_set()) == ("canceled", True)
+            assert bus.leases.held() == ()
+            gone = await served.http.post(f"/api/v1/bus/goals/{sent['goal']}/cancel")
+            assert (gone.status_code, gone.json()["message"]) == (422, "no such goal is under way")
+            refused = await served.http.post(
+                "/api/v1/bus/goals", json={"address": "left/rest", "request": {"until": 7}}
+            )
+            assert (refused.status_code, refused.json()["where"]) == (422, "left/rest")
+
+
+async def test_a_goal_whose_page_goes_is_cancelled_and_one_of_a_run_is_not_for_the_page(serve: Serve) -> None:
+    """Closing the tab must not leave a robot moving."""
+    async with SkillBus(LoopClock()) as bus:
+        backend, device = wired(bus)
+        backend.known_desk = BusDesk(bus)
+        async with serve(backend) as served:
+            body = {"address": "left/rest"}
+            async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:
+                await anext(_lines(response))
+                await device.started.wait()
+            async with asyncio.timeout(5):
+                await device.rested.wait()
+                await bus.cancel_goals()
+            device.rested.clear()
+            mine = bus.send_goal(Rest(), to="left", holder=Holder("run-1", "root"), goal_id="root#1.1")
+            refused = await served.http.post("/api/v1/bus/goals/root%231.1/cancel")
+            assert (refused.status_code, refused.json()["hint"]) == (422, "stop run run-1")
+            assert not mine.finished
+
+
+async def test_viewers_see_the_bus_and_change_nothing(serve: Serve) -> None:
+    """Every change is refused to them."""
+    async with serve() as served:
+        headers = {"Authorization": f"Bearer {served.access.viewer}"}
+        async with httpx.AsyncClient(base_url=served.running.url, headers=headers, trust_env=False) as viewer:
+            for path in ("board", "fields"):
+                assert (await viewer.get(f"/api/v1/bus/{path}")).status_code == 200
+            for path in ("goals", "goals/g1/cancel", "call", "publish"):
+                assert (await viewer.post(f"/api/v1/bus/{path}", json={})).status_code == 403
+            assert (await viewer.put("/api/v1/bus/parameter", json={})).status_code == 403

@@ -74,3 +74,22 @@ def test_who_waits_for_a_resource_is_told_once_when_its_run_gives_it_back() -> N
     leases.release_run("run-1")
     leases.release_run("run-1")
     assert told == ["left"]
+
+
+async def test_who_holds_what_is_told_with_the_time_since_when() -> None:
+    """A run keeps the arm after its branch has given its part back; the branch's time is its own."""
+    now_s = 1.0
+    table = LeaseTable(now_s=lambda: now_s)
+    table.acquire(("left/gripper",), ONE)
+    now_s = 2.0
+    table.acquire(("left", "left/gripper"), ONE)
+    told = [(each.resource, each.run, each.branch, each.since_s) for each in table.held()]
+    assert told == [("left", "run-1", "root/a", 2.0), ("left/gripper", "run-1", "root/a", 1.0)]
+    table.release(("left", "left/gripper"), ONE)
+    table.release(("left/gripper",), ONE)
+    now_s = 3.0
+    assert [(each.resource, each.branch, each.since_s) for each in table.held()] == [("left", "", 1.0)]
+    table.release_run("run-1")
+    assert table.held() == ()
+    table.acquire(("left",), TWO)
+    assert [(each.run, each.since_s) for each in table.held()] == [("run-2", 3.0)]

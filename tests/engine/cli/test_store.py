@@ -64,7 +64,7 @@ def test_a_life_of_an_entry_reads_the_same_on_both_stores(server: Mongod, tmp_pa
         "error: joints home: revision 1 is there, revision 7 was expected (read it again and decide anew)"
     )
     assert told[0][3] == "joints home revision 3 undone to revision 1 WHEN by ana: worse\n"
-    assert told[0][4].splitlines()[1:] == ["tags: fast", "joints: [1.0, 2.0]", "names: []"]
+    assert told[0][4].splitlines()[1:] == ["tags: fast", "joints: [1.0, 2.0]", 'model: ""', "names: []"]
     history = [
         "revision 1 written WHEN by ana: taught",
         "revision 2 written WHEN by ana",
@@ -125,4 +125,21 @@ def test_a_server_that_is_not_there_is_one_line(tmp_path: Path) -> None:
     assert done.err.count("\n") == 1
     assert done.err.startswith(
         "flexcell: mongodb://127.0.0.1:1/flexcell: the store cannot be opened: the server cannot"
+    )
+
+
+def test_tags_go_through_a_document_from_one_store_to_another(tmp_path: Path) -> None:
+    """Exported and imported again; what the document says no tags of keeps its own."""
+    here, there, file = str(tmp_path / "here.db"), str(tmp_path / "there.db"), tmp_path / "entries.yaml"
+    said(
+        "set", "joints", "home", '{"joints": [1], "names": ["a"]}', "--tag", "tested", "--tag", "fast", "--store", here
+    )
+    said("set", "record", "tray", '{"rows": 4}', "--store", here)
+    said("set", "record", "tray", '{"rows": 3}', "--tag", "old", "--store", there)
+    file.write_text(said("export", "--store", here), encoding="utf-8")
+    assert said("import", str(file), "--overwrite", "--store", there) == "2 of 2 entries written\n"
+    listed = json.loads(said("list", "--json", "--store", there))
+    assert [(key["name"], key["tags"]) for key in listed] == [("home", ["fast", "tested"]), ("tray", ["old"])]
+    assert said("export", "--store", there).replace("  records:\n    tray: [old]\n", "") == file.read_text(
+        encoding="utf-8"
     )

@@ -56,6 +56,9 @@ def test_a_button_of_a_device_teaches_a_configuration(tmp_path: Path) -> None:
         assert again.returncode != 0
         assert "above" in again.stderr
         assert '"joints"' in said("store", "get", "joints", "above", "--cell", cell, cwd=tmp_path).stdout
+        proposed = said("teach", "propose", "above", "--out", "taught.yaml", cwd=tmp_path)
+        assert proposed.stdout == "1. Move to above\n", proposed.stderr
+        assert "robot: left" in (tmp_path / "taught.yaml").read_text(encoding="utf-8")
         assert '"taken_at_s"' in said("teach", "show", "1", cwd=tmp_path).stdout
         assert said("teach", "discard", "1", cwd=tmp_path).returncode == 0
         unknown = said("teach", "show", "1", cwd=tmp_path)

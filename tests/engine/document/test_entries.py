@@ -25,6 +25,10 @@ cart_offsets:
   pressed: {c_o: [1]}
 trajectories:
   led: {times_s: [0, 1]}
+grippers:
+  closed: {width_m: 0.03, held: true}
+detections:
+  gear: {detector: blobs}
 records:
   tray: {rows: 4}
 """
@@ -49,9 +53,11 @@ def test_each_section_gives_records_of_its_kind(tmp_path: Path) -> None:
         ("cart_dmp", "wipe", {"N": 3}),
         ("cart_offsets", "pressed", {"c_o": [1]}),
         ("trajectory", "led", {"times_s": [0, 1]}),
+        ("gripper", "closed", {"width_m": 0.03, "held": True}),
+        ("detection", "gear", {"detector": "blobs"}),
         ("record", "tray", {"rows": 4}),
     ]
-    assert entries.names() == {"left_home", "left/above", "pour", "wipe", "pressed", "led", "tray"}
+    assert entries.names() == {"left_home", "left/above", "pour", "wipe", "pressed", "led", "closed", "gear", "tray"}
     assert write_entries(entries.records()) == write_entries(reversed(entries.records()))
     assert entries.names_by_kind()["cart_dmp"] == {"wipe"}
 
@@ -95,6 +101,56 @@ def test_entries_written_are_read_back(
     read = load_entries(file).records()
     assert sorted(read, key=lambda r: (r.kind, r.name)) == sorted(given_records, key=lambda r: (r.kind, r.name))
     assert write_entries(reversed(given_records)) == text
+
+
+def test_tags_and_the_names_of_joints_are_written_and_read_back(tmp_path: Path) -> None:
+    """What no tags are said of keeps those it has."""
+    named: dict[str, object] = {"joints": [0.0, 1.0], "names": ["a", "b"], "model": "panda"}
+    records = [
+        EntryRecord(kind="joints", name="home", value={"joints": [0.5], "names": [], "model": ""}, revision=3, tags=()),
+        EntryRecord(kind="joints", name="led", value=named, revision=1, tags=("fast", "tested")),
+        EntryRecord(kind="record", name="led", value={"n": 1}, revision=1, tags=("tested",)),
+    ]
+    text = write_entries(records)
+    assert text.splitlines()[1:] == [
+        "joints:",
+        "  home: [0.5]",
+        "  led:",
+        "    joints: [0.0, 1.0]",
+        "    names: [a, b]",
+        "    model: panda",
+        "records:",
+        "  led: {n: 1}",
+        "tags:",
+        "  joints:",
+        "    led: [fast, tested]",
+        "  records:",
+        "    led: [tested]",
+    ]
+    file = tmp_path / "entries.yaml"
+    file.write_text(text, encoding="utf-8")
+    assert [(r.value, r.tags) for r in load_entries(file).records()] == [
+        ({"joints": [0.5]}, None),
+        (named, ("fast", "tested")),
+        ({"n": 1}, ("tested",)),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("tags", "says"),
+    [
+        ("tags: {joints: {left_hme: [a]}}", "20:17: there is no `left_hme` under `joints` (did you mean left_home"),
+        ("tags: {cloud: {a: [b]}}", "20:8: "),
+        ("tags: {joints: {left_home: [No]}}", "20:29: `left_home`: not in the allowed form"),
+    ],
+)
+def test_tags_of_what_is_not_there_are_refused(tmp_path: Path, tags: str, says: str) -> None:
+    """With line and column."""
+    file = tmp_path / "entries.yaml"
+    file.write_text(f"{TEXT}{tags}\n", encoding="utf-8")
+    with pytest.raises(DocumentError) as refusal:
+        load_entries(file)
+    assert says in str(refusal.value)
 
 
 def test_a_kind_without_section_is_refused() -> None:

@@ -70,6 +70,15 @@ class Mongod:
         assert self._process is not None
         return self._process.pid
 
+    def ends_itself(self, *, within_s: float) -> bool:
+        """Tell whether it ends by itself."""
+        assert self._process is not None
+        try:
+            self._process.wait(within_s)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
     def start(self) -> None:
         """Start it and wait until it can be written to."""
         replica_set = ("--replSet", "r", "--oplogSize", "50") if self.replicated else ()

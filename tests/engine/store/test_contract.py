@@ -14,7 +14,7 @@ from engine.skills.entries import EntryRecord
 from engine.store import EntryChange, EntryKey, Joints, Store
 from tests.engine.store.stores import KINDS, Opener, opener_of
 
-HOME: dict[str, object] = {"joints": [0.0, -0.5, 1.0], "names": []}
+HOME: dict[str, object] = {"joints": [0.0, -0.5, 1.0], "names": [], "model": ""}
 
 
 @pytest.fixture(params=KINDS, name="opener")
@@ -179,6 +179,23 @@ async def test_overwriting_seed_replaces_what_differs_and_leaves_the_rest(opener
         await store.seed(entries)
         await store.put("record", "a", {"from": "teaching"})
         assert [(key.name, key.revision) for key in await store.seed(entries, overwrite=True)] == [("a", 3)]
+
+
+async def test_tags_go_along_with_what_is_exported_and_seeded(opener: Opener, tmp_path: Path) -> None:
+    """Entries without any word of tags keep those they have."""
+    async with opener(tmp_path / "here") as here, opener(tmp_path / "there") as there:
+        await here.put("record", "a", {"n": 1}, tags=["tested", "fast"])
+        await here.put("record", "b", {"n": 1})
+        await there.put("record", "a", {"n": 1}, tags=["old"])
+        await there.put("record", "b", {"n": 0}, tags=["old"])
+        exported = await here.export()
+        assert [record.tags for record in exported] == [("fast", "tested"), ()]
+        assert await there.seed(exported) == ()
+        silent = [msgspec.structs.replace(record, tags=None) for record in exported]
+        assert [(key.name, key.tags) for key in await there.seed(silent, overwrite=True)] == [("b", ("old",))]
+        written = await there.seed(exported, overwrite=True)
+        assert [(key.name, key.tags) for key in written] == [("a", ("fast", "tested")), ("b", ())]
+        assert [key.name for key in await there.list(tags=["tested"])] == ["a"]
 
 
 async def test_a_seed_with_one_bad_entry_writes_none(opener: Opener, tmp_path: Path) -> None:

@@ -76,7 +76,8 @@ async def test_undoing_a_deletion_brings_the_entry_back(opener: Opener, tmp_path
         await store.put("record", "a", {"n": 1}, tags=["kept"])
         await store.delete("record", "a")
         await store.undo("record", "a")
-        assert await store.get("record", "a") == EntryRecord(kind="record", name="a", value={"n": 1}, revision=3)
+        there = EntryRecord(kind="record", name="a", value={"n": 1}, revision=3)
+        assert await store.get("record", "a") == there
         assert (await store.list(tags=["kept"]))[0].name == "a"
 
 

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
+import base64
 import math
+from pathlib import Path
 from typing import Any
 
 import msgspec
+import pydantic
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from engine.detection_template import MAX_IMAGE_BYTES
 from engine.errors import StoreError
 from engine.messages import Pose
+from engine.sensing import CameraIntrinsics
 from engine.skills.entries import EntryRecord
-from engine.store import STANDARD_KINDS, EntryKind, JointDmp, Joints, read_as, verified_value
+from engine.store import (
+    STANDARD_KINDS,
+    DetectionTemplate,
+    EntryKind,
+    JointDmp,
+    Joints,
+    SqliteStore,
+    TemplateImage,
+    read_as,
+    verified_value,
+)
 
 FINITE = st.floats(-1e6, 1e6)
 POSITIVE = st.floats(1e-6, 1e6)
@@ -74,7 +89,7 @@ def test_a_pose_is_accepted_exactly_when_its_quaternion_has_unit_length(quaterni
     unit = [part / length for part in quaternion]
     taken = verified_value(STANDARD_KINDS, "pose", {"xyz": [0, 0, 0], "xyzw": unit}, where="pose x")
     assert isinstance(taken, Pose)
-    with pytest.raises(StoreError, match="the quaternion xyzw has length 3 instead of 1"):
+    with pytest.raises(StoreError, match="the quaternion of the pose has length 3 instead of 1"):
         verified_value(STANDARD_KINDS, "pose", {"xyz": [0, 0, 0], "xyzw": [3 * p for p in unit]}, where="pose x")
 
 
@@ -104,6 +119,78 @@ def test_a_registered_kind_is_checked_like_the_standard_ones() -> None:
     assert verified_value(kinds, "torque", {"torque_nm": 2}, where="torque x") == Torque(2.0)
     with pytest.raises(StoreError, match="this is no torque"):
         verified_value(kinds, "torque", {"torque_nm": "much"}, where="torque x")
+
+
+def test_a_pydantic_model_can_be_a_kind() -> None:
+    """Its own checks hold, and what it fills in is stored."""
+
+    class Tray(pydantic.BaseModel):
+        rows: int = pydantic.Field(gt=0)
+        columns: int = 6
+
+    kinds = {**STANDARD_KINDS, "tray": EntryKind(Tray)}
+    assert verified_value(kinds, "tray", {"rows": 2}, where="tray x") == {"rows": 2, "columns": 6}
+    assert verified_value(kinds, "tray", Tray(rows=3), where="tray x") == {"rows": 3, "columns": 6}
+    assert verified_value(STANDARD_KINDS, "record", Tray(rows=3), where="record x") == {"rows": 3, "columns": 6}
+    with pytest.raises(StoreError, match=r"tray x: this is no tray: rows: .*greater than 0.*rows, columns"):
+        verified_value(kinds, "tray", {"rows": 0}, where="tray x")
+    record = EntryRecord(kind="tray", name="x", value={"rows": 2}, revision=1)
+    assert read_as(record, Tray) == Tray(rows=2)
+    with pytest.raises(StoreError, match="tray x: this entry does not read as Tray: rows: Field required"):
+        read_as(EntryRecord(kind="tray", name="x", value={}, revision=1), Tray)
+
+
+def _png(width_px: int, height_px: int) -> bytes:
+    return b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR" + width_px.to_bytes(4) + height_px.to_bytes(4) + b"\x08\x02"
+
+
+TEMPLATE = DetectionTemplate(
+    detector="blobs",
+    label="gear",
+    image=TemplateImage(format="png", data=_png(32, 24), width_px=32, height_px=24, corner_px=(100, 50)),
+    pose=Pose(xyz=(0.1, 0.2, 0.3)),
+    camera="overview",
+    camera_pose=Pose(xyz=(0.0, 0.0, 1.0), xyzw=(1.0, 0.0, 0.0, 0.0)),
+    intrinsics=CameraIntrinsics(width_px=640, height_px=480, fx_px=500.0, fy_px=500.0, cx_px=319.5, cy_px=239.5),
+    settings={"threshold": 0.4, "rotated": True},
+)
+
+
+async def test_a_detection_template_is_stored_with_its_image(tmp_path: Path) -> None:
+    """Crop, poses, camera and detector come back as they were."""
+    async with SqliteStore.open(tmp_path / "s.db", inline=True) as store:
+        await store.put("detection", "gear", TEMPLATE, tags=["vision"])
+        assert read_as(await store.get("detection", "gear"), DetectionTemplate) == TEMPLATE
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"image": None, "pose": None}, "give `image`, `pose` or both"),
+        ({"detector": ""}, "detector"),
+        ({"image": {"format": "png", "data": "AAAAAAAAAAAA", "width_px": 1, "height_px": 1}}, "begin as png does"),
+        ({"settings": {"a": [1]}}, "settings"),
+        ({"camera_pose": {"xyz": [0, 0, 0], "xyzw": [2, 0, 0, 0]}}, "the quaternion of camera_pose has length 2"),
+    ],
+)
+def test_a_detection_template_that_is_none_is_refused_with_the_reason(change: dict[str, object], says: str) -> None:
+    """Nothing senseless is kept for a detector to stumble over."""
+    fields = {**msgspec.to_builtins(TEMPLATE), **change}
+    with pytest.raises(StoreError, match=says):
+        verified_value(STANDARD_KINDS, "detection", fields, where="detection x")
+
+
+def test_the_image_of_a_detection_template_is_what_it_says_and_no_larger_than_four_megabytes() -> None:
+    """Its size is bounded before any database sees it."""
+    fields = msgspec.to_builtins(TEMPLATE)
+    wrong = {**fields, "image": {**fields["image"], "width_px": 33}}
+    with pytest.raises(StoreError, match="data is an image of 32 x 24, not 33 x 24"):
+        verified_value(STANDARD_KINDS, "detection", wrong, where="detection x")
+    large = base64.b64encode(_png(32, 24) + bytes(MAX_IMAGE_BYTES)).decode()
+    with pytest.raises(StoreError, match="length <= 4194304"):
+        verified_value(
+            STANDARD_KINDS, "detection", {**fields, "image": {**fields["image"], "data": large}}, where="detection x"
+        )
 
 
 def test_an_entry_reads_as_its_type_or_says_why_not() -> None:

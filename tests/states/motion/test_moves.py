@@ -184,7 +184,7 @@ async def test_a_speed_to_another_frame_is_refused_with_advice() -> None:
     [
         (MoveLinear, {"robot": "l", "target": {"entry": "a"}}, "either `duration_s` or `speed_m_s`"),
         (MoveLinear, {"robot": "l", "offset_m": [0, 0, 1], "duration_s": 1, "speed_m_s": 1}, "either `duration_s`"),
-        (MoveLinear, {"robot": "l", "duration_s": 1}, "give `target`, `offset_m` or both"),
+        (MoveLinear, {"robot": "l", "duration_s": 1}, "give `target`, `joints`, `offset_m` or `back_m`"),
         (MovePose, {"robot": "l", "target": {}}, "give either `entry` or `xyz`"),
         (MovePose, {"robot": "l", "target": {"entry": "a", "xyz": [0, 0, 0]}}, "give either `entry` or `xyz`"),
         (MoveJoints, {"robot": "l", "target": []}, "target"),

@@ -3,6 +3,7 @@ import { create } from 'zustand'
 import { completed, matches, toggled } from '../document/breakpoints'
 import { api } from './client'
 import { useLive } from './live'
+import { useControl } from './liveParts'
 import { refuse, send } from './refusal'
 import type { BreakpointLive } from './types'
 
@@ -22,7 +23,7 @@ export async function loadKept(behavior: string): Promise<void> {
 
 /** Those that hold now: of the run while one is under way, else those for the next one. */
 export function useBreakpoints(): readonly BreakpointLive[] {
-  const ofRun = useLive((s) => s.control?.breakpoints)
+  const ofRun = useControl((control) => control?.breakpoints)
   const kept = useKept((s) => s.kept)
   return ofRun ?? kept
 }

@@ -8,6 +8,7 @@ import type {
   DraftedBody,
   Edit,
   EditedBody,
+  FindingBody,
   NewDocumentBody,
   SavedBody,
 } from './types'
@@ -17,10 +18,13 @@ function at(id: string, rest = ''): string {
 }
 
 export const documents = {
-  open: (id: string) => call<DocumentBody>(at(id)),
+  /** Drawn, not checked yet: `findings` follow. So do `draft` and `edit`. */
+  open: (id: string) => call<DocumentBody>(at(id, '?check=false')),
+  openChecked: (id: string) => call<DocumentBody>(at(id)),
   make: (body: NewDocumentBody) => post<DocumentBody>('/documents', body),
-  draft: (id: string, text: string) => post<DraftedBody>(at(id, '/draft'), { text }),
-  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditedBody>(at(id, '/edits'), { text, edits }),
+  draft: (id: string, text: string) => post<DraftedBody>(at(id, '/draft'), { text, check: false }),
+  findings: (id: string, text: string) => post<readonly FindingBody[]>(at(id, '/findings'), { text }),
+  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditedBody>(at(id, '/edits'), { text, edits, check: false }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopiedBody>(at(id, '/copy'), { text, paths }),
   save: (id: string, text: string, baseHash: string) => sent<SavedBody>('PUT', at(id), { text, base_hash: baseHash }),
   catalogue: () => call<CatalogueBody>('/catalogue'),

@@ -1,6 +1,7 @@
 /** The live connection: one websocket, reopened when it is lost, folded into one store. */
 import { create } from 'zustand'
 import { EMPTY, fold, isActive, type LiveState } from '../document/live'
+import { atMoment, type ShownMoment } from '../document/timelineMoment'
 import { api, ServerError } from './client'
 import { PAGE, useShown } from './shown'
 import type { Frame, Operate, Show, Watch } from './types'
@@ -13,6 +14,10 @@ interface LiveStore extends LiveState {
   readonly generation: number
   /** The run that this page operates; kept over a reload of the page, empty for none. */
   readonly operated: string
+  /** The moment of the past whose nodes, log and clock are shown in the place of the live ones. */
+  readonly past: ShownMoment | undefined
+  /** Whether the server has told what runs it has. */
+  readonly knowsRuns: boolean
 }
 
 const OPERATED = 'flexcell.operated'
@@ -22,9 +27,25 @@ export const useLive = create<LiveStore>(() => ({
   connection: 'connecting',
   generation: 0,
   operated: sessionStorage.getItem(OPERATED) ?? '',
+  past: undefined,
+  knowsRuns: false,
 }))
 
+/** What the stream has told, also while the past is shown. */
+let streamed: LiveState = EMPTY
+
+/** Show a moment of the past from now on; undefined shows what is live again. */
+export function showMoment(past: ShownMoment | undefined): void {
+  useLive.setState({ ...(past ? atMoment(streamed, past) : streamed), past })
+}
+
+/** The last event of the watched run that the stream has told of. */
+export function streamedSeq(): number {
+  return streamed.seq
+}
+
 const SILENCE_MS = 12_000
+const ANSWER_MS = 4000
 const RETRY_MS = [250, 500, 1000, 2000, 3000]
 
 let socket: WebSocket | undefined
@@ -78,10 +99,15 @@ export function connect(): () => void {
       if (watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
     }
-    opened.onmessage = (message: MessageEvent<string>) => receive(opened, JSON.parse(message.data) as Frame)
+    opened.onmessage = (message: MessageEvent<string>) => {
+      if (socket === opened) receive(opened, JSON.parse(message.data) as Frame)
+    }
     opened.onclose = () => {
+      if (socket !== opened) return
       clearTimeout(silence)
-      if (ended || socket !== opened) return
+      socket = undefined
+      if (ended) return
+      streamed = { ...streamed, ticking: false }
       useLive.setState({ connection: 'lost', ticking: false })
       void again()
     }
@@ -90,7 +116,7 @@ export function connect(): () => void {
 
   async function again(): Promise<void> {
     // A refused websocket says nothing about why; the session does.
-    const denied = await api.session().then(
+    const denied = await Promise.race([api.session(), soon(ANSWER_MS)]).then(
       () => false,
       (error: unknown) => error instanceof ServerError && error.status === 401,
     )
@@ -121,13 +147,16 @@ function receive(from: WebSocket, frame: Frame): void {
     return
   }
   const before = useLive.getState()
-  const next = fold(before, frame, performance.now())
+  const next = fold(streamed, frame, performance.now())
   if (next === 'gap') {
     sendWatch()
     return
   }
   const restarted = before.epoch !== '' && before.epoch !== next.epoch
-  useLive.setState({ ...next, connection: 'live', generation: before.generation + (restarted ? 1 : 0) })
+  streamed = next
+  const picture = before.past ? atMoment(next, before.past) : next
+  const knowsRuns = frame.k === 'snapshot' || (before.knowsRuns && !restarted)
+  useLive.setState({ ...picture, connection: 'live', generation: before.generation + (restarted ? 1 : 0), knowsRuns })
   // A run that is over, or of another server, has no operator any more.
   const operated = next.runs.find((run) => run.id === before.operated)
   if (before.operated && (restarted || (operated && !isActive(operated)))) operate('')
@@ -136,7 +165,16 @@ function receive(from: WebSocket, frame: Frame): void {
 /** The server speaks every five seconds; a connection that is silent for longer is dead. */
 function listenForSilence(on: WebSocket): void {
   clearTimeout(silence)
-  silence = setTimeout(() => on.close(), SILENCE_MS)
+  silence = setTimeout(() => {
+    on.close()
+    // Where nobody answers any more, the browser would wait a minute for the other side to agree.
+    on.onclose?.(new CloseEvent('close'))
+  }, SILENCE_MS)
+}
+
+/** After a time, whatever became of what was asked. */
+function soon(ms: number): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, ms))
 }
 
 function sendOperate(): void {

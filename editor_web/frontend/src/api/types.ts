@@ -15,6 +15,41 @@ export interface AddNode {
   readonly on_edge?: Edge | null
 }
 
+/** What an arm is: its joints with their limits (rad, rad/s), its tool, and the names of what it can do. */
+export interface ArmCard {
+  readonly name: string
+  readonly model: string
+  readonly joint_names: readonly string[]
+  readonly lower_rad: readonly number[]
+  readonly upper_rad: readonly number[]
+  readonly velocity_rad_s: readonly number[]
+  readonly tool: string
+  readonly skills: readonly string[]
+}
+
+/** First frame: the arms of the cell; `can_push` where somebody can push at bodies, as in a simulation. */
+export interface ArmCards {
+  readonly k: "arms"
+  readonly arms: readonly ArmCard[]
+  readonly can_push: boolean
+}
+
+/** What an arm does and where it is: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world. */
+export interface ArmNow {
+  readonly mode: string
+  readonly activity: string
+  readonly error: string
+  readonly joints: readonly number[]
+  readonly tool_pose: readonly number[]
+  readonly tool: ToolNow | null
+}
+
+/** The arms that are another than when told last, at most ten times a second. */
+export interface ArmsNow {
+  readonly k: "now"
+  readonly arms: Readonly<Record<string, ArmNow>>
+}
+
 /** An interrupted run cannot go on before these questions are answered. */
 export interface AskBody {
   readonly message: string
@@ -82,6 +117,47 @@ export interface BreakpointsBody {
   readonly breakpoints: readonly BreakpointBody[]
 }
 
+/** A new value of a parameter. */
+export interface BusParameterBody {
+  readonly name: string
+  readonly value: unknown
+}
+
+/** From the page: a button of a keyboard or gamepad, to be told on `buttons/<source>/<button>`. */
+export interface Button {
+  readonly k: "button"
+  readonly source: string
+  readonly button: string
+  readonly value: boolean
+}
+
+/** One capture in the buffer: when, by which trigger, of which robot, and what it is. `form` is what it is saved as where nothing else is asked for. `samples` and `duration_s` are 0 for a single configuration; `length_rad` is the way of all joints together, `peak_rad_s` the greatest speed of a joint. `saved_as` names the entries that were made of it. */
+export interface CaptureSummary {
+  readonly id: number
+  readonly taken_at_s: number
+  readonly trigger: string
+  readonly robot: string
+  readonly form: "cart_dmp" | "dmp" | "gripper" | "joints" | "pose" | "trajectory"
+  readonly samples: number
+  readonly duration_s: number
+  readonly length_rad: number
+  readonly peak_rad_s: number
+  readonly saved_as: readonly string[]
+  readonly remark: string
+}
+
+/** How far a learned Cartesian DMP is from its recording: over all samples, the worst one, the goal at the end. */
+export interface CartFit {
+  readonly kernels: number
+  readonly rms_m: number
+  readonly max_m: number
+  readonly end_m: number
+  readonly rms_rad: number
+  readonly max_rad: number
+  readonly end_rad: number
+  readonly cut: Cut
+}
+
 /** Everything that can be put into a behavior. */
 export interface CatalogueBody {
   readonly states: readonly StateBody[]
@@ -114,6 +190,12 @@ export interface ClearTransition {
   readonly edit: "clear_transition"
   readonly path: string
   readonly outcome: string
+}
+
+/** Two texts of a document to be compared. */
+export interface CompareBody {
+  readonly before: string
+  readonly after: string
 }
 
 /** The document has changed on disk; `merged` has both changes, and is null where they contradict each other. */
@@ -179,6 +261,26 @@ export interface CopyBody {
   readonly paths: readonly string[]
 }
 
+/** What was used of a recording: from `start_s` to `end_s`, counted from its first sample. */
+export interface Cut {
+  readonly start_s: number
+  readonly end_s: number
+}
+
+/** A step with its role, and what a grasp takes: a part, or an empty name for one that nobody named. */
+export interface DecidedStepBody {
+  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
+  readonly name: string
+  readonly role: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close"
+  readonly part: string | null
+}
+
+/** A document that has gone and can be restored; `saved_at` is when its last text was first seen. */
+export interface DeletedBody {
+  readonly id: string
+  readonly saved_at: number
+}
+
 /** What changed in the watched run since `after`, the runs and arms that changed, and the run's present control. `dropped` log lines are missing. */
 export interface Delta {
   readonly k: "delta"
@@ -195,6 +297,18 @@ export interface Delta {
   readonly robots: Readonly<Record<string, RobotLine>>
 }
 
+/** What a behavior is to be proposed from; with `id` it is also written there, as a new document. */
+export interface DemonstrationBody {
+  readonly steps: readonly TaughtStepBody[]
+  readonly arm?: string
+  readonly tool?: "gripper" | "hand" | "magnet" | null
+  readonly speed?: number
+  readonly line_speed_m_s?: number
+  readonly approach_m?: number
+  readonly width_m?: number | null
+  readonly id?: string
+}
+
 /** What differs between two versions; `layout_only` when nothing but positions on the canvas does. */
 export interface DifferenceBody {
   readonly changes: readonly NodeChangeBody[]
@@ -207,6 +321,7 @@ export interface DocumentBody {
   readonly graph: DocumentNodeBody | null
   readonly document: DocumentInfoBody | null
   readonly findings: readonly FindingBody[]
+  readonly checked: boolean
   readonly id: string
   readonly text: string
   readonly saved_at: number
@@ -269,12 +384,19 @@ export interface DocumentsChanged {
   readonly changed: Readonly<Record<string, string | null>>
 }
 
-/** What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read. */
+/** A text to draw; without `check` the answer comes sooner, and without findings. */
+export interface DraftBody {
+  readonly text: string
+  readonly check: boolean
+}
+
+/** What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read. `checked` is false where it was not asked for findings, which may follow from `findings`. */
 export interface DraftedBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
   readonly document: DocumentInfoBody | null
   readonly findings: readonly FindingBody[]
+  readonly checked: boolean
 }
 
 /** Put copies of nodes beside them; transitions among them lead to the copies. */
@@ -295,6 +417,7 @@ export interface EditedBody {
   readonly graph: DocumentNodeBody | null
   readonly document: DocumentInfoBody | null
   readonly findings: readonly FindingBody[]
+  readonly checked: boolean
   readonly text: string
   readonly changed: readonly string[]
   readonly refused: RefusalBody | null
@@ -303,7 +426,13 @@ export interface EditedBody {
 /** A text and the edits to make in it, all or none; they are those of `engine.editing.edit`. */
 export interface EditsBody {
   readonly text: string
+  readonly check: boolean
   readonly edits: readonly (Readonly<Record<string, unknown>>)[]
+}
+
+/** Entries of the store have changed. */
+export interface EntriesChanged {
+  readonly k: "entries"
 }
 
 /** A named entry of the cell's store. */
@@ -311,6 +440,23 @@ export interface EntryBody {
   readonly kind: string
   readonly name: string
   readonly tags: readonly string[]
+}
+
+/** The first entries that matched, and how many did. */
+export interface EntryPage {
+  readonly entries: readonly EntryRow[]
+  readonly total: number
+}
+
+/** A named entry and its last change: by whom, why, and when (milliseconds since 1970). */
+export interface EntryRow {
+  readonly kind: string
+  readonly name: string
+  readonly revision: number
+  readonly tags: readonly string[]
+  readonly by: string
+  readonly reason: string
+  readonly changed_unix_ms: number
 }
 
 /** Why a request failed: what, where (a parameter's name, a file, a node path), what to do. */
@@ -324,6 +470,34 @@ export interface ErrorBody {
 export interface EventsBody {
   readonly events: readonly (Readonly<Record<string, unknown>>)[]
   readonly last: number
+}
+
+/** A run that failed: it began at event `seq`, at node `path` (empty where no node did it). `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote. */
+export interface Failure {
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly text: string
+  readonly hint: string
+  readonly links: readonly FailureLink[]
+  readonly steps: readonly FailureStep[]
+  readonly around: readonly LogLine[]
+}
+
+/** One link of the chain of causes, outermost first; `hint` says what to do about it, may be empty. */
+export interface FailureLink {
+  readonly message: string
+  readonly where: string
+  readonly kind: string
+  readonly hint: string
+}
+
+/** How a node on the way from the root to the origin ended, after event `seq`. */
+export interface FailureStep {
+  readonly path: string
+  readonly seq: number
+  readonly time_s: number
+  readonly text: string
 }
 
 /** One thing that differs; null where it was not, or is no longer, there. */
@@ -344,10 +518,39 @@ export interface FindingBody {
   readonly hint: string
 }
 
+/** A recording and the primitive learned from it, as the arm would carry them out, and how far they are apart. */
+export interface Fits {
+  readonly demonstration: Trace | null
+  readonly primitive: Trace | null
+  readonly joint_fit: JointFit | null
+  readonly cart_fit: CartFit | null
+}
+
+/** What would mend a finding: the edits to send, and what they do in words. */
+export interface FixBody {
+  readonly title: string
+  readonly edits: readonly (Readonly<Record<string, unknown>>)[]
+}
+
+/** The fixes of one finding of a text; `code`, `path`, `line` and `message` say of which. */
+export interface FixesBody {
+  readonly code: string
+  readonly path: string
+  readonly line: number
+  readonly message: string
+  readonly fixes: readonly FixBody[]
+}
+
 /** End an active or waiting node with an outcome. */
 export interface ForceBody {
   readonly path: string
   readonly outcome: string
+}
+
+/** From the page, ten times a second or more while a key is down: go at this velocity, m/s and rad/s. */
+export interface Go {
+  readonly k: "go"
+  readonly velocity: readonly number[]
 }
 
 /** One node of the behavior with everything inside it. */
@@ -371,6 +574,12 @@ export interface Group {
   readonly name?: string | null
 }
 
+/** What the Helping Hand does; null where there is none. */
+export interface HandNews {
+  readonly k: "hand"
+  readonly status: TeachStatus | null
+}
+
 /** First frame; another `epoch` than before means that the server was restarted. */
 export interface Hello {
   readonly k: "hello"
@@ -386,6 +595,33 @@ export interface InterruptedBody {
   readonly behavior: string
   readonly started_at_s: number
   readonly last_seq: number
+}
+
+/** From the page: make ready to jog this arm, until `rest`. */
+export interface Jog {
+  readonly k: "jog"
+  readonly arm: string
+  readonly space: "joints" | "tool"
+  readonly frame: "base" | "tool" | "world"
+}
+
+/** Which arm this page jogs now, empty for none, and what holds it back, in words. */
+export interface Jogging {
+  readonly k: "jogging"
+  readonly arm: string
+  readonly held_by: string
+}
+
+/** How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end. `joint` is the one with the greatest error, counted from 0. `rms_m` and `max_m` are how far that puts the tool centre point off, None where nobody knew the arm. */
+export interface JointFit {
+  readonly kernels: number
+  readonly rms_rad: number
+  readonly max_rad: number
+  readonly end_rad: number
+  readonly joint: number
+  readonly cut: Cut
+  readonly rms_m: number | null
+  readonly max_m: number | null
 }
 
 /** A parameter or userdata key, with its JSON Schema. */
@@ -444,12 +680,30 @@ export interface LogLine {
   readonly causes: readonly CauseLine[]
 }
 
+/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. */
+export interface LookAt {
+  readonly k: "look"
+  readonly arm: string
+  readonly kind: string
+  readonly name: string
+  readonly capture: number
+}
+
 /** Lines that both sides changed differently; `line` is where they stand in the text that was to be saved. */
 export interface MergeConflictBody {
   readonly line: number
   readonly base: string
   readonly ours: string
   readonly theirs: string
+}
+
+/** A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before. */
+export interface Moment {
+  readonly seq: number
+  readonly time_s: number
+  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly log: readonly LogLine[]
+  readonly dropped: number
 }
 
 /** An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise. */
@@ -459,12 +713,25 @@ export interface MomentBody {
   readonly path?: string | null
 }
 
+/** Where a document goes; with `follow`, references to it are written anew. */
+export interface MoveBody {
+  readonly id: string
+  readonly follow: boolean
+}
+
 /** Put nodes into another container, or elsewhere among their siblings; transitions among them stay. */
 export interface MoveNodes {
   readonly edit: "move_nodes"
   readonly paths: readonly string[]
   readonly parent: string
   readonly index?: number | null
+}
+
+/** A document at its new place: whose references follow, and whose could not. */
+export interface MovedBody {
+  readonly document: DocumentBody
+  readonly followed: readonly string[]
+  readonly left: readonly string[]
 }
 
 /** A document to make from a template: machine, sequence or concurrency. */
@@ -504,6 +771,12 @@ export interface NodeLive {
   readonly plan: PlanLive | null
 }
 
+/** A past run or a recording that is opened: what it was, and the behavior as it was when the run began. */
+export interface OpenedPastBody {
+  readonly run: PastRunBody
+  readonly behavior: BehaviorBody
+}
+
 /** From the client: I operate this run from now on (empty: none); losing the connection is losing the operator. */
 export interface Operate {
   readonly k: "operate"
@@ -517,6 +790,29 @@ export interface ParameterBody {
   readonly required: boolean
 }
 
+/** One run of the journal. `running` without an end: it is under way somewhere, or its engine died. `recording` is the path of its recording, empty where there is none; `here` says that it is a run of this server. */
+export interface PastRunBody {
+  readonly id: string
+  readonly behavior: string
+  readonly status: string
+  readonly outcome: string | null
+  readonly success: boolean
+  readonly failed: boolean
+  readonly cause: string
+  readonly started_at_s: number
+  readonly duration_s: number
+  readonly events: number
+  readonly recording: string
+  readonly here: boolean
+}
+
+/** A page of past runs, newest first, and how many there are of each kind that match the other filters. */
+export interface PastRunsBody {
+  readonly runs: readonly PastRunBody[]
+  readonly total: number
+  readonly counts: Readonly<Record<string, number>>
+}
+
 /** Put nodes as `copy` gives them into a container. */
 export interface Paste {
   readonly edit: "paste"
@@ -526,7 +822,7 @@ export interface Paste {
   readonly index?: number | null
 }
 
-/** Nothing happened; the connection lives. */
+/** The connection lives; a page that does not answer with `Pong` for a while counts as gone. */
 export interface Ping {
   readonly k: "ping"
   readonly server_time_s: number
@@ -541,15 +837,62 @@ export interface PlanLive {
   readonly planning_s: number
 }
 
+/** Carry out an entry (`kind`, `name`) or a capture with an arm, at `speed`: a share of its own, a half at most. */
+export interface PlayBody {
+  readonly arm: string
+  readonly speed: number
+  readonly kind: string
+  readonly name: string
+  readonly capture: number
+}
+
+/** How it ended: `succeeded`, `preempted`, `rejected` or `failed`, and why. */
+export interface Played {
+  readonly status: string
+  readonly cause: string
+}
+
 /** From the client: answer to a ping. */
 export interface Pong {
   readonly k: "pong"
+}
+
+/** The behavior as YAML, what it does in words, and what was decided; `id` is where it was written. */
+export interface ProposalBody {
+  readonly text: string
+  readonly steps: readonly DecidedStepBody[]
+  readonly words: readonly string[]
+  readonly remarks: readonly string[]
+  readonly arm: string
+  readonly tool: string
+  readonly arms: readonly string[]
+  readonly parts: readonly string[]
+  readonly findings: readonly FindingBody[]
+  readonly id: string
+}
+
+/** Push at the tool of a simulated arm, along the axes of the world. */
+export interface PushBody {
+  readonly arm: string
+  readonly force_n: readonly [number, number, number]
+  readonly duration_s: number
 }
 
 /** A state that a crash found in mid-work: what became of it is for a person to say. */
 export interface QuestionBody {
   readonly path: string
   readonly outcomes: readonly string[]
+}
+
+/** One recording of the project; `problem` says why it cannot be opened, empty where it can. */
+export interface RecordingBody {
+  readonly path: string
+  readonly run: string
+  readonly behavior: string
+  readonly started_at_s: number
+  readonly size_bytes: number
+  readonly changed_at_s: number
+  readonly problem: string
 }
 
 /** A behavior that another may refer to. */
@@ -562,11 +905,26 @@ export interface ReferableBody {
   readonly parameters: readonly KeyBody[]
 }
 
+/** A behavior that refers to another one, and the nodes that do. */
+export interface ReferrerBody {
+  readonly id: string
+  readonly name: string
+  readonly paths: readonly string[]
+}
+
 /** Why no edit was made: `index` says which of them could not be. */
 export interface RefusalBody {
   readonly message: string
   readonly hint: string
   readonly index: number
+}
+
+/** Something that the page sent was not done; `what` is which. */
+export interface Refused {
+  readonly k: "refused"
+  readonly what: "button" | "jog" | "look"
+  readonly message: string
+  readonly hint: string
 }
 
 /** Take nodes out, with the transitions and conditions that name them; other references show as findings. */
@@ -580,6 +938,11 @@ export interface RenameNode {
   readonly edit: "rename_node"
   readonly path: string
   readonly name: string
+}
+
+/** From the page: the key is up. */
+export interface Rest {
+  readonly k: "rest"
 }
 
 /** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
@@ -714,6 +1077,18 @@ export interface Snapshot {
   readonly robots: Readonly<Record<string, RobotLine>>
 }
 
+/** One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that began and ended it. */
+export interface Span {
+  readonly start_s: number
+  readonly end_s: number | null
+  readonly status: string
+  readonly outcome: string
+  readonly visit: number
+  readonly seq: number
+  readonly end_seq: number
+  readonly count: number
+}
+
 /** A request to start a run; without a seed the server draws one. */
 export interface StartBody {
   readonly behavior: string
@@ -763,9 +1138,69 @@ export interface SupervisionBody {
   readonly loss_timeout_s?: number
 }
 
+/** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
+export interface TaughtStepBody {
+  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
+  readonly name: string
+  readonly role?: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close" | null
+  readonly part?: string | null
+}
+
+/** What the Helping Hand does, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last word, such as why a capture was refused. */
+export interface TeachStatus {
+  readonly triggers: readonly TriggerStatus[]
+  readonly captures: readonly CaptureSummary[]
+  readonly recording: readonly string[]
+  readonly guided: readonly string[]
+  readonly said: string
+}
+
 /** A text that is being edited. */
 export interface TextBody {
   readonly text: string
+}
+
+/** One marked event; `kind` is failure, command, gate, goal, change, fault or warning. */
+export interface TimeMark {
+  readonly seq: number
+  readonly time_s: number
+  readonly kind: string
+  readonly path: string
+  readonly text: string
+}
+
+/** A run up to event `seq`, or what of it was begun or ended after the event that was asked for. `merged` says that spans which lie close together became one: ask for a part of the time to see it exactly. `left_out` marks are not in it. */
+export interface Timeline {
+  readonly run: string
+  readonly seq: number
+  readonly duration_s: number
+  readonly ended: boolean
+  readonly merged: boolean
+  readonly rows: readonly TimelineRow[]
+  readonly marks: readonly TimeMark[]
+  readonly left_out: number
+}
+
+/** The spans of one node, in order; its depth is in its path. */
+export interface TimelineRow {
+  readonly path: string
+  readonly spans: readonly Span[]
+}
+
+/** What the tool measures: opening of a gripper (m) or how far a hand is closed (0 to 100), and what it holds. */
+export interface ToolNow {
+  readonly width_m: number | null
+  readonly closed_percent: number | null
+  readonly held: boolean
+}
+
+/** An entry as an arm would carry it out: one row a time. `joints` are radians in the order of `joint_names`, empty where the arm cannot follow; `poses` are x y z (m) and a unit quaternion x y z w of the tool centre point in the world. `times_s` is 0 for a single configuration. `remark` says why there are no joints. */
+export interface Trace {
+  readonly times_s: readonly number[]
+  readonly joint_names: readonly string[]
+  readonly joints: readonly (readonly number[])[]
+  readonly poses: readonly (readonly number[])[]
+  readonly remark: string
 }
 
 /** An arrow inside a machine. */
@@ -775,16 +1210,39 @@ export interface TransitionBody {
   readonly target: string
 }
 
+/** What fires, and what then happens to which robot; the fields of RCY figure 12. The topic's field `field` (the only boolean one, or `value` or `data`, where it is empty) is compared with `trig_value`: `rising_edge` fires when they begin to be equal, `falling_edge` when they end to be, `hold` lasts as long as they are. `joint_dmp_N` is the number of kernels of the primitive, 0 lets the fit decide. `tf_save` captures where `source_frame` is in `target_frame`, `gripper_save` how far the gripper is open and whether it holds something. */
+export interface Trigger {
+  readonly trig_name: string
+  readonly robot_ns: string
+  readonly trig_topic: string
+  readonly trig_type: "falling_edge" | "hold" | "rising_edge"
+  readonly trig_callback: "cart_dmp_save" | "grav_comp" | "gripper_save" | "joint_dmp_save" | "joint_save" | "pose_save" | "tf_save"
+  readonly trig_value: boolean | number | number | string
+  readonly field: string
+  readonly joint_dmp_N: number
+  readonly source_frame: string
+  readonly target_frame: string
+}
+
+/** A trigger, the type of its topic's messages, and whether its button is pressed just now. `fault` says why it cannot fire, as where the messages have no such field; empty where it can. */
+export interface TriggerStatus {
+  readonly trigger: Trigger
+  readonly message_type: string
+  readonly pressed: boolean
+  readonly fault: string
+}
+
 /** Put the children of a container in its place. */
 export interface Ungroup {
   readonly edit: "ungroup"
   readonly path: string
 }
 
-/** One version of a document; `saved_at` is when it was first seen. */
+/** One version of a document: when it was first seen; `by` is `editor`, or `file` where it was found there. */
 export interface VersionBody {
   readonly hash: string
   readonly saved_at: number
+  readonly by: string
   readonly current: boolean
 }
 
@@ -792,6 +1250,7 @@ export interface VersionBody {
 export interface VersionTextBody {
   readonly hash: string
   readonly saved_at: number
+  readonly by: string
   readonly current: boolean
   readonly text: string
 }

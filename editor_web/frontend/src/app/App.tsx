@@ -1,22 +1,29 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
 import { AppShell, Burger } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
+import { IconHistory } from '@tabler/icons-react'
 import { lazy, Suspense, useEffect } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
+import { useTour } from '../api/tour'
 import type { RunLine } from '../api/types'
 import { isActive } from '../document/live'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
+import { FromDemonstration } from '../features/demonstration/FromDemonstration'
 import { RunList } from '../features/runs/RunList'
 import { Header } from './Header'
 import { HomePage } from './HomePage'
 import { Interruption } from './Interruption'
-import { behaviorHref, editHref, goTo, runHref, useRoute, type Route } from './route'
+import { behaviorHref, editHref, goTo, PAST_HREF, runHref, TEACH_HREF, useRoute, type Route } from './route'
 import { useFetched } from './useFetched'
 
 /** Brings the canvas with it, which the first page does not need. */
 const BehaviorPage = lazy(async () => ({ default: (await import('./BehaviorPage')).BehaviorPage }))
+const TeachPage = lazy(async () => ({ default: (await import('./TeachPage')).TeachPage }))
+const PastPage = lazy(async () => ({ default: (await import('./PastPage')).PastPage }))
+const PastRunsPage = lazy(async () => ({ default: (await import('./PastRunsPage')).PastRunsPage }))
 const EditorPage = lazy(async () => ({ default: (await import('../features/editor/EditorPage')).EditorPage }))
+const Tour = lazy(async () => ({ default: (await import('../features/tour/Tour')).Tour }))
 
 export function App() {
   const route = useRoute()
@@ -29,6 +36,11 @@ export function App() {
   const isNarrow = useMediaQuery('(max-width: 62em)', false, { getInitialValueInEffect: false })
   const shown = shownRun(route, runs)
   const isEditing = route.page === 'edit'
+  const isTeaching = route.page === 'teach'
+  const isTouring = useTour((s) => s.isOn)
+  // A run that this server has not started may be in its journal.
+  const knowsRuns = useLive((s) => s.knowsRuns)
+  const isPast = route.page === 'recording' || (route.page === 'run' && knowsRuns && !shown)
   const behaviorId = route.page === 'behavior' || isEditing ? route.id : shown?.behavior
 
   useEffect(connect, [])
@@ -46,7 +58,7 @@ export function App() {
   return (
     <AppShell
       header={{ height: 52 }}
-      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen, desktop: isEditing } }}
+      navbar={{ width: { base: 220, xl: 290 }, breakpoint: 'md', collapsed: { mobile: !menuOpen, desktop: isEditing || isTeaching } }}
     >
       <a className="skip-link" href="#main">
         Skip to the content
@@ -59,6 +71,8 @@ export function App() {
           active={shown && isActive(shown) ? shown : runs.find(isActive)}
           others={runs.filter(isActive).length - 1}
           onHome={() => open('/')}
+          isTeaching={isTeaching}
+          onTeach={() => open(TEACH_HREF)}
           onRun={(id) => open(runHref(id))}
         />
       </AppShell.Header>
@@ -71,6 +85,19 @@ export function App() {
           onMade={session.value?.role === 'operator' ? (id) => open(editHref(id)) : undefined}
         />
         <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
+        <a
+          href={PAST_HREF}
+          className={`side-item run-item${route.page === 'past' ? ' is-current' : ''}`}
+          aria-current={route.page === 'past' ? 'page' : undefined}
+          onClick={(event) => {
+            if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+            event.preventDefault()
+            open(PAST_HREF)
+          }}
+        >
+          <IconHistory size={15} aria-hidden />
+          <span className="side-item-name">Past runs and recordings</span>
+        </a>
       </AppShell.Navbar>
       <AppShell.Main id="main" className="app-main">
         <Interruption />
@@ -82,8 +109,31 @@ export function App() {
               mayEdit={session.value?.role === 'operator'}
               isNarrow={isNarrow ?? false}
               onRun={() => open(behaviorHref(route.id))}
-              onOpen={(id) => open(editHref(id))}
+              onOpen={(id, node) => open(editHref(id, node))}
+              onGone={() => open('/')}
+              libraryTools={session.value?.role === 'operator' ? <FromDemonstration onMade={(id) => open(editHref(id))} /> : undefined}
             />
+          </Suspense>
+        ) : isTeaching ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <TeachPage session={session.value} isNarrow={isNarrow ?? false} />
+          </Suspense>
+        ) : isPast ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <PastPage
+              key={route.id}
+              id={route.id}
+              isRecording={route.page === 'recording'}
+              session={session.value}
+              isNarrow={isNarrow}
+              onAll={() => open(PAST_HREF)}
+            />
+          </Suspense>
+        ) : route.page === 'run' && !shown ? (
+          <div className="page-wait" role="status" aria-label="Loading" />
+        ) : route.page === 'past' ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <PastRunsPage onOpen={open} />
           </Suspense>
         ) : behaviorId ? (
           <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
@@ -99,9 +149,14 @@ export function App() {
             />
           </Suspense>
         ) : (
-          <HomePage hasCellView={session.value?.has_cell_view ?? false} onOpenRun={(id) => open(runHref(id))} isUnknownRun={route.page === 'run'} />
+          <HomePage hasCellView={session.value?.has_cell_view ?? false} onOpenRun={(id) => open(runHref(id))} />
         )}
       </AppShell.Main>
+      {isTouring && (
+        <Suspense fallback={null}>
+          <Tour page={route.page} id={behaviorId ?? ''} onEdit={(id) => open(editHref(id))} onBehavior={(id) => open(behaviorHref(id))} />
+        </Suspense>
+      )}
     </AppShell>
   )
 }

@@ -5,6 +5,7 @@ import { useEffect, useState } from 'react'
 import { loadKept, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
+import { useGoalsOf } from '../api/goals'
 import { forgive, refuse } from '../api/refusal'
 import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
@@ -12,7 +13,7 @@ import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
 import { isActive } from '../document/live'
-import { nodeAt, pathsTo } from '../document/tree'
+import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
 import { ResetParts } from '../features/cell/ResetParts'
 import { ShowMenu } from '../features/cell/ShowMenu'
@@ -29,11 +30,14 @@ import { FindingList } from '../features/findings/FindingList'
 import { Graph, type Shown } from '../features/graph/Graph'
 import { Outline } from '../features/graph/Outline'
 import { Selection } from '../features/graph/Selection'
+import { Breadcrumb } from './Breadcrumb'
 import { dockBodies } from './dock'
+import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
 import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { StopCell } from '../features/robots/StopCell'
+import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
 import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 
@@ -70,11 +74,13 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   const [shown, setShown] = useState<Shown>()
   const [tab, setTab] = useState<Tab>(behavior.errors > 0 ? 'problems' : 'parameters')
   const [isSheetOpen, setSheetOpen] = useState(false)
-  const obstacle = obstacleOf(behavior, active, session)
+  const isConnected = useLive((s) => s.connection === 'live')
+  const obstacle = isConnected ? obstacleOf(behavior, active, session) : 'The server does not answer'
   const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
   const commands = useCommands(run, node?.path)
   const holds = useBreakpoints().length + useLive((s) => s.control?.locks.length ?? 0)
   const mayOperate = session?.role === 'operator'
+  useGoalsOf(run && isActive(run) ? run.id : undefined)
 
   /** Choose a node on the canvas: what can be done with it comes forward. */
   function choose(path: string | undefined): void {
@@ -207,7 +213,9 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           Start
         </Button>
       </header>
+      <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
       <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
+      <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
       <RefusalLine />
       <BlockedWays />
       <Requests root={behavior.graph} commands={commands} onShow={show} />
@@ -251,24 +259,6 @@ function focusFirst(id: string): boolean {
   const button = document.querySelector<HTMLElement>(`#${id} .command`)
   button?.focus()
   return button !== null
-}
-
-function Breadcrumb({ selected, onSelect }: { selected: string | undefined; onSelect: (path: string) => void }) {
-  if (!selected) return null
-  const paths = pathsTo(selected)
-  return (
-    <nav aria-label="Path of the selection" className="breadcrumb">
-      <ol>
-        {paths.map((path) => (
-          <li key={path}>
-            <button type="button" aria-current={path === selected ? 'location' : undefined} onClick={() => onSelect(path)}>
-              {path.split('/').pop()}
-            </button>
-          </li>
-        ))}
-      </ol>
-    </nav>
-  )
 }
 
 function obstacleOf(behavior: BehaviorBody, active: readonly RunLine[], session: SessionBody | undefined): string | undefined {

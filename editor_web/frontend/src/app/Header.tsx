@@ -1,12 +1,13 @@
 /** The bar on top: where one is, whether it is live, the running behavior and its stop button. */
 import { ActionIcon, Button, Tooltip, useComputedColorScheme, useMantineColorScheme } from '@mantine/core'
-import { IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
+import { IconHandFinger, IconMoon, IconPlayerStopFilled, IconSun } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import type { RunLine } from '../api/types'
 import { StatusIcon } from '../components/StatusIcon'
 import { nameOf, RunTime } from '../features/runs/RunList'
+import { TEACH_HREF } from './route'
 
 export interface HeaderProps {
   readonly cellName: string
@@ -16,10 +17,12 @@ export interface HeaderProps {
   /** How many more are under way. */
   readonly others: number
   readonly onHome: () => void
+  readonly isTeaching: boolean
+  readonly onTeach: () => void
   readonly onRun: (id: string) => void
 }
 
-export function Header({ cellName, mayOperate, active, others, onHome, onRun }: HeaderProps) {
+export function Header({ cellName, mayOperate, active, others, onHome, isTeaching, onTeach, onRun }: HeaderProps) {
   return (
     <>
       <a
@@ -34,6 +37,19 @@ export function Header({ cellName, mayOperate, active, others, onHome, onRun }: 
         <span className="brand-name">flexcell</span>
       </a>
       {cellName && <span className="cell-name">{cellName}</span>}
+      <a
+        href={TEACH_HREF}
+        className="header-link"
+        aria-current={isTeaching ? 'page' : undefined}
+        onClick={(event) => {
+          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+          event.preventDefault()
+          onTeach()
+        }}
+      >
+        <IconHandFinger size={16} aria-hidden />
+        Teach
+      </a>
       <ConnectionLabel />
       <span className="spacer" />
       {active && (
@@ -55,13 +71,14 @@ export function Header({ cellName, mayOperate, active, others, onHome, onRun }: 
 function StopButton({ run }: { run: RunLine }) {
   const [problem, setProblem] = useState<string>()
   const isStopping = run.status === 'stopping'
+  const isConnected = useLive((s) => s.connection === 'live')
   return (
-    <Tooltip label={problem ?? 'The robots decelerate to rest'}>
+    <Tooltip label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer'}>
       <Button
         color="red.8"
         size="xs"
         leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
-        disabled={isStopping}
+        disabled={isStopping || !isConnected}
         onClick={() => {
           api.stop(run.id).then(
             () => setProblem(undefined),

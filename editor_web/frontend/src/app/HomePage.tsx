@@ -1,51 +1,40 @@
 /** The page of the cell: the 3D view, and the runs as a table. */
 import { Table } from '@mantine/core'
-import { api } from '../api/client'
 import { useLive } from '../api/live'
+import { useTour } from '../api/tour'
 import { Empty } from '../components/Empty'
 import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
+import { TourButton } from '../components/TourButton'
 import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
+import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { StopCell } from '../features/robots/StopCell'
-import { Interrupted } from '../features/runs/Interrupted'
 import { nameOf, RunTime, waitsText } from '../features/runs/RunList'
+import { TourInvitation } from '../features/tour/TourInvitation'
+import { InterruptedHere } from './InterruptedHere'
 import { runHref } from './route'
-import { useFetched } from './useFetched'
 
 export interface HomePageProps {
   readonly hasCellView: boolean
-  readonly isUnknownRun: boolean
   readonly onOpenRun: (id: string) => void
 }
 
-export function HomePage({ hasCellView, isUnknownRun, onOpenRun }: HomePageProps) {
+export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
   const runs = useLive((s) => s.runs)
-  const connection = useLive((s) => s.connection)
   const role = useLive((s) => s.role)
-  // A resumed run is one more run of this server.
-  const interrupted = useFetched('interrupted', api.interrupted, runs.length)
   return (
     <div className="home">
       <h1 className="visually-hidden">The cell</h1>
-      {isUnknownRun && connection === 'live' && <p className="note">That run is not known to this server any more.</p>}
       <Panel title="Cell" className="home-cell" tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
         <CellFrame isServed={hasCellView} />
       </Panel>
-      <Panel title="Latest runs" className="home-runs">
-        {interrupted.value && interrupted.value.length > 0 && (
-          <section aria-label="Interrupted runs" className="interrupted-area">
-            <h3>Interrupted runs</h3>
-            <Interrupted
-              runs={interrupted.value}
-              obstacle={role === 'operator' ? undefined : 'you may look only; log in with the operator token'}
-              onResumed={onOpenRun}
-            />
-          </section>
-        )}
+      <Panel title="Latest runs" className="home-runs" tools={<RunTools mayOperate={role === 'operator'} />}>
+        {role === 'operator' && <TourInvitation />}
+        <InterruptedHere onResumed={onOpenRun} />
         {runs.length === 0 ? (
           <Empty title="No runs yet">Choose a behavior on the left, set its parameters and start it.</Empty>
         ) : (
@@ -99,7 +88,18 @@ function CellTools({ hasView, mayOperate }: { hasView: boolean; mayOperate: bool
     <>
       <span className="spacer" />
       {hasView && <ShowMenu />}
+      {hasView && mayOperate && <HandleMenu />}
       {mayOperate && <StopCell />}
+    </>
+  )
+}
+
+function RunTools({ mayOperate }: { mayOperate: boolean }) {
+  const isSettled = useTour((s) => s.isSettled)
+  return (
+    <>
+      <span className="spacer" />
+      {mayOperate && isSettled && <TourButton />}
     </>
   )
 }

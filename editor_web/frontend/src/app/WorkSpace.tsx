@@ -20,18 +20,20 @@ interface WideProps {
   readonly log: ReactNode
   readonly cell: ReactNode
   readonly tabs: ReactNode
+  /** How much of the height is for what stands below the graph, in percent. */
+  readonly below?: number
 }
 
-export function Wide({ graph, log, cell, tabs }: WideProps) {
+export function Wide({ graph, log, cell, tabs, below = 29 }: WideProps) {
   return (
     <Group orientation="horizontal" className="work-space">
       <Pane id="left" defaultSize="67%" minSize="30%">
         <Group orientation="vertical">
-          <Pane id="graph" defaultSize="71%" minSize="20%">
+          <Pane id="graph" defaultSize={`${100 - below}%`} minSize="20%">
             {graph}
           </Pane>
           <Separator className="splitter is-flat" aria-label="Height of the graph" />
-          <Pane id="log" defaultSize="29%" minSize="12%">
+          <Pane id="log" defaultSize={`${below}%`} minSize="12%">
             {log}
           </Pane>
         </Group>

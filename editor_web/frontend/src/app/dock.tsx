@@ -26,9 +26,21 @@ export function later(name: string, load: () => Promise<ComponentType<DockProps>
 
 const DOCK_TABS: readonly DockTab[] = [
   { name: 'Log', Body: EventLog },
+  later('Timeline', async () => (await import('../features/timeline/Timeline')).Timeline),
+  later('Failure', async () => (await import('../features/timeline/FailureView')).FailureView),
+  later('Data', async () => (await import('../features/data/Data')).Data),
+  later('Plots', async () => (await import('../features/plots/Plots')).Plots),
+  later('Bus', async () => (await import('../features/bus/Bus')).Bus),
 ]
 
 /** The bodies of all tabs by their names. */
 export function dockBodies(props: DockProps): Record<string, ReactNode> {
   return Object.fromEntries(DOCK_TABS.map(({ name, Body }) => [name, <Body key={name} {...props} />]))
+}
+
+/** Those that tell of the past, the most telling one first. */
+export function pastBodies(props: DockProps, isFailed: boolean): Record<string, ReactNode> {
+  const bodies = dockBodies(props)
+  const names = isFailed ? ['Failure', 'Timeline', 'Log', 'Data'] : ['Timeline', 'Log', 'Data']
+  return Object.fromEntries(names.map((name) => [name, bodies[name]]))
 }

@@ -1,6 +1,6 @@
 /** Addresses. */
 import { expect, it } from 'vitest'
-import { behaviorHref, editHref, routeOf } from './route'
+import { behaviorHref, editHref, PAST_HREF, recordingHref, routeOf, TEACH_HREF } from './route'
 
 it('finds the way back from the address of a behavior, slashes and blanks included', () => {
   const id = 'behaviors/my cell/a%b.yaml'
@@ -11,6 +11,13 @@ it('finds the way back from the address of the editor', () => {
   const id = 'behaviors/my cell/a%b.yaml'
   expect(routeOf(editHref(id))).toEqual({ page: 'edit', id })
   expect(editHref(id, 'root/a')).toMatch(/#root\/a$/)
+})
+
+it('finds the way back from the address of a recording, and to the past runs', () => {
+  const id = 'my runs/a%b.mcap'
+  expect(routeOf(recordingHref(id))).toEqual({ page: 'recording', id })
+  expect(routeOf(PAST_HREF)).toEqual({ page: 'past' })
+  expect(routeOf(TEACH_HREF)).toEqual({ page: 'teach' })
 })
 
 it.each(['/', '/behaviors', '/runs/', '/nothing/here'])('shows the home page for %s', (address) => {

@@ -6,6 +6,9 @@ export type Route =
   | { readonly page: 'behavior'; readonly id: string }
   | { readonly page: 'run'; readonly id: string }
   | { readonly page: 'edit'; readonly id: string }
+  | { readonly page: 'past' }
+  | { readonly page: 'teach' }
+  | { readonly page: 'recording'; readonly id: string }
 
 /** Read an address; what it does not know is the home page. */
 export function routeOf(pathname: string): Route {
@@ -14,6 +17,9 @@ export function routeOf(pathname: string): Route {
   if (page === 'behaviors' && id) return { page: 'behavior', id }
   if (page === 'runs' && id) return { page: 'run', id }
   if (page === 'edit' && id) return { page: 'edit', id }
+  if (page === 'past') return { page: 'past' }
+  if (page === 'teach') return { page: 'teach' }
+  if (page === 'recordings' && id) return { page: 'recording', id }
   return { page: 'home' }
 }
 
@@ -29,6 +35,8 @@ export function behaviorHref(id: string): string {
   return `/behaviors/${id.split('/').map(encodeURIComponent).join('/')}`
 }
 
+export const TEACH_HREF = '/teach'
+
 /** The editor, at a node where one is given. */
 export function editHref(id: string, node = ''): string {
   return `/edit/${id.split('/').map(encodeURIComponent).join('/')}${node ? `#${node}` : ''}`
@@ -36,6 +44,12 @@ export function editHref(id: string, node = ''): string {
 
 export function runHref(id: string): string {
   return `/runs/${encodeURIComponent(id)}`
+}
+
+export const PAST_HREF = '/past'
+
+export function recordingHref(path: string): string {
+  return `/recordings/${path.split('/').map(encodeURIComponent).join('/')}`
 }
 
 const listeners = new Set<() => void>()

@@ -1,6 +1,6 @@
 /** From JSON Schema to fields. */
 import { expect, it } from 'vitest'
-import { editFieldOf, fieldProblem, limitsText, typedValue } from './fields'
+import { editFieldOf, fieldProblem, limitsText, looseValue, typedValue } from './fields'
 
 const key = (schema: Record<string, unknown>, more = {}) =>
   editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
@@ -48,4 +48,20 @@ it.each([
   ['number', ' ', undefined],
 ] as const)('takes for a %s what is typed as %s', (kind, typed, value) => {
   expect(typedValue({ kind }, typed)).toEqual(value)
+})
+
+it('takes lists and mappings as they stand in the file', () => {
+  expect(looseValue('{center_m: [-0.09, -0.28], size_m: [1e-1, 2]}')).toEqual({
+    center_m: [-0.09, -0.28],
+    size_m: [0.1, 2],
+  })
+  expect(looseValue('{entry: left_pick, note: "a, b", of: \'c: d\', at: "x"}')).toEqual({
+    entry: 'left_pick',
+    note: 'a, b',
+    of: 'c: d',
+    at: 'x',
+  })
+  expect(looseValue('[true, null, "1", two words, ${a.b}, 007]')).toEqual([true, null, '1', 'two words', '${a.b}', '007'])
+  expect(looseValue('{not closed')).toBe('{not closed')
+  expect(looseValue('left_pick')).toBe('left_pick')
 })

@@ -159,11 +159,36 @@ export function typedValue(field: Pick<EditField, 'kind'>, typed: string): unkno
   return looseValue(trimmed)
 }
 
-/** Text as the plain value it looks like: a number, true, JSON; else text. */
+/** Text as the plain value it looks like: a number, true, JSON, a list or mapping as in YAML; else text. */
 export function looseValue(typed: string): unknown {
   try {
     return JSON.parse(typed) as unknown
   } catch {
+    return /^\s*[[{]/.test(typed) ? flowValue(typed) : typed
+  }
+}
+
+const TOKEN = /"(?:[^"\\]|\\.)*"|'[^']*'|\$\{[^}]*\}|[[\]{},:]|[^\s[\]{},:"'](?:[^[\]{},:]*[^\s[\]{},:])?/g
+
+/** A list or mapping whose words need no quotes; the text itself where it is none. */
+function flowValue(typed: string): unknown {
+  const json = typed.replace(TOKEN, (token) => {
+    if (/^["[\]{},:]/.test(token)) return token
+    if (/^(true|false|null|-?\d.*)$/.test(token) && isJson(token)) return token
+    return JSON.stringify(token.startsWith("'") ? token.slice(1, -1) : token)
+  })
+  try {
+    return JSON.parse(json) as unknown
+  } catch {
     return typed
+  }
+}
+
+function isJson(text: string): boolean {
+  try {
+    JSON.parse(text)
+    return true
+  } catch {
+    return false
   }
 }

@@ -9,7 +9,9 @@ export interface Draft {
   readonly text: string
   /** The last graph that could be read; of an earlier text while `isStale`. */
   readonly root: EditNode | undefined
+  /** Of an earlier text until `isChecked`. */
   readonly findings: readonly FindingBody[]
+  readonly isChecked: boolean
   /** True while the text cannot be read, so that `root` belongs to an earlier one. */
   readonly isStale: boolean
   /** What stands beside the nodes: name, parameters, outcomes; undefined until the text could be read once. */

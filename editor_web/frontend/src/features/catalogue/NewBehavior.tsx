@@ -1,9 +1,12 @@
 /** Making a new behavior: its name, where its file goes, and what it begins as. */
 import { IconPlus } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
+import { relations } from '../../api/relations'
+import type { DeletedBody } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
+import { wallTime } from '../../document/time'
 
 const TEMPLATES = [
   { value: 'machine', words: 'State machine: one state after the other' },
@@ -21,6 +24,12 @@ export function NewBehavior({ onMade }: { onMade: (id: string) => void }) {
       <Dialog isOpen={isOpen} title="New behavior" onClose={() => setOpen(false)}>
         <NewForm
           onMade={(id) => {
+            setOpen(false)
+            onMade(id)
+          }}
+        />
+        <Deleted
+          onRestored={(id) => {
             setOpen(false)
             onMade(id)
           }}
@@ -88,5 +97,47 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
         Make it
       </button>
     </form>
+  )
+}
+
+/** Behaviors that were deleted and of which a version is kept. */
+function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
+  const [all, setAll] = useState<readonly DeletedBody[]>([])
+  const [problem, setProblem] = useState<string>()
+  useEffect(() => {
+    relations.deleted().then(setAll, (error: unknown) => setProblem(wordsOf(error)))
+  }, [])
+  if (problem === undefined && all.length === 0) return null
+  return (
+    <details className="deleted">
+      <summary>Deleted behaviors</summary>
+      {problem && (
+        <p className="is-failed" role="alert">
+          {problem}
+        </p>
+      )}
+      <ul className="plain-list">
+        {all.map((each) => (
+          <li key={each.id}>
+            <span>
+              <span className="mono">{each.id.replace(/^behaviors\//, '')}</span>{' '}
+              <span className="quiet">last version {wallTime(each.saved_at)}</span>
+            </span>
+            <button
+              type="button"
+              className="command"
+              onClick={() =>
+                relations.restore(each.id).then(
+                  (made) => onRestored(made.id),
+                  (error: unknown) => setProblem(wordsOf(error)),
+                )
+              }
+            >
+              Restore
+            </button>
+          </li>
+        ))}
+      </ul>
+    </details>
   )
 }

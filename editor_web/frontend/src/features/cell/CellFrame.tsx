@@ -1,13 +1,20 @@
 /** The 3D view of the cell, served by ourselves under `/cell/`. */
+import './styles/index.css'
 import { useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
+import { useEffect, useRef } from 'react'
+import { watchHolding } from '../../api/grip'
 import { useLive } from '../../api/live'
+import { usePast } from '../../api/past'
 import { PAGE } from '../../api/shown'
 import { Empty } from '../../components/Empty'
+import { PastMark } from './PastMark'
 
 export function CellFrame({ isServed }: { isServed: boolean }) {
   const scheme = useComputedColorScheme('light')
   const generation = useLive((s) => s.generation)
+  const isPast = usePast((s) => s.shown !== null && !s.shown.problem)
+  const { frame, watch } = useHolding()
   if (!isServed) {
     return (
       <Empty icon={<IconCube size={28} stroke={1.4} aria-hidden />} title="No 3D view">
@@ -17,5 +24,30 @@ export function CellFrame({ isServed }: { isServed: boolean }) {
   }
   const query = scheme === 'dark' ? '?darkMode&hideViserLogo' : '?hideViserLogo'
   // A new generation is a restarted server: its viser has another key, so the frame is loaded anew.
-  return <iframe key={`${scheme}${generation}`} className="cell-frame" title="3D view of the cell" src={`/cell/${PAGE}/${query}`} />
+  return (
+    <div className={isPast ? 'cell-view is-past' : 'cell-view'}>
+      <iframe
+        key={`${scheme}${generation}`}
+        ref={frame}
+        className="cell-frame"
+        title="3D view of the cell"
+        src={`/cell/${PAGE}/${query}`}
+        onLoad={watch}
+      />
+      <PastMark />
+    </div>
+  )
+}
+
+/** Tells, for handles in the view, when the mouse is down in it. */
+function useHolding() {
+  const frame = useRef<HTMLIFrameElement>(null)
+  const stop = useRef<() => void>(undefined)
+  useEffect(() => () => stop.current?.(), [])
+  const watch = () => {
+    stop.current?.()
+    const view = frame.current?.contentWindow
+    stop.current = view ? watchHolding(view) : undefined
+  }
+  return { frame, watch }
 }

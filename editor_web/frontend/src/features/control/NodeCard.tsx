@@ -5,6 +5,7 @@ import { useState } from 'react'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
+import { GoalLine } from '../../components/GoalLine'
 import { waitingWords } from '../../document/commands'
 import { BreakpointEditor } from './BreakpointEditor'
 import type { Commands } from './useCommands'
@@ -18,6 +19,7 @@ export function NodeCard({ node, commands }: { node: GraphNodeBody; commands: Co
   return (
     <section className="node-card" aria-label={`Node ${node.path}`}>
       <p className="node-name mono">{node.path}</p>
+      <GoalLine path={node.path} />
       {waiting && (
         <p className="node-waits">
           <strong>Waits</strong> {waitingWords(waiting)}

@@ -1,6 +1,7 @@
 /** All keys of the run view, and the switch for those who speak to their computer. */
 import { Switch } from '@mantine/core'
 import { Dialog } from '../../components/Dialog'
+import { TourButton } from '../../components/TourButton'
 import { SHORTCUTS } from '../../document/shortcuts'
 
 export interface ShortcutSheetProps {
@@ -24,6 +25,7 @@ export function ShortcutSheet({ isOpen, onClose, areOn, onSwitch }: ShortcutShee
         ))}
       </dl>
       <p className="quiet">In the outline, arrow keys move and Enter chooses. Keys do nothing while you write in a field.</p>
+      <TourButton onOpened={onClose} />
       <Switch label="Single keys are commands" checked={areOn} onChange={(event) => onSwitch(event.currentTarget.checked)} />
     </Dialog>
   )

@@ -12,29 +12,40 @@ import {
   ReactFlow,
   SelectionMode,
   useReactFlow,
-  type Connection,
+  useStore,
   type FinalConnectionState,
   type NodeChange,
 } from '@xyflow/react'
-import { useCallback, useEffect, useMemo, useRef, useState, type DragEvent } from 'react'
+import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState, type DragEvent } from 'react'
 import { Empty } from '../../components/Empty'
-import { isForeign, isHolder, isMachine, nameOfPath, nodeOf, parentPath } from '../../document/editing/model'
+import { isForeign, isHolder, isMachine, nodeOf, parentPath } from '../../document/editing/model'
 import { frameOf } from '../../document/editing/opening'
 import type { Point } from '../../document/geometry'
-import { add, choose, chooseArrow, connect, enter, moveInto, place, toggleOpen, type Addition } from './actions'
+import { add, choose, chooseArrow, moveInto, place, type Addition } from './actions'
 import { askAdd, askFrom } from './asking'
+import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onReconnect } from './canvasActs'
 import { setCanvasPlaces } from './canvasPlaces'
 import { BranchLine, EditArrowHeads, WayLine } from './Lines'
+import { FAR, FarLines, fromFar, MANY, setFar } from './Far'
 import { FrameCard, LeafCard, PillCard, RulesCard, TwigCard } from './Cards'
 import { canvasEdges, canvasNodes, type CanvasEdge, type CanvasNode } from './elements'
-import { openOther } from './commands'
 import { ADDITION } from './dragging'
-import { isAllSeen, viewportFor } from './viewport'
+import { isAllSeen, LEAST, viewportFor } from './viewport'
+import { FlowOverlay } from './FlowOverlay'
+import { NoteOverlay } from './NoteOverlay'
 import { SelectionBar } from './SelectionBar'
 import { editor, refused, rootOf, setEditor, useEditor } from './store'
 import { useArrangement, type Arranged } from './useArrangement'
+import { useKept } from './useKept'
 
-const NODE_TYPES = { leaf: LeafCard, frame: FrameCard, twig: TwigCard, pill: PillCard, rules: RulesCard }
+const NODE_TYPES = {
+  leaf: fromFar(LeafCard),
+  frame: fromFar(FrameCard),
+  twig: fromFar(TwigCard),
+  pill: fromFar(PillCard),
+  rules: fromFar(RulesCard),
+}
+const NO_EDGES: CanvasEdge[] = []
 const EDGE_TYPES = { way: WayLine, branch: BranchLine }
 const SELECT_KEYS = ['Shift', 'Meta', 'Control']
 
@@ -44,7 +55,7 @@ export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: bo
   const { arranged, problem } = useArrangement(pane)
   const root = useEditor(rootOf)
   return (
-    <div className="edit-canvas" ref={ref} aria-busy={arranged?.root !== root}>
+    <div className="edit-canvas" ref={ref} aria-busy={arranged?.root !== root} data-drawn={arranged?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
       {arranged && <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} />}
@@ -68,10 +79,11 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
   const arrow = useEditor((s) => s.arrow)
   const shown = useEditor((s) => s.shown)
   const isStale = useEditor((s) => s.history.steps[s.history.at]?.draft.isStale ?? false)
-  const computed = useMemo(() => canvasNodes(arranged), [arranged])
+  const computed = useKept(useMemo(() => canvasNodes(arranged), [arranged]))
   const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
   const [isWiring, setWiring] = useState(false)
   const [isInPlace, setInPlace] = useState(false)
+  const [lookedFor, setLookedFor] = useState<typeof shown>()
   const element = useRef<HTMLDivElement>(null)
   const handled = useRef<typeof shown>(undefined)
   const isFitted = useRef(false)
@@ -82,10 +94,17 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
     setNodes(computed.map((node) => (chosen.has(node.id) ? { ...node, selected: true } : node)))
   }, [arranged, computed, selection])
 
-  const edges = useMemo(
-    () => canvasEdges(arranged, selection).map((edge) => (edge.id === arrow ? { ...edge, selected: true } : edge)),
-    [arranged, selection, arrow],
+  const edges = useKept(
+    useMemo(
+      () => canvasEdges(arranged, selection).map((edge) => (edge.id === arrow ? { ...edge, selected: true } : edge)),
+      [arranged, selection, arrow],
+    ),
   )
+
+  const hasMany = computed.length > MANY
+  const isFar = useStore((s) => s.transform[2] < FAR) && hasMany
+  useLayoutEffect(() => setFar(isFar ? arranged.scope.path : undefined), [isFar, arranged.scope.path])
+  useEffect(() => () => setFar(undefined), [])
 
   useEffect(() => {
     const frame = requestAnimationFrame(() => {
@@ -125,7 +144,12 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       const target = element.current?.querySelector<HTMLElement>(
         `.react-flow__node[data-id="${CSS.escape(shown.path)}"]`,
       )
-      if (!target) return
+      if (!target) {
+        // Of many, only those in view are drawn: go there first.
+        if (computed.some((node) => node.id === shown.path))
+          void fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1 }).then(() => setLookedFor(shown))
+        return
+      }
       handled.current = shown
       const around = element.current?.getBoundingClientRect()
       const own = target.getBoundingClientRect()
@@ -145,7 +169,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
         target.focus({ preventScroll: true })
     })
     return () => cancelAnimationFrame(frame)
-  }, [shown, computed, arranged, fitView, getZoom])
+  }, [shown, computed, arranged, fitView, getZoom, lookedFor])
 
   const onNodesChange = useCallback((changes: NodeChange<CanvasNode>[]) => {
     const picks = changes.filter((change) => change.type === 'select')
@@ -222,20 +246,6 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
     return { x: at.x - (box?.x ?? 0) - origin.x, y: at.y - (box?.y ?? 0) - origin.y }
   }
 
-  function onConnect({ source, sourceHandle, target }: Connection): void {
-    if (!sourceHandle) return
-    void connect(
-      source,
-      sourceHandle,
-      target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target),
-    )
-  }
-
-  function isAllowed({ source, target }: { source: string; target: string }): boolean {
-    const machine = parentPath(source)
-    return target.startsWith(`${machine}#`) || parentPath(target) === machine
-  }
-
   function onConnectEnd(event: MouseEvent | TouchEvent, state: FinalConnectionState): void {
     setWiring(false)
     if (state.isValid || !state.fromNode || !state.fromHandle?.id || state.fromHandle.type !== 'source') return
@@ -293,13 +303,14 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       ref={element}
       className={`${isInPlace ? 'is-in-place' : ''}${isWiring ? ' is-wiring' : ''}${isStale ? ' is-stale' : ''}`}
       nodes={nodes}
-      edges={edges}
+      edges={isFar ? NO_EDGES : (edges as CanvasEdge[])}
+      onlyRenderVisibleElements={hasMany && !isFar}
       nodeTypes={NODE_TYPES}
       edgeTypes={EDGE_TYPES}
       onNodesChange={onNodesChange}
-      onEdgeClick={(_, edge) => edge.type === 'way' && chooseArrow(edge.id)}
-      onNodeClick={() => chooseArrow(undefined)}
-      onNodeDoubleClick={(_, node) => onDouble(node)}
+      onEdgeClick={onEdgeClick}
+      onNodeClick={onNodeClick}
+      onNodeDoubleClick={onDouble}
       onPaneClick={() => {
         choose([])
         chooseArrow(undefined)
@@ -312,10 +323,8 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       onConnectStart={() => setWiring(true)}
       onConnect={onConnect}
       onConnectEnd={onConnectEnd}
-      isValidConnection={({ source, target }) => isAllowed({ source, target })}
-      onReconnect={(edge, link) =>
-        edge.source === link.source && edge.sourceHandle === link.sourceHandle ? onConnect(link) : undefined
-      }
+      isValidConnection={isAllowed}
+      onReconnect={onReconnect}
       onPaneContextMenu={(event) => {
         event.preventDefault()
         const screen = { x: event.clientX, y: event.clientY }
@@ -343,7 +352,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       elevateNodesOnSelect={false}
       nodeDragThreshold={4}
       zoomOnDoubleClick={false}
-      minZoom={0.08}
+      minZoom={LEAST}
       maxZoom={2.5}
       aria-label="Canvas of the behavior"
     >
@@ -357,6 +366,9 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
           nodeClassName={(node) => `map-${node.type ?? ''}`}
         />
       )}
+      {isFar && <FarLines nodes={computed} edges={edges} />}
+      <FlowOverlay />
+      <NoteOverlay />
       <SelectionBar />
       {arranged.scope.children.length === 0 && <Beginning />}
     </ReactFlow>
@@ -375,14 +387,4 @@ function Beginning() {
       </button>
     </Panel>
   )
-}
-
-function onDouble(node: CanvasNode): void {
-  if (node.type === 'frame') enter(node.id)
-  else if (node.type === 'twig') toggleOpen(node.id, node.data.isOpen)
-  else if (node.type === 'leaf') {
-    if (node.data.node.document) openOther(node.data.node.document)
-    else if (node.data.count > 0 || isHolder(node.data.node)) enter(node.id)
-    else setEditor({ renaming: node.id })
-  }
 }

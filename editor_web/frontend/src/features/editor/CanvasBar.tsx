@@ -1,18 +1,25 @@
 /** Above the canvas: where one is, and how it is seen. */
 import {
+  IconArrowLeft,
   IconArrowsMaximize,
+  IconRoute2,
   IconHierarchy3,
   IconMap,
   IconMinus,
+  IconNote,
   IconPlus,
   IconSelect,
   IconSquarePlus,
 } from '@tabler/icons-react'
 import { useReactFlow } from '@xyflow/react'
-import type { ReactNode } from 'react'
+import { useMemo, type ReactNode } from 'react'
 import { nodeOf, pathsTo } from '../../document/editing/model'
 import { focusNode, layOutAnew } from './actions'
 import { askAdd } from './asking'
+import { openOther } from './pageActs'
+import { toggleNotes, useNotes } from './notes'
+import { cameFrom } from './references'
+import { toggleDataFlow, useDataFlow } from './dataFlow'
 import { wholeCanvas } from './viewport'
 import { draftOf, rootOf, scopeOf, setEditor, useEditor } from './store'
 
@@ -26,6 +33,8 @@ export interface CanvasBarProps {
 export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBarProps) {
   const { setViewport, zoomIn, zoomOut } = useReactFlow()
   const isStale = useEditor((s) => draftOf(s).isStale)
+  const hasNotes = useNotes((s) => s.isShown)
+  const hasFlow = useDataFlow((s) => s.isShown)
   return (
     <div className="canvas-bar">
       <Way />
@@ -40,6 +49,12 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       </Tool>
       <Tool label="Drag a box to choose" isPressed={boxSelects} onPress={onBoxSelects}>
         <IconSelect size={17} />
+      </Tool>
+      <Tool label="Data flow: who writes and reads what (D)" isPressed={hasFlow} onPress={toggleDataFlow}>
+        <IconRoute2 size={17} />
+      </Tool>
+      <Tool label="Notes on the canvas" isPressed={hasNotes} onPress={toggleNotes}>
+        <IconNote size={17} />
       </Tool>
       <Tool label="Lay out by itself (L)" onPress={() => void layOutAnew()}>
         <IconHierarchy3 size={17} />
@@ -65,9 +80,18 @@ function Way() {
   const scope = useEditor((s) => scopeOf(s)?.path ?? 'root')
   const root = useEditor(rootOf)
   const name = useEditor((s) => draftOf(s).document?.name ?? '')
+  const id = useEditor((s) => s.id)
+  const from = useMemo(() => cameFrom(id), [id])
   return (
     <nav aria-label="Shown container" className="breadcrumb edit-way">
       <ol>
+        {from && (
+          <li>
+            <button type="button" onClick={() => openOther(from.id, from.node)} title={`Back to ${from.id}`}>
+              <IconArrowLeft size={13} aria-hidden /> {from.name}
+            </button>
+          </li>
+        )}
         {pathsTo(scope).map((path) => (
           <li key={path}>
             <button

@@ -56,6 +56,7 @@ export const FrameCard = memo(function FrameCard({ id, data, selected }: NodePro
         <KindIcon kind={node.kind} />
         <span className="card-name">{node.name}</span>
         <span className="frame-kind">{node.title || kindLabel(node.kind)}</span>
+        {node.kind === 'behavior' && <span className="frame-foreign">read only</span>}
         <span className="spacer" />
         <Extras data={data} />
         <MarkIcon path={id} inside={false} />

@@ -1,6 +1,6 @@
 /** A box to choose from by typing: a field and a list below it, worked by the arrow keys. */
 import { useEffect, useId, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
-import { found } from '../../document/editing/search'
+import { fit, found } from '../../document/editing/search'
 import type { Point } from '../../document/geometry'
 
 export interface Choice {
@@ -41,10 +41,10 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
   const fitting = found(choices, text, (choice) => [choice.title, choice.group, choice.detail ?? '']).slice(0, MOST)
   // Grouped in the order in which the groups come up, best first.
   const groups = [...new Set(fitting.map((choice) => choice.group))]
-  const shown = [
-    ...groups.flatMap((group) => fitting.filter((choice) => choice.group === group)),
-    ...(more ? [more] : []),
-  ]
+  const listed = groups.flatMap((group) => fitting.filter((choice) => choice.group === group))
+  // What was typed is meant as a name where it is in no title: a word of a description is not.
+  const isInTitle = fitting.some((choice) => fit(text, choice.title) !== undefined)
+  const shown = more ? (isInTitle ? [...listed, more] : [more, ...listed]) : listed
   const chosen = shown[Math.min(index, shown.length - 1)]
 
   // Before anything else is typed.

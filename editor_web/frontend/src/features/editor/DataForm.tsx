@@ -3,6 +3,7 @@ import type { KeyBody } from '../../api/types'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { perform } from './apply'
+import { inputLabel, outputLabel } from './dataFlow'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { useNames } from './useNames'
@@ -35,7 +36,7 @@ export function DataForm({
             <span className="mono">{key}</span> from
           </span>
           <TemplateInput
-            label={`Input ${key} is read from`}
+            label={inputLabel(key)}
             placeholder={inputs.find((each) => each.name === key)?.required ? key : 'its default'}
             options={keys}
             value={node.inputs[key] ?? ''}
@@ -49,7 +50,7 @@ export function DataForm({
             <span className="mono">{key}</span> to
           </span>
           <TemplateInput
-            label={`Output ${key} is written to`}
+            label={outputLabel(key)}
             placeholder="nowhere"
             options={keys}
             value={node.outputs[key] ?? ''}

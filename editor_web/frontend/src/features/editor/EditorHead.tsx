@@ -12,6 +12,7 @@ import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon } from '../../components/StatusIcon'
 import { canRedo, canUndo } from '../../document/editing/history'
 import { redo, undo } from './apply'
+import { FileMenu } from './FileMenu'
 import { save } from './session'
 import { draftOf, isDirty, setEditor, useEditor } from './store'
 
@@ -84,6 +85,7 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
           onPress={() => setEditor({ isSheetShown: true })}
           tone="quiet"
         />
+        <FileMenu mayEdit={mayEdit} />
         <CommandButton
           label="Save"
           shortcut="Control+S"

@@ -2,26 +2,34 @@
 import './styles/index.css'
 import { Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
-import { lazy, Suspense, useEffect, useRef, useState } from 'react'
+import { lazy, Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
+import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
-import { setPageActs } from './commands'
+import { setPageActs } from './pageActs'
 import { ConflictDialog } from './ConflictDialog'
+import { forgetDataFlow, useDataFlow } from './dataFlow'
+import { DataFlowPanel } from './DataFlowPanel'
 import { EditorHead } from './EditorHead'
+import { FileDialogs } from './FileDialogs'
+import { useFileDialog } from './fileDialogs'
 import { Inspector } from './Inspector'
 import { KeySheet } from './KeySheet'
 import { keepDraftNow } from './kept'
 import { LibraryPanel } from './LibraryPanel'
 import { NoticeLine } from './NoticeLine'
 import { Palettes } from './Palettes'
+import { forgetReferences, refreshReferences } from './references'
 import { lookAtDisk, openDocument, save } from './session'
 import { draftOf, editor, isDirty, refused, setEditor, useEditor } from './store'
+import { useLongPress } from './useLongPress'
 import { useEditorKeys } from './useEditorKeys'
 import { wholeCanvas } from './viewport'
 
+const VersionsDialog = lazy(async () => ({ default: (await import('./VersionsDialog')).VersionsDialog }))
 const YamlPane = lazy(async () => ({ default: (await import('./YamlPane')).YamlPane }))
 
 export interface EditorPageProps {
@@ -31,8 +39,12 @@ export interface EditorPageProps {
   readonly isNarrow: boolean
   /** Go to the page where it is run. */
   readonly onRun: () => void
-  /** Open another behavior. */
-  readonly onOpen: (id: string) => void
+  /** Open another behavior, at a node where one is given. */
+  readonly onOpen: (id: string, node: string) => void
+  /** What else a behavior can be begun from. */
+  readonly libraryTools?: ReactNode
+  /** The behavior was deleted. */
+  readonly onGone: () => void
 }
 
 export function EditorPage(props: EditorPageProps) {
@@ -40,12 +52,16 @@ export function EditorPage(props: EditorPageProps) {
   const phase = useEditor((s) => (s.id === id ? s.phase : 'loading'))
   const problem = useEditor((s) => s.problem)
   const onDisk = useLive((s) => s.documents[id])
+  const written = useLive((s) => s.documents)
   useEffect(() => {
+    forgetDataFlow()
+    forgetReferences()
     void openDocument(id, location.hash.slice(1))
   }, [id])
   useEffect(() => {
     if (onDisk !== undefined && onDisk !== editor().base.hash) void lookAtDisk()
   }, [onDisk])
+  useEffect(() => refreshReferences(written), [written])
   useLeaving()
   if (phase === 'failed') return <Empty title="This behavior cannot be edited">{problem}</Empty>
   if (phase === 'loading') return <div className="page-wait" role="status" aria-label="Loading" />
@@ -76,9 +92,11 @@ function useLeaving(): void {
   }, [])
 }
 
-function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
+function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: EditorPageProps) {
   const isTextShown = useEditor((s) => s.isTextShown)
   const isBusy = useEditor((s) => s.isBusy)
+  const hasVersions = useFileDialog((s) => s.open === 'versions')
+  const hasFlow = useDataFlow((s) => s.isShown)
   const [hasMap, setMap] = useState(false)
   const [boxSelects, setBoxSelects] = useState(false)
   const { setViewport, zoomTo, getZoom } = useReactFlow()
@@ -86,6 +104,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
 
   async function run(): Promise<void> {
     ;(document.activeElement as HTMLElement | null)?.blur()
+    await lookForFindings()
     const errors = draftOf(editor()).findings.filter((finding) => finding.severity === 'error').length
     if (errors > 0) {
       setEditor({ tab: 'problems' })
@@ -99,13 +118,14 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
       run: () => void run(),
       fit: () => void setViewport(wholeCanvas(), { duration: 200 }),
       zoom: (factor) => void zoomTo(getZoom() * factor, { duration: 120 }),
-      open: (id) => {
+      open: (id, node) => {
         keepDraftNow()
-        onOpen(id)
+        onOpen(id, node)
       },
     }),
   )
   useEditorKeys(element)
+  useLongPress(element)
 
   const canvas = (
     <div className="canvas-area">
@@ -115,7 +135,10 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
         boxSelects={boxSelects}
         onBoxSelects={() => setBoxSelects(!boxSelects)}
       />
-      <Canvas hasMap={hasMap} boxSelects={boxSelects} />
+      <div className="canvas-with-flow">
+        <Canvas hasMap={hasMap} boxSelects={boxSelects} />
+        {hasFlow && isNarrow && <DataFlowPanel />}
+      </div>
     </div>
   )
   const text = (
@@ -137,7 +160,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
           </Tabs.List>
           <Tabs.Panel value="canvas">{canvas}</Tabs.Panel>
           <Tabs.Panel value="library">
-            <LibraryPanel />
+            <LibraryPanel tools={libraryTools} />
           </Tabs.Panel>
           <Tabs.Panel value="form">
             <Inspector />
@@ -147,7 +170,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
       ) : (
         <Group orientation="horizontal" className="work-space">
           <Pane id="library" defaultSize="17%" minSize="12%" maxSize="34%">
-            <LibraryPanel />
+            {hasFlow ? <DataFlowPanel /> : <LibraryPanel tools={libraryTools} />}
           </Pane>
           <Separator className="splitter" aria-label="Width of the library" />
           <Pane id="middle" defaultSize="57%" minSize="30%">
@@ -173,6 +196,8 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen }: EditorPageProps) {
       )}
       <Palettes />
       <ConflictDialog />
+      <FileDialogs onGone={onGone} />
+      <Suspense>{hasVersions && <VersionsDialog />}</Suspense>
       <KeySheet />
     </div>
   )

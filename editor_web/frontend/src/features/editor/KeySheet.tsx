@@ -1,5 +1,6 @@
 /** All keys of the editor. */
 import { Dialog } from '../../components/Dialog'
+import { TourButton } from '../../components/TourButton'
 import { chordText } from '../../document/editing/keys'
 import { COMMANDS } from './commands'
 import { setEditor, useEditor } from './store'
@@ -33,6 +34,7 @@ export function KeySheet() {
         Arrow keys go from node to node, Tab through all of them. Commands without a key are in the palette (Ctrl+K).
         Keys do nothing while you write in a field; out of the text leads Esc, then Tab.
       </p>
+      <TourButton onOpened={() => setEditor({ isSheetShown: false })} />
     </Dialog>
   )
 }

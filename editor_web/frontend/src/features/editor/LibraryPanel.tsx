@@ -1,7 +1,7 @@
 /** The library: everything that can be put into the behavior, by group, with search and what each is for. */
 import { CloseButton, TextInput } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconInfoCircle, IconMapPin, IconSearch } from '@tabler/icons-react'
-import { useMemo, useState } from 'react'
+import { useMemo, useState, type ReactNode } from 'react'
 import type { CatalogueBody } from '../../api/types'
 import { Panel } from '../../components/Panel'
 import { found } from '../../document/editing/search'
@@ -11,7 +11,7 @@ import { placeForNew } from './asking'
 import { ADDITION } from './dragging'
 import { refused, useEditor } from './store'
 
-export function LibraryPanel() {
+export function LibraryPanel({ tools }: { tools?: ReactNode }) {
   const catalogue = useEditor((s) => s.catalogue)
   const id = useEditor((s) => s.id)
   const [text, setText] = useState('')
@@ -31,6 +31,7 @@ export function LibraryPanel() {
           value={text}
           onChange={(event) => setText(event.currentTarget.value)}
         />
+        {tools}
       </div>
       <div className="library-list">
         {groups.map((group) => (

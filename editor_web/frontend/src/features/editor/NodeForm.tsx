@@ -2,12 +2,15 @@
 import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
 import { isForeign, isMachine, isTreePart, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
+import { placeInOther } from '../../document/editing/grafting'
 import { kindLabel } from '../../document/tree'
 import { perform } from './apply'
 import { itemIcon } from './additions'
-import { openOther } from './commands'
+import { openReferred } from './pageActs'
 import { ConductForm } from './ConductForm'
 import { DataForm } from './DataForm'
+import { NodeFindings } from './FixButtons'
+import { FlowSection } from './FlowSection'
 import { OrderForm } from './OrderForm'
 import { OutcomeForm } from './OutcomeForm'
 import { ParameterFields } from './ParameterFields'
@@ -29,7 +32,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
   const root = useEditor(rootOf)
   const catalogue = useEditor((s) => s.catalogue)
   const parent = nodeOf(root, parentPath(node.path))
-  if (root && isForeign(root, node.path)) return <Foreign node={node} />
+  if (root && isForeign(root, node.path)) return <Foreign node={node} root={root} />
   const state = catalogue?.states.find((each) => each.name === node.state)
   const behavior = catalogue?.behaviors.find((each) => each.id === node.document)
   const runs = node.kind === 'state' || node.kind === 'behavior'
@@ -64,6 +67,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
           </button>
         )}
       </header>
+      <NodeFindings path={node.path} />
       {runs && (
         <Section title={node.kind === 'behavior' ? 'Behavior' : 'State'}>
           <TemplateInput
@@ -76,7 +80,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
           {state && <p className="form-doc">{state.doc}</p>}
           {node.document && (
             <p className="form-doc">
-              {behavior?.description} <OpenOther id={node.document} />
+              {behavior?.description} <OpenOther id={node.document} from={node.path} />
             </p>
           )}
         </Section>
@@ -97,6 +101,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       {(isTreePart(node.kind) || node.kind === 'concurrency') && node.children.length > 1 && <OrderForm node={node} />}
       <SettingsForm node={node} />
       {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
+      <FlowSection node={node} />
       {node.path !== ROOT && !isTreePart(node.kind) && <ConductForm node={node} parent={parent} />}
       <Section title="Notes">
         <TemplateInput
@@ -143,15 +148,16 @@ function BeginForm({ node, onSet }: { node: EditNode; onSet: (child: string) => 
   )
 }
 
-function OpenOther({ id }: { id: string }) {
+function OpenOther({ id, from, node = '' }: { id: string; from: string; node?: string }) {
   return (
-    <button type="button" className="link" onClick={() => openOther(id)}>
+    <button type="button" className="link" onClick={() => openReferred(id, from, node)}>
       <IconExternalLink size={13} aria-hidden /> Open {id.split('/').pop()}
     </button>
   )
 }
 
-function Foreign({ node }: { node: EditNode }) {
+function Foreign({ node, root }: { node: EditNode; root: EditNode }) {
+  const place = placeInOther(root, node.path)
   return (
     <div className="node-form">
       <header className="form-head">
@@ -161,6 +167,11 @@ function Foreign({ node }: { node: EditNode }) {
           <span className="quiet">Part of a behavior that is referred to; it is changed in its own file.</span>
         </div>
       </header>
+      {place?.reference.document && (
+        <p className="form-doc foreign-open">
+          <OpenOther id={place.reference.document} from={place.reference.path} node={place.inner} />
+        </p>
+      )}
     </div>
   )
 }

@@ -15,6 +15,7 @@ import {
 } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
 import { perform } from './apply'
+import { EntryDetails } from './EntryDetails'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
 
@@ -227,18 +228,22 @@ function EntryInput({ field, value, entries, shared, onSet }: EntryProps) {
         onCommit={(typed) => onSet(typedValue({ kind: 'data' }, typed))}
       />
     )
+  const chosen = entries.find((entry) => entry.name === named && (!field.entryKind || entry.kind === field.entryKind))
   return (
-    <TemplateInput
-      {...shared}
-      placeholder={fitting.length > 0 ? 'choose an entry' : 'name of an entry'}
-      options={fitting}
-      value={named ?? ''}
-      onCommit={(typed) => {
-        if (typed === '') onSet(undefined)
-        else if (typed.startsWith('{') || typed.startsWith('[')) onSet(looseValue(typed))
-        else onSet(field.isPlainEntry ? typed : { entry: typed })
-      }}
-    />
+    <>
+      <TemplateInput
+        {...shared}
+        placeholder={fitting.length > 0 ? 'choose an entry' : 'name of an entry'}
+        options={fitting}
+        value={named ?? ''}
+        onCommit={(typed) => {
+          if (typed === '') onSet(undefined)
+          else if (typed.startsWith('{') || typed.startsWith('[')) onSet(looseValue(typed))
+          else onSet(field.isPlainEntry ? typed : { entry: typed })
+        }}
+      />
+      {chosen && <EntryDetails kind={chosen.kind} name={chosen.name} />}
+    </>
   )
 }
 

@@ -6,7 +6,9 @@ import {
   IconBoxMultiple,
   IconCopyPlus,
   IconCursorText,
+  IconExternalLink,
   IconLogin2,
+  IconNote,
   IconPlugConnected,
   IconPlus,
   IconTrash,
@@ -21,14 +23,20 @@ import {
   parentPath,
   type EditNode,
 } from '../../document/editing/model'
+import { placeInOther } from '../../document/editing/grafting'
 import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
 import { askAdd, askConnect } from './asking'
+import { openReferred } from './pageActs'
+import { writeNote } from './notes'
+import { toggleReference } from './references'
 import { editor, isOpenNow, rootOf, setEditor, useEditor } from './store'
 
 export function SelectionBar() {
   const selection = useEditor((s) => s.selection)
   const renaming = useEditor((s) => s.renaming)
   const node = useEditor((s) => nodeOf(rootOf(s), s.selection.at(-1) ?? ''))
+  const root = useEditor(rootOf)
+  const foreign = root && node && placeInOther(root, node.path)
   if (renaming !== undefined) {
     return (
       <NodeToolbar nodeId={renaming} isVisible position={Position.Top} offset={8}>
@@ -37,6 +45,21 @@ export function SelectionBar() {
     )
   }
   if (!node || selection.length === 0) return null
+  if (foreign?.reference.document) {
+    const { reference, inner } = foreign
+    return (
+      <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
+        <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
+          <Act
+            label={`Open ${nameOfPath(reference.document ?? '')} at this node`}
+            onPress={() => openReferred(reference.document ?? '', reference.path, inner)}
+          >
+            <IconExternalLink size={16} />
+          </Act>
+        </div>
+      </NodeToolbar>
+    )
+  }
   return (
     <NodeToolbar nodeId={[...selection]} isVisible position={Position.Top} offset={10}>
       <div className="selection-bar" role="toolbar" aria-label="Chosen nodes">
@@ -53,7 +76,8 @@ export function SelectionBar() {
 }
 
 function One({ node }: { node: EditNode }) {
-  const isOpen = useEditor((s) => isOpenNow(s, node.path))
+  const isOpen = useEditor((s) => isOpenNow(s, node.path) && (node.document === null || node.children.length > 0))
+  const reference = node.document
   return (
     <>
       <Act label="Add a state or container here (A)" onPress={() => askAdd()}>
@@ -62,7 +86,23 @@ function One({ node }: { node: EditNode }) {
       <Act label="Connect (C)" onPress={askConnect}>
         <IconPlugConnected size={16} />
       </Act>
-      {(isFrame(node) || (isTreePart(node.kind) && node.children.length > 0)) && (
+      {reference !== null && (
+        <>
+          <Act
+            label={isOpen ? 'Close it (O)' : 'Show what is inside here (O)'}
+            onPress={() => void toggleReference(node.path)}
+          >
+            {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
+          </Act>
+          <Act
+            label={`Open ${nameOfPath(reference)} in its own page (Enter)`}
+            onPress={() => openReferred(reference, node.path)}
+          >
+            <IconExternalLink size={16} />
+          </Act>
+        </>
+      )}
+      {reference === null && (isFrame(node) || (isTreePart(node.kind) && node.children.length > 0)) && (
         <>
           <Act label={isOpen ? 'Close it (O)' : 'Open it in place (O)'} onPress={() => toggleOpen(node.path, isOpen)}>
             {isOpen ? <IconArrowsDiagonalMinimize size={16} /> : <IconArrowsDiagonal size={16} />}
@@ -72,6 +112,9 @@ function One({ node }: { node: EditNode }) {
           </Act>
         </>
       )}
+      <Act label="Note (N)" onPress={() => writeNote(node.path)}>
+        <IconNote size={16} />
+      </Act>
       <Act label="Rename (F2)" onPress={() => setEditor({ renaming: node.path })}>
         <IconCursorText size={16} />
       </Act>

@@ -25,10 +25,11 @@ import {
 } from '@codemirror/view'
 import { tags } from '@lezer/highlight'
 import { useEffect, useRef } from 'react'
-import type { FindingBody } from '../../api/types'
+import type { FindingBody, FixesBody } from '../../api/types'
 import { changeBetween } from '../../document/editing/textChange'
 import { nodeAtLine } from '../../document/editing/places'
 import { typed } from './apply'
+import { fixesOf, makeFix, useFreshFixes } from './fixes'
 import { completeText } from './textCompletion'
 import { choose } from './actions'
 import { chosenOf, draftOf, editor, rootOf, setEditor, useEditor } from './store'
@@ -117,7 +118,7 @@ function follow(state: EditorState): void {
   }
 }
 
-function diagnosticsOf(view: EditorView, findings: readonly FindingBody[]): Diagnostic[] {
+function diagnosticsOf(view: EditorView, findings: readonly FindingBody[], fixes: readonly FixesBody[]): Diagnostic[] {
   const { doc } = view.state
   return findings
     .map((finding) => {
@@ -130,6 +131,10 @@ function diagnosticsOf(view: EditorView, findings: readonly FindingBody[]): Diag
         severity: finding.severity === 'error' ? ('error' as const) : ('warning' as const),
         message: [finding.message, finding.hint].filter(Boolean).join('\n'),
         source: finding.code,
+        actions: fixesOf(fixes, finding).map((fix) => ({
+          name: fix.title.replaceAll('`', ''),
+          apply: () => makeFix(fix),
+        })),
       }
     })
     .sort((a, b) => a.from - b.from)
@@ -140,6 +145,7 @@ export function YamlPane() {
   const view = useRef<EditorView>(null)
   const text = useEditor((s) => draftOf(s).text)
   const findings = useEditor((s) => draftOf(s).findings)
+  const fixes = useFreshFixes()
   const chosen = useEditor(chosenOf)
   const place = useEditor((s) => s.place)
 
@@ -157,8 +163,8 @@ export function YamlPane() {
 
   useEffect(() => {
     const now = view.current
-    if (now) now.dispatch(setDiagnostics(now.state, diagnosticsOf(now, findings)))
-  }, [findings, text])
+    if (now) now.dispatch(setDiagnostics(now.state, diagnosticsOf(now, findings, fixes)))
+  }, [findings, fixes, text])
 
   useEffect(() => {
     const now = view.current

@@ -3,6 +3,7 @@ import { documents } from '../../api/documents'
 import { wordsOf } from '../../api/client'
 import { corner, setField, type AddNode, type Edit, type GroupKind } from '../../document/editing/edits'
 import {
+  allNodes,
   freeName,
   holderOf,
   isComposite,
@@ -364,4 +365,13 @@ export function leave(): void {
 
 export function toggleOpen(path: string, isOpen: boolean): void {
   setEditor({ opened: new Map(editor().opened).set(path, !isOpen) })
+}
+
+/** Open all that is inside of what fills the canvas, the whole behavior at once; where all is open, close it. */
+export function openOrCloseAll(): void {
+  const state = editor()
+  const scope = scopeOf(state)
+  const inside = scope ? allNodes(scope).filter((node) => node.path !== scope.path && node.children.length > 0) : []
+  const isAllOpen = inside.every((node) => state.opened.get(node.path))
+  setEditor({ opened: isAllOpen ? new Map() : new Map(inside.map((node) => [node.path, true])) })
 }

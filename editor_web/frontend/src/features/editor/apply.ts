@@ -5,7 +5,9 @@ import type { EditedBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { nodeOf, parentPath, type Draft } from '../../document/editing/model'
+import { findingsOf } from './checking'
 import { keepDraft } from './kept'
+import { withReferences } from './references'
 import { draftOf, editor, refused, rootOf, setEditor } from './store'
 
 const TYPING_PAUSE_MS = 250
@@ -57,6 +59,7 @@ function reasonOf(error: unknown): [string, string] {
 interface Read {
   readonly graph: Draft['root'] | null
   readonly findings: Draft['findings']
+  readonly checked: boolean
   readonly document?: Draft['document'] | null
 }
 
@@ -66,16 +69,49 @@ export function draftFrom(answer: Read, text: string, before: Draft | undefined)
   return {
     text,
     root: answer.graph ?? before?.root,
-    findings: answer.findings,
+    findings: answer.checked ? sameFindings(before, answer.findings) : (before?.findings ?? []),
+    isChecked: answer.checked,
     isStale,
     document: (isStale ? before?.document : answer.document) ?? undefined,
   }
 }
 
+/** Those of before where they say the same, so that nothing is drawn again for them. */
+function sameFindings(before: Draft | undefined, findings: Draft['findings']): Draft['findings'] {
+  return before && JSON.stringify(before.findings) === JSON.stringify(findings) ? before.findings : findings
+}
+
+let looking: Promise<void> | undefined
+
+/** Ask what is wrong with the present text, until that is known; edits go on meanwhile. */
+export function lookForFindings(): Promise<void> {
+  looking ??= look()
+    .catch((error: unknown) => refused('Check', ...reasonOf(error)))
+    .finally(() => {
+      looking = undefined
+    })
+  return looking
+}
+
+async function look(): Promise<void> {
+  for (;;) {
+    const { id } = editor()
+    const { text, isChecked } = draftOf(editor())
+    if (isChecked || !id) return
+    const findings = await findingsOf(id, text)
+    const now = draftOf(editor())
+    if (editor().id === id && now.text === text) {
+      const known = { ...now, findings: sameFindings(now, findings), isChecked: true }
+      setEditor({ history: replaced(editor().history, known) })
+    }
+  }
+}
+
 function setHistory(history: History): void {
-  setEditor({ history })
+  setEditor({ history: withReferences(history) })
   keepDraft()
   forgetTheGone()
+  void lookForFindings()
 }
 
 /** What is chosen or shown and is not there any more is let go. */
@@ -95,7 +131,7 @@ function forgetTheGone(): void {
 export function typed(text: string): void {
   const before = draftOf(editor())
   if (text === before.text) return
-  setEditor({ history: pushed(editor().history, 'Type', { ...before, text }, 'typing') })
+  setEditor({ history: pushed(editor().history, 'Type', { ...before, text, isChecked: false }, 'typing') })
   keepDraft()
   clearTimeout(due)
   due = setTimeout(() => void readAnew(), TYPING_PAUSE_MS)
@@ -125,6 +161,6 @@ export function redo(): void {
 /** Put a whole text in place of the present one, as one step that can be undone. */
 export function takeText(label: string, text: string): Promise<void> {
   const before = draftOf(editor())
-  setEditor({ history: pushed(settled(editor().history), label, { ...before, text }) })
+  setEditor({ history: pushed(settled(editor().history), label, { ...before, text, isChecked: false }) })
   return readAnew()
 }

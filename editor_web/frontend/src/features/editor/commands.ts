@@ -18,13 +18,20 @@ import {
   paste,
   remove,
   selectAll,
+  openOrCloseAll,
   toggleOpen,
   ungroup,
 } from './actions'
 import { redo, undo } from './apply'
 import { askAdd, askConnect } from './asking'
+import { toggleDataFlow } from './dataFlow'
+import { exportPicture } from './exporting'
+import { openFileDialog } from './fileDialogs'
+import { openReferred, pageActs } from './pageActs'
 import { goToProblem } from './problems'
+import { toggleReference } from './references'
 import { discard, save } from './session'
+import { toggleNotes, writeNote } from './notes'
 import { chosenOf, editor, isDirty, isOpenNow, rootOf, setEditor } from './store'
 
 export interface Command {
@@ -35,26 +42,6 @@ export interface Command {
   /** What is needed for it; nothing stands in the way without. */
   readonly needs?: 'node' | 'nodes' | 'undo' | 'redo' | 'changes'
   readonly run: () => void
-}
-
-/** What the page does for the editor: running, fitting, showing. */
-export interface PageActs {
-  readonly run: () => void
-  readonly fit: () => void
-  readonly zoom: (factor: number) => void
-  /** Open another behavior in the editor. */
-  readonly open: (id: string) => void
-}
-
-let acts: PageActs = { run: () => undefined, fit: () => undefined, zoom: () => undefined, open: () => undefined }
-
-/** Open another behavior; the draft of this one is kept. */
-export function openOther(id: string): void {
-  acts.open(id)
-}
-
-export function setPageActs(given: PageActs): void {
-  acts = given
 }
 
 const STEP = 20
@@ -71,7 +58,7 @@ export const COMMANDS: readonly Command[] = [
     part: 'Document',
     words: 'Save, check, and go to the run page',
     chords: [{ key: 'Enter', ctrl: true }],
-    run: () => acts.run(),
+    run: () => pageActs().run(),
   },
   { id: 'undo', part: 'Document', words: 'Undo', chords: [{ key: 'z', ctrl: true }], needs: 'undo', run: undo },
   {
@@ -107,6 +94,15 @@ export const COMMANDS: readonly Command[] = [
     chords: [{ key: ',' }],
     run: () => setEditor({ tab: 'document' }),
   },
+  {
+    id: 'versions',
+    part: 'Document',
+    words: 'Versions: compare and restore',
+    chords: [{ key: 'h' }],
+    run: () => openFileDialog('versions'),
+  },
+  { id: 'svg', part: 'Document', words: 'Export as SVG', chords: [], run: () => void exportPicture('svg') },
+  { id: 'png', part: 'Document', words: 'Export as PNG', chords: [], run: () => void exportPicture('png') },
   { id: 'problem', part: 'Document', words: 'Go to the next problem', chords: [{ key: 'F8' }], run: goToProblem },
   {
     id: 'palette',
@@ -161,6 +157,14 @@ export const COMMANDS: readonly Command[] = [
     needs: 'node',
     run: () => withChosen((path) => setEditor({ renaming: path })),
   },
+  {
+    id: 'note',
+    part: 'Build',
+    words: 'Write a note on the chosen node, or on what fills the canvas',
+    chords: [{ key: 'n' }],
+    run: () => writeNote(),
+  },
+  { id: 'notes', part: 'Move around', words: 'Show or hide the notes', chords: [], run: toggleNotes },
   {
     id: 'remove',
     part: 'Build',
@@ -287,15 +291,35 @@ export const COMMANDS: readonly Command[] = [
     needs: 'node',
     run: openOrClose,
   },
-  { id: 'fit', part: 'Move around', words: 'Show all', chords: [{ key: 'f' }], run: () => acts.fit() },
+  {
+    id: 'open-all',
+    part: 'Move around',
+    words: 'Open every container in place, or close them again',
+    chords: [{ key: 'O', shift: true }],
+    run: openOrCloseAll,
+  },
+  {
+    id: 'data-flow',
+    part: 'Move around',
+    words: 'Show or hide the data flow: who writes and reads what',
+    chords: [{ key: 'd' }],
+    run: toggleDataFlow,
+  },
+  { id: 'fit', part: 'Move around', words: 'Show all', chords: [{ key: 'f' }], run: () => pageActs().fit() },
   {
     id: 'zoom-in',
     part: 'Move around',
     words: 'Zoom in',
     chords: [{ key: '+' }, { key: '=' }],
-    run: () => acts.zoom(1.3),
+    run: () => pageActs().zoom(1.3),
   },
-  { id: 'zoom-out', part: 'Move around', words: 'Zoom out', chords: [{ key: '-' }], run: () => acts.zoom(1 / 1.3) },
+  {
+    id: 'zoom-out',
+    part: 'Move around',
+    words: 'Zoom out',
+    chords: [{ key: '-' }],
+    run: () => pageActs().zoom(1 / 1.3),
+  },
 ]
 
 /** Go into a container, to the behavior that is referred to, or to the form of a state. */
@@ -303,7 +327,7 @@ function goIn(): void {
   withChosen((path) => {
     const node = nodeOf(rootOf(editor()), path)
     if (!node) return
-    if (node.document) openOther(node.document)
+    if (node.document) openReferred(node.document, path)
     else if (node.children.length > 0 || isMachine(node.kind) || node.kind === 'concurrency') enter(path)
     else focusInspector()
   })
@@ -336,7 +360,8 @@ function goOut(): void {
 function openOrClose(): void {
   withChosen((path) => {
     const node = nodeOf(rootOf(editor()), path)
-    if (node && (node.children.length > 0 || !isTreePart(node.kind))) toggleOpen(path, isOpenNow(editor(), path))
+    if (node?.document) void toggleReference(path)
+    else if (node && (node.children.length > 0 || !isTreePart(node.kind))) toggleOpen(path, isOpenNow(editor(), path))
   })
 }
 

@@ -1,21 +1,21 @@
 /** From an arranged document to the canvas's nodes and edges. */
-import { Position, type Edge, type Node } from '@xyflow/react'
+import { Position, type Edge, type Node, type NodeHandle } from '@xyflow/react'
 import { arrowId, outcomeId } from '../../document/layout'
 import { rulesId, type Arrangement } from '../../document/editing/arrange'
-import { entryY, pillsOf } from '../../document/editing/measure'
+import { entryY, PILL_HEIGHT, pillsOf, portY } from '../../document/editing/measure'
 import {
   isFailure,
+  isForeign,
   isFrame,
   isMachine,
   isTreePart,
-  nodeOf,
   parentPath,
   waysOf,
   type EditNode,
   type Way,
 } from '../../document/editing/model'
 import { countInside, drawnNodes, frameOf } from '../../document/editing/opening'
-import type { Point } from '../../document/geometry'
+import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 
 export interface CardData extends Record<string, unknown> {
@@ -44,6 +44,8 @@ export type BranchEdge = Edge<Record<string, unknown>, 'branch'>
 export type CanvasEdge = WayEdge | BranchEdge
 
 export const IN = 'in'
+/** Width and height of the port of a way out. */
+const PORT = 11
 
 export interface DrawnInput {
   readonly root: EditNode
@@ -57,7 +59,8 @@ export interface DrawnInput {
 export function canvasNodes(input: DrawnInput): readonly CanvasNode[] {
   const { scope, arrangement, isOpen } = input
   const shown = drawnNodes(scope, isOpen)
-  const cards = shown.flatMap((node) => card(node, input))
+  const parents = new Map([scope, ...shown].map((node) => [node.path, surroundings(node, input)]))
+  const cards = shown.flatMap((node) => card(node, parents.get(parentPath(node.path)), input))
   const machines = [scope, ...shown.filter((node) => isMachine(node.kind) && isOpen(node.path))]
   const pills = machines.flatMap((machine) => pillNodes(machine, input))
   const table = arrangement.boxes.get(rulesId(scope.path))
@@ -67,8 +70,7 @@ export function canvasNodes(input: DrawnInput): readonly CanvasNode[] {
           id: rulesId(scope.path),
           type: 'rules',
           position: table,
-          width: table.width,
-          height: table.height,
+          ...sized(table),
           data: { node: scope },
           draggable: false,
           selectable: false,
@@ -79,36 +81,53 @@ export function canvasNodes(input: DrawnInput): readonly CanvasNode[] {
   return [...cards, ...pills, ...rules]
 }
 
-function card(node: EditNode, { root, scope, arrangement, isOpen }: DrawnInput): CardNode[] {
-  const box = arrangement.boxes.get(node.path)
-  const parent = nodeOf(root, parentPath(node.path))
-  if (!box || !parent) return []
-  const frame = frameOf(scope, node.path)
-  const ways = waysOf(parent, node)
+/** What a node is to those directly inside it. */
+interface Surroundings {
+  readonly parent: EditNode
+  /** The container in whose frame they are drawn. */
+  readonly frame: EditNode
+  /** What an arrow can be drawn to. */
+  readonly ends: ReadonlySet<string>
+  readonly isForeign: boolean
+}
+
+function surroundings(parent: EditNode, { root, scope }: DrawnInput): Surroundings {
   const { drawn } = pillsOf(parent, [])
-  const inside = new Set([...parent.children.map((child) => child.name), ...drawn])
+  return {
+    parent,
+    frame: frameOf(scope, `${parent.path}/`),
+    ends: new Set([...parent.children.map((child) => child.name), ...drawn]),
+    isForeign: isForeign(root, `${parent.path}/`),
+  }
+}
+
+function card(node: EditNode, around: Surroundings | undefined, { scope, arrangement, isOpen }: DrawnInput): CardNode[] {
+  const box = arrangement.boxes.get(node.path)
+  if (!box || !around) return []
+  const { parent, frame, ends } = around
+  const ways = waysOf(parent, node)
   const isTwig = isTreePart(node.kind) && node.kind !== 'tree'
-  const isForeignNode = isBelowReference(root, node.path)
   const isShown = isOpen(node.path) && isFrame(node)
+  const isInTree = isTreePart(parent.kind)
   return [
     {
       id: node.path,
       type: isTwig ? 'twig' : isShown ? 'frame' : 'leaf',
       position: { x: box.x, y: box.y },
-      width: box.width,
-      height: box.height,
+      ...sized(box),
+      handles: isTwig || isInTree ? twigHandles(box) : wayHandles(box, ways),
       ...(frame === scope ? {} : { parentId: frame.path }),
-      draggable: !isForeignNode,
+      draggable: !around.isForeign,
       data: {
         node,
         ways,
         drawn: new Set(
-          ways.filter((way) => way.target !== undefined && inside.has(way.target)).map((way) => way.outcome),
+          ways.filter((way) => way.target !== undefined && ends.has(way.target)).map((way) => way.outcome),
         ),
         isInitial: isMachine(parent.kind) && parent.initial === node.name,
         isOpen: isTwig ? isOpen(node.path) : isShown,
-        isForeign: isForeignNode,
-        isInTree: isTreePart(parent.kind),
+        isForeign: around.isForeign,
+        isInTree,
         count: countInside(node),
         entryY: entryY(box.height, ways.length),
       },
@@ -119,11 +138,35 @@ function card(node: EditNode, { root, scope, arrangement, isOpen }: DrawnInput):
   ]
 }
 
-function isBelowReference(root: EditNode, path: string): boolean {
-  for (let above = parentPath(path); above; above = parentPath(above)) {
-    if (nodeOf(root, above)?.kind === 'behavior') return true
-  }
-  return false
+/** Said beforehand, so that the canvas needs not look at what it draws, nor draw what nobody sees. */
+function sized({ width, height }: Box): Pick<CanvasNode, 'width' | 'height' | 'measured'> {
+  return { width, height, measured: { width, height } }
+}
+
+/** Where ports are in the node, as its styles put them. */
+function wayHandles(box: Box, ways: readonly Way[]): NodeHandle[] {
+  const outs = ways.map(({ outcome }, row): NodeHandle => ({
+    id: outcome,
+    type: 'source',
+    position: Position.Right,
+    x: box.width - PORT / 2 - 0.5,
+    y: portY(box.height, ways.length, row) - PORT / 2,
+    width: PORT,
+    height: PORT,
+  }))
+  return [inHandle(entryY(box.height, ways.length)), ...outs]
+}
+
+function inHandle(y: number): NodeHandle {
+  return { id: IN, type: 'target', position: Position.Left, x: -2, y: y - 2, width: 7, height: 7 }
+}
+
+function twigHandles({ width, height }: Box): NodeHandle[] {
+  const x = width / 2 - 0.5
+  return [
+    { id: 'above', type: 'target', position: Position.Top, x, y: -0.5, width: 1, height: 1 },
+    { id: 'below', type: 'source', position: Position.Bottom, x, y: height - 0.5, width: 1, height: 1 },
+  ]
 }
 
 function spoken(node: EditNode, ways: readonly Way[]): string {
@@ -143,8 +186,8 @@ function pillNodes(machine: EditNode, { scope, arrangement, declared }: DrawnInp
         id: outcomeId(machine.path, outcome),
         type: 'pill' as const,
         position: { x: box.x, y: box.y },
-        width: box.width,
-        height: box.height,
+        ...sized(box),
+        handles: [inHandle(PILL_HEIGHT / 2)],
         ...(machine === scope ? {} : { parentId: machine.path }),
         draggable: false,
         selectable: false,

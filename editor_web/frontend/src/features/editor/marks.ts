@@ -13,13 +13,39 @@ const NONE: readonly FindingBody[] = []
 
 /** The findings at a node; with `inside`, also those of the nodes in it. */
 export function useMark(path: string, inside: boolean): Mark | undefined {
-  const findings = useEditor((s) => draftOf(s).findings)
+  const own = useEditor((s) => {
+    const { at, around } = placedOf(draftOf(s).findings)
+    return (inside ? around : at).get(path)
+  })
   return useMemo(() => {
-    const own = findings.filter((finding) => finding.path === path || (inside && finding.path.startsWith(`${path}/`)))
-    if (own.length === 0) return undefined
+    if (!own) return undefined
     const severity = own.some((finding) => finding.severity === 'error') ? 'error' : 'warning'
     return { severity, messages: own.map((finding) => finding.message) }
-  }, [findings, path, inside])
+  }, [own])
+}
+
+interface Placed {
+  readonly at: ReadonlyMap<string, readonly FindingBody[]>
+  /** Those at a node and at the nodes in it. */
+  readonly around: ReadonlyMap<string, readonly FindingBody[]>
+}
+
+const placed = new WeakMap<readonly FindingBody[], Placed>()
+
+/** The findings by node: a thousand nodes ask for theirs each time something changes. */
+function placedOf(findings: readonly FindingBody[]): Placed {
+  const known = placed.get(findings)
+  if (known) return known
+  const at = new Map<string, FindingBody[]>()
+  const around = new Map<string, FindingBody[]>()
+  const put = (into: Map<string, FindingBody[]>, path: string, finding: FindingBody) =>
+    into.get(path)?.push(finding) ?? into.set(path, [finding])
+  for (const finding of findings) {
+    put(at, finding.path, finding)
+    for (const path of pathsTo(finding.path)) put(around, path, finding)
+  }
+  placed.set(findings, { at, around })
+  return { at, around }
 }
 
 /** The findings that name a way out: they are shown at its arrow or port. */
@@ -28,9 +54,9 @@ export function findingsOfWay(findings: readonly FindingBody[], path: string, ou
 }
 
 export function useWayFindings(path: string, outcome: string): readonly FindingBody[] {
-  const findings = useEditor((s) => draftOf(s).findings)
+  const findings = useEditor((s) => placedOf(draftOf(s).findings).at.get(path))
   return useMemo(() => {
-    const own = findingsOfWay(findings, path, outcome)
+    const own = findings ? findingsOfWay(findings, path, outcome) : NONE
     return own.length > 0 ? own : NONE
   }, [findings, path, outcome])
 }

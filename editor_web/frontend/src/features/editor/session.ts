@@ -3,7 +3,7 @@ import { wordsOf } from '../../api/client'
 import { conflictOf, documents } from '../../api/documents'
 import { newHistory, pushed, replaced } from '../../document/editing/history'
 import { nodeOf, parentPath, ROOT } from '../../document/editing/model'
-import { draftFrom, inTurn, readAnew, takeText } from './apply'
+import { draftFrom, inTurn, lookForFindings, readAnew, takeText } from './apply'
 import { forgetDraft, keepDraftNow, keptDraft } from './kept'
 import { blank, draftOf, editor, isDirty, refused, setEditor, told, useEditor } from './store'
 
@@ -11,13 +11,21 @@ import { blank, draftOf, editor, isDirty, refused, setEditor, told, useEditor } 
 export async function openDocument(id: string, node: string): Promise<void> {
   useEditor.setState(blank(id), true)
   try {
-    const [answer, catalogue] = await Promise.all([documents.open(id), documents.catalogue()])
+    const catalogue = documents.catalogue().catch((error: unknown) => {
+      refused('Library', wordsOf(error), 'Load the page again.')
+      return undefined
+    })
+    const answer = await documents.open(id)
     if (editor().id !== id) return
     const kept = keptDraft(id)
     const draft = draftFrom(answer, answer.text, undefined)
-    setEditor({ phase: 'ready', catalogue, base: { text: answer.text, hash: answer.hash }, history: newHistory(draft) })
+    setEditor({ phase: 'ready', base: { text: answer.text, hash: answer.hash }, history: newHistory(draft) })
     if (kept && kept.text !== answer.text) await takeUp(kept.text, kept.base, kept.baseText)
+    else void lookForFindings()
     reveal(node)
+    // What can be put in is not needed to see what is there.
+    const found = await catalogue
+    if (editor().id === id) setEditor({ catalogue: found })
   } catch (error) {
     if (editor().id === id) setEditor({ phase: 'failed', problem: wordsOf(error) })
   }
@@ -26,7 +34,7 @@ export async function openDocument(id: string, node: string): Promise<void> {
 async function takeUp(text: string, base: string, baseText: string): Promise<void> {
   const { history, base: disk } = editor()
   setEditor({
-    history: pushed(history, 'Draft of an earlier visit', { ...draftOf(editor()), text }),
+    history: pushed(history, 'Draft of an earlier visit', { ...draftOf(editor()), text, isChecked: false }),
     base: { text: baseText, hash: base },
     isRestored: true,
     isOutdated: base !== disk.hash,
@@ -110,4 +118,5 @@ export async function lookAtDisk(): Promise<void> {
       draftFrom(answer, answer.text, draftOf(now)),
     ),
   })
+  void lookForFindings()
 }

@@ -68,7 +68,7 @@ export interface EditorState {
   readonly isOutdated: boolean
 }
 
-const NOTHING: Draft = { text: '', root: undefined, findings: [], isStale: false, document: undefined }
+const NOTHING: Draft = { text: '', root: undefined, findings: [], isChecked: true, isStale: false, document: undefined }
 
 export function blank(id: string): EditorState {
   return {

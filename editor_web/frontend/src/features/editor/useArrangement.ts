@@ -1,16 +1,24 @@
 /** Lays out what fills the canvas, again whenever the document or what is open changes; until done, the one before stays. */
 import { useEffect, useRef, useState } from 'react'
-import { loadElk } from '../../components/elk'
+import { layOutByElk } from '../../components/elk'
 import { arrange, type Arrangement } from '../../document/editing/arrange'
 import type { EditNode } from '../../document/editing/model'
-import { openness } from '../../document/editing/opening'
+import { drawnNodes, openness } from '../../document/editing/opening'
 import { zoom, type Size } from '../../document/geometry'
 import { draftOf, scopeOf, setOpensByItself, useEditor } from './store'
+import type { LayoutCall } from '../../document/layout'
+import { layOutRoughly } from '../../document/roughLayout'
 import type { DrawnInput } from './elements'
 
 const ROWS = [1, 1.4, 1.9, 2.6, 3.6]
 /** The least zoom at which names can be read. */
 const READABLE = 0.55
+/** For an overview, which is seen from far away. */
+const WIDE_ROWS = [...ROWS, 5, 7, 10, 14]
+/** With more nodes than this the engine is asked once, for what is best by a rough look. */
+const SOME = 40
+/** From here on it is an overview. */
+const MANY = 300
 
 export interface Arranged extends DrawnInput {
   /** Another one than before: what fills the canvas was changed, not only edited. */
@@ -33,7 +41,7 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
   const [arranged, setArranged] = useState<Arranged>()
   const [problem, setProblem] = useState('')
   // Chosen once for what fills the canvas, so that an edit does not move everything.
-  const chosen = useRef<Chosen & { scope: string }>(undefined)
+  const chosen = useRef<Chosen & { scope: string; isMany: boolean }>(undefined)
   const measured = pane !== undefined
 
   useEffect(() => {
@@ -41,26 +49,27 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
     let current = true
     const declared = declaredOutcomes(root, outcomes ?? [])
     async function run(whole: EditNode, filling: EditNode, area: Size): Promise<void> {
-      const call = await loadElk()
-      const laidOut = async ({ limit, opens }: Chosen) => {
+      const begun = performance.now()
+      const laidOut = async ({ limit, opens }: Chosen, call: LayoutCall) => {
         const isOpen = openness(filling, opened, opens)
-        return {
-          limit,
-          opens,
-          isOpen,
-          arrangement: await arrange(filling, { isOpen, declared, rowLimit: limit, call }),
-        }
+        const arrangement = await arrange(filling, { isOpen, declared, rowLimit: limit, call })
+        return { limit, opens, isOpen, arrangement }
       }
-      const known = chosen.current?.scope === filling.path ? chosen.current : undefined
-      const widths = ROWS.map((factor) => factor * area.width)
-      const all = await Promise.all((known ? [known] : widths.map((limit) => ({ limit, opens: true }))).map(laidOut))
-      let best = all.reduce(better(area))
+      const drawn = drawnNodes(filling, openness(filling, opened, chosen.current?.opens)).length
+      const first = drawn > SOME ? layOutRoughly : layOutByElk
+      const isMany = drawn > MANY
+      const isSame = chosen.current?.scope === filling.path && chosen.current.isMany === isMany
+      const known = isSame ? chosen.current : undefined
+      const widths = (isMany ? WIDE_ROWS : ROWS).map((factor) => factor * area.width)
+      const bestOf = async (opens: boolean) =>
+        (await Promise.all(widths.map((limit) => laidOut({ limit, opens }, first)))).reduce(better(area))
+      let best = known ? await laidOut(known, layOutByElk) : await bestOf(true)
       // Where everything at once is too small to be read, what is inside is shown on demand.
-      if (!known && zoom(best.arrangement.size, area) < READABLE) {
-        best = (await Promise.all(widths.map((limit) => laidOut({ limit, opens: false })))).reduce(better(area))
-      }
+      if (!known && !isMany && zoom(best.arrangement.size, area) < READABLE) best = await bestOf(false)
+      if (!known && first !== layOutByElk) best = await laidOut(best, layOutByElk)
+      performance.measure('flexcell:layout', { start: begun })
       if (!current) return
-      chosen.current = { scope: filling.path, limit: best.limit, opens: best.opens }
+      chosen.current = { scope: filling.path, limit: best.limit, opens: best.opens, isMany }
       setOpensByItself(best.opens)
       setArranged({
         root: whole,

@@ -4,7 +4,7 @@ import type { Arrangement } from '../../document/editing/arrange'
 import type { Box, Size } from '../../document/geometry'
 import { canvasBoxes } from './canvasPlaces'
 
-const LEAST = 0.08
+export const LEAST = 0.03
 const MOST = 1.1
 /** Above there is room for the tools of a chosen node. */
 const PADDING = { top: '56px', right: '40px', bottom: '36px', left: '40px' } as const

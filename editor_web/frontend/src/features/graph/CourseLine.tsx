@@ -1,16 +1,14 @@
 /** One arrow of a machine along its laid-out course; the one that was followed last is lit. */
 import type { EdgeProps } from '@xyflow/react'
 import { memo } from 'react'
-import { useLive } from '../../api/live'
+import { useNodePart } from '../../api/liveParts'
 import { roundedPath } from '../../document/geometry'
 import type { CourseEdge } from './elements'
 
 export const CourseLine = memo(function CourseLine({ data }: EdgeProps<CourseEdge>) {
   const course = data?.course
-  const taken = useLive((s) => {
-    const [, source = '', outcome = ''] = (course?.id ?? '').split('|')
-    return course !== undefined && s.nodes[course.machine]?.followed === `${source}|${outcome}`
-  })
+  const [, source = '', outcome = ''] = (course?.id ?? '').split('|')
+  const taken = useNodePart(course?.machine ?? '', (live) => live?.followed === `${source}|${outcome}`)
   if (!course) return null
   const state = `${taken ? ' is-taken' : ''}${/fail|error|abort/.test(course.outcome) ? ' is-failure' : ''}`
   return (

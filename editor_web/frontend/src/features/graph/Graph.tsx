@@ -9,20 +9,22 @@ import {
   IconMinus,
   IconPlus,
 } from '@tabler/icons-react'
-import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow } from '@xyflow/react'
-import { useEffect, useMemo, useState, type ReactNode } from 'react'
+import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
+import { useCallback, useEffect, useLayoutEffect, useMemo, useState, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody, NodeLive } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
-import { canvasEdges, canvasNodes, type CanvasNode } from './elements'
+import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
+import { FAR, FarCourses, fromFar, MANY, setFar } from './Far'
 import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useLayout, type Flow, type LaidOut } from './useLayout'
 
-const NODE_TYPES = { leaf: LeafNode, container: ContainerNode, outcome: OutcomeNodeShell }
+const NODE_TYPES = { leaf: fromFar(LeafNode), container: fromFar(ContainerNode), outcome: fromFar(OutcomeNodeShell) }
 const EDGE_TYPES = { course: CourseLine }
+const NO_EDGES: CourseEdge[] = []
 /** Small graphs are not blown up beyond what is read well, more on screens of very high resolution. */
 function fitOptions() {
   return { padding: 0.04, maxZoom: innerWidth > 2400 ? 1.9 : 1.2 }
@@ -121,6 +123,11 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
     [drawn, selected],
   )
 
+  const hasMany = drawn.length > MANY
+  const isFar = useStore((s) => s.transform[2] < FAR) && hasMany
+  useLayoutEffect(() => setFar(isFar), [isFar])
+  useEffect(() => () => setFar(false), [])
+
   useEffect(() => {
     const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
     return () => cancelAnimationFrame(frame)
@@ -130,13 +137,19 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
     if (shown) void fitView({ nodes: [{ id: shown.path }], padding: 0.6, maxZoom: 1, duration: 300 })
   }, [shown, fitView])
 
+  const onNodeClick = useCallback(
+    (_: unknown, node: CanvasNode) => onSelect(node.type === 'outcome' ? undefined : node.id),
+    [onSelect],
+  )
+
   return (
     <ReactFlow
       nodes={nodes}
-      edges={edges}
+      edges={isFar ? NO_EDGES : edges}
+      onlyRenderVisibleElements={hasMany && !isFar}
       nodeTypes={NODE_TYPES}
       edgeTypes={EDGE_TYPES}
-      onNodeClick={(_, node) => onSelect(node.type === 'outcome' ? undefined : node.id)}
+      onNodeClick={onNodeClick}
       onPaneClick={() => onSelect(undefined)}
       onNodesChange={(changes) => {
         const chosen = changes.find((change) => change.type === 'select' && change.selected)
@@ -146,7 +159,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
       nodesConnectable={false}
       edgesFocusable={false}
       deleteKeyCode={null}
-      minZoom={0.1}
+      minZoom={0.03}
       maxZoom={3}
       fitView
       fitViewOptions={fitOptions()}
@@ -154,6 +167,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
       aria-label="Graph of the behavior"
     >
       <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
+      {isFar && <FarCourses courses={laidOut.layout.courses} />}
     </ReactFlow>
   )
 }

@@ -1,12 +1,12 @@
 /** What holds a node: the dots of its breakpoints, its lock, and the words of what it waits for. */
 import { IconLock } from '@tabler/icons-react'
 import { toggleBreakpoint, useBreakpointsAt } from '../../api/breakpoints'
-import { useLive } from '../../api/live'
+import { useHolds } from '../../api/liveParts'
 
 export function Marks({ path }: { path: string }) {
   const points = useBreakpointsAt(path)
-  const isLocked = useLive((s) => s.control?.locks.some((each) => each.path === path) ?? false)
-  const waits = useLive((s) => s.control?.waiting.some((each) => each.path === path) ?? false)
+  const isLocked = useHolds((control) => control?.locks.some((each) => each.path === path) ?? false)
+  const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
   return (
     <>
       {waits && <span className="waiting-ring" />}
@@ -43,8 +43,8 @@ const WORDS: Record<string, string> = { pause: 'paused', lock: 'locked', autonom
 
 /** `paused`, `asks: held`. */
 export function HeldText({ path }: { path: string }) {
-  const words = useLive((s) => {
-    const waiting = s.control?.waiting.find((each) => each.path === path)
+  const words = useHolds((control) => {
+    const waiting = control?.waiting.find((each) => each.path === path)
     if (!waiting) return ''
     const reasons = waiting.reasons.map((reason) => WORDS[reason] ?? 'held').join(', ')
     return waiting.outcome ? `${reasons}: ${waiting.outcome}` : reasons

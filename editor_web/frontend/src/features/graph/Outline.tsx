@@ -1,7 +1,7 @@
 /** The behavior as a tree of text: what the graph shows, for keyboard and screen reader. */
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useMemo, useRef, useState, type KeyboardEvent } from 'react'
-import { useLive } from '../../api/live'
+import { useNodeLive } from '../../api/liveParts'
 import type { GraphNodeBody } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { kindLabel } from '../../document/tree'
@@ -97,7 +97,7 @@ interface OutlineRowProps {
 
 function OutlineRow({ row, isClosed, isSelected, isReachable, onSelect, onToggle, onKeyDown }: OutlineRowProps) {
   const { node, level } = row
-  const live = useLive((s) => s.nodes[node.path])
+  const live = useNodeLive(node.path)
   const status = statusOf(live?.status ?? 'idle')
   const hasChildren = node.children.length > 0
   const Chevron = isClosed ? IconChevronRight : IconChevronDown

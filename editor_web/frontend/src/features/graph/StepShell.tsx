@@ -2,9 +2,10 @@
 import { Handle, Position, type NodeProps } from '@xyflow/react'
 import { IconArrowsSplit2, IconBox, IconFileImport, IconLogout, IconSitemap } from '@tabler/icons-react'
 import { memo } from 'react'
-import { useLive } from '../../api/live'
+import { useNodeLive, useNodePart } from '../../api/liveParts'
 import type { NodeLive } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
+import { GoalLine } from '../../components/GoalLine'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
@@ -18,7 +19,7 @@ const KIND_ICONS: Record<string, typeof IconBox> = {
 }
 
 export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps<StepNode>) {
-  const live = useLive((s) => s.nodes[id])
+  const live = useNodeLive(id)
   const status = statusOf(live?.status ?? 'idle')
   return (
     <div className={`step leaf is-${status}${selected ? ' is-selected' : ''}`} data-status={status}>
@@ -36,6 +37,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
       <div className="step-foot">
         <LiveText live={live} />
         <HeldText path={id} />
+        <GoalLine path={id} />
       </div>
       <Exits data={data} />
     </div>
@@ -43,7 +45,7 @@ export const LeafNode = memo(function LeafNode({ id, data, selected }: NodeProps
 })
 
 export const ContainerNode = memo(function ContainerNode({ id, data, selected }: NodeProps<StepNode>) {
-  const live = useLive((s) => s.nodes[id])
+  const live = useNodeLive(id)
   const status = statusOf(live?.status ?? 'idle')
   const { node } = data
   const Icon = KIND_ICONS[node.kind] ?? IconBox
@@ -80,7 +82,7 @@ export const ContainerNode = memo(function ContainerNode({ id, data, selected }:
 
 /** The ways out that are written here instead of drawn; the one that was taken is lit. */
 function Exits({ data }: { data: StepNode['data'] }) {
-  const followed = useLive((s) => (data.exits.length > 0 ? s.nodes[data.machine]?.followed : undefined))
+  const followed = useNodePart(data.machine, (live) => (data.exits.length > 0 ? live?.followed : undefined))
   if (data.exits.length === 0) return null
   return (
     <div className="exits">
@@ -112,12 +114,9 @@ function LiveText({ live }: { live: NodeLive | undefined }) {
 }
 
 export const OutcomeNodeShell = memo(function OutcomeNodeShell({ data }: NodeProps<OutcomeNode>) {
-  const reached = useLive((s) => {
-    const machine = s.nodes[data.machine]
-    return machine !== undefined && machine.status !== 'active' && machine.outcome === data.outcome
-      ? machine.status
-      : 'idle'
-  })
+  const reached = useNodePart(data.machine, (machine) =>
+    machine !== undefined && machine.status !== 'active' && machine.outcome === data.outcome ? machine.status : 'idle',
+  )
   return (
     <div className={`outcome is-${statusOf(reached)}`}>
       <Ports />

@@ -1,6 +1,7 @@
 /** From a laid-out behavior to the canvas's nodes and edges; what is live is not in them. */
 import { Position, type Edge, type Node } from '@xyflow/react'
 import type { GraphNodeBody } from '../../api/types'
+import type { Size } from '../../document/geometry'
 import { exitsOf, outcomeId, type Course, type Exit } from '../../document/layout'
 import { flatten, isContainer, kindLabel } from '../../document/tree'
 import type { LaidOut } from './useLayout'
@@ -12,20 +13,34 @@ export type CourseEdge = Edge<{ course: Course }, 'course'>
 
 /** All nodes, parents before children. */
 export function canvasNodes({ root, layout }: LaidOut): CanvasNode[] {
-  return flatten(root).flatMap((node) => [step(node, root, layout), ...outcomes(node, layout)])
+  const all = flatten(root)
+  const parents = new Map(all.flatMap((node) => node.children.map((child) => [child, node] as const)))
+  return all.flatMap((node) => [step(node, parents.get(node), layout), ...outcomes(node, layout)])
 }
 
 type Boxes = LaidOut['layout']
 
-function step(node: GraphNodeBody, root: GraphNodeBody, layout: Boxes): StepNode {
-  const parent = parentOf(node, root)
+/** Said beforehand, so that the canvas need not look at each node that it draws. */
+function measured({ width, height }: Size): Pick<CanvasNode, 'width' | 'height' | 'measured' | 'handles'> {
+  const port = { y: height / 2, width: 1, height: 1 }
+  return {
+    width,
+    height,
+    measured: { width, height },
+    handles: [
+      { ...port, type: 'target', position: Position.Left, x: 0 },
+      { ...port, type: 'source', position: Position.Right, x: width - 1 },
+    ],
+  }
+}
+
+function step(node: GraphNodeBody, parent: GraphNodeBody | undefined, layout: Boxes): StepNode {
   const box = layout.boxes.get(node.path) ?? { x: 0, y: 0, ...layout.size }
   return {
     id: node.path,
     type: isContainer(node) ? 'container' : 'leaf',
     position: { x: box.x, y: box.y },
-    width: box.width,
-    height: box.height,
+    ...measured(box),
     data: {
       node,
       isInitial: parent?.initial === node.name,
@@ -49,8 +64,7 @@ function outcomes(node: GraphNodeBody, layout: Boxes): OutcomeNode[] {
         id: outcomeId(node.path, outcome),
         type: 'outcome' as const,
         position: { x: box.x, y: box.y },
-        width: box.width,
-        height: box.height,
+        ...measured(box),
         parentId: node.path,
         selectable: false,
         focusable: false,
@@ -60,10 +74,6 @@ function outcomes(node: GraphNodeBody, layout: Boxes): OutcomeNode[] {
       },
     ]
   })
-}
-
-function parentOf(node: GraphNodeBody, root: GraphNodeBody): GraphNodeBody | undefined {
-  return flatten(root).find((candidate) => candidate.children.includes(node))
 }
 
 /** All arrows. */

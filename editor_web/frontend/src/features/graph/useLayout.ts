@@ -2,8 +2,10 @@
 import { useEffect, useState } from 'react'
 import type { GraphNodeBody } from '../../api/types'
 import { zoom, type Size } from '../../document/geometry'
-import { layOut, type Direction, type Layout, type Style } from '../../document/layout'
-import { loadElk } from '../../components/elk'
+import { layOut, type Direction, type Layout, type LayoutCall, type Style } from '../../document/layout'
+import { layOutRoughly } from '../../document/roughLayout'
+import { flatten } from '../../document/tree'
+import { layOutByElk } from '../../components/elk'
 
 export interface LaidOut {
   readonly root: GraphNodeBody
@@ -24,17 +26,18 @@ export function useLayout(root: GraphNodeBody, flow: Flow, pane: Size | undefine
   useEffect(() => {
     let current = true
     async function run(): Promise<void> {
-      const call = await loadElk()
       const area = pane ?? { width: 1, height: 1 }
+      const begun = performance.now()
+      const isLarge = flatten(root).length > MANY
+      const inStyle = async (style: Style, call: LayoutCall) => ({ root, style, layout: await layOut(root, style, call) })
+      // What is large is laid out once, in the style that is best by a rough look.
       const all = await Promise.all(
-        stylesOf(flow, area).map(async (style) => ({
-          root,
-          direction: style.direction,
-          layout: await layOut(root, style, call),
-        })),
+        stylesOf(flow, area).map((style) => inStyle(style, isLarge ? layOutRoughly : layOutByElk)),
       )
       const best = all.reduce((a, b) => (zoom(b.layout.size, area) > zoom(a.layout.size, area) * 1.05 ? b : a))
-      if (current) setLaidOut(best)
+      const chosen = isLarge ? await inStyle(best.style, layOutByElk) : best
+      performance.measure('flexcell:layout', { start: begun })
+      if (current) setLaidOut({ root, direction: chosen.style.direction, layout: chosen.layout })
     }
     if (measured) {
       run().catch((error: unknown) => current && setProblem(error instanceof Error ? error.message : String(error)))
@@ -47,6 +50,9 @@ export function useLayout(root: GraphNodeBody, flow: Flow, pane: Size | undefine
 
   return { laidOut: laidOut?.root === root ? laidOut : undefined, problem }
 }
+
+/** With more nodes than this the engine is asked once. */
+const MANY = 120
 
 /** Row lengths that are tried, in widths of the pane; a longer row wins where shorter ones gain little. */
 const ROWS = [Infinity, 1, 1.3, 1.6, 2, 2.5, 3.2]

@@ -3,7 +3,7 @@ import { Alert, Collapse, NumberInput, UnstyledButton } from '@mantine/core'
 import { IconAlertCircle, IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { BehaviorBody } from '../../api/types'
-import { ParameterField } from './ParameterField'
+import { ParameterField } from '../../components/ParameterField'
 import { StartOptions } from './StartOptions'
 import { useStart } from './useStart'
 

@@ -1,6 +1,6 @@
 /** One parameter as the input that fits its kind. */
 import { NumberInput, Select, Switch, Textarea, TextInput } from '@mantine/core'
-import { rangeText, type Field } from '../../document/schema'
+import { rangeText, type Field } from '../document/schema'
 
 export interface ParameterFieldProps {
   readonly field: Field
@@ -65,7 +65,7 @@ export function ParameterField({ field, value, problem, onChange }: ParameterFie
       return (
         <Textarea
           {...common}
-          className="mono"
+          classNames={{ input: 'mono' }}
           autosize
           minRows={2}
           value={String(value)}

@@ -1,0 +1,19 @@
+/** Named entries of the cell's store: who changed one last, and what is in it. */
+import { call, post } from './client'
+import type { EntryPage, EntryRow } from './types'
+
+export const entries = {
+  /** The entry with its last change; undefined where there is none. */
+  row: async (kind: string, name: string): Promise<EntryRow | undefined> => {
+    const page = await call<EntryPage>(`/teach/entries?${new URLSearchParams({ kind, text: name }).toString()}`)
+    return page.entries.find((entry) => entry.name === name)
+  },
+  /** For those who may call services. */
+  value: async (kind: string, name: string): Promise<Readonly<Record<string, unknown>>> => {
+    const record = await post<{ readonly value: Readonly<Record<string, unknown>> }>('/bus/call', {
+      address: 'store/read_entry',
+      request: { kind, name },
+    })
+    return record.value
+  },
+}

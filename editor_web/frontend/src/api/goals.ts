@@ -1,0 +1,20 @@
+/** How far the goals of the shown run are, by the node that sent them. */
+import { useEffect, useSyncExternalStore } from 'react'
+import { create } from 'zustand'
+import { useData, type GoalProgress } from './data'
+
+export const useGoals = create<{ readonly goals: Readonly<Record<string, GoalProgress>> }>(() => ({ goals: {} }))
+
+/** Follow the goals of a run while it is under way and the page can be seen; undefined follows none. */
+export function useGoalsOf(run: string | undefined): void {
+  const isVisible = useSyncExternalStore(onVisibility, () => document.visibilityState === 'visible')
+  useData(run && isVisible ? { goals: run } : undefined, (frame) => {
+    if (frame.k === 'goals') useGoals.setState({ goals: frame.goals })
+  })
+  useEffect(() => () => useGoals.setState({ goals: {} }), [run])
+}
+
+function onVisibility(tell: () => void): () => void {
+  document.addEventListener('visibilitychange', tell)
+  return () => document.removeEventListener('visibilitychange', tell)
+}

@@ -1,0 +1,103 @@
+/** The handle at an arm in the 3D view of this page: over a connection of its own, with which it ends.
+ *
+ * The arm follows only while the mouse is down in the view and this page says so, every 50 ms.
+ */
+import { create } from 'zustand'
+import { PAGE } from './shown'
+
+/** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
+export type Way = 'move' | 'push'
+
+interface Gripped {
+  readonly k: 'gripped'
+  readonly arm: string
+  readonly way: Way
+  readonly pulled: boolean
+}
+
+interface Refused {
+  readonly k: 'refused'
+  readonly message: string
+  readonly hint: string
+}
+
+interface GripStore {
+  /** The arm that has a handle; empty for none. */
+  readonly arm: string
+  readonly way: Way
+  readonly pulled: boolean
+  /** Why the last pull did nothing; empty where it did. */
+  readonly refused: string
+}
+
+const NONE: GripStore = { arm: '', way: 'move', pulled: false, refused: '' }
+export const useGrip = create<GripStore>(() => NONE)
+
+const HELD_MS = 50
+
+let socket: WebSocket | undefined
+let holding: ReturnType<typeof setInterval> | undefined
+
+/** Show a handle at this arm's tool, for operators; empty takes it away. */
+export function takeHandle(arm: string, way: Way = 'move'): void {
+  if (!arm) {
+    letGo()
+    socket?.close()
+    socket = undefined
+    useGrip.setState(NONE)
+    return
+  }
+  const send = () => socket?.send(JSON.stringify({ k: 'take', arm, way }))
+  if (socket?.readyState === WebSocket.OPEN) send()
+  else open(send)
+}
+
+/** Watch the mouse in the window of the 3D view; returns how to end it. */
+export function watchHolding(view: Window): () => void {
+  const ended = new AbortController()
+  const { signal } = ended
+  view.addEventListener('pointerdown', hold, { signal, capture: true })
+  for (const kind of ['pointerup', 'pointercancel', 'blur', 'pagehide']) {
+    view.addEventListener(kind, letGo, { signal, capture: true })
+  }
+  document.addEventListener('visibilitychange', () => document.hidden && letGo(), { signal })
+  return () => {
+    letGo()
+    ended.abort()
+  }
+}
+
+function hold(): void {
+  if (socket === undefined) return
+  letGo()
+  const say = () => socket?.readyState === WebSocket.OPEN && socket.send('{"k":"held"}')
+  say()
+  holding = setInterval(say, HELD_MS)
+}
+
+function letGo(): void {
+  clearInterval(holding)
+  holding = undefined
+}
+
+function open(then: () => void): void {
+  socket?.close()
+  const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/cell/grip/${PAGE}`)
+  socket = opened
+  opened.onopen = then
+  opened.onmessage = (message: MessageEvent<string>) => {
+    const news = JSON.parse(message.data) as Gripped | Refused
+    if (news.k === 'refused') {
+      useGrip.setState({ refused: news.hint ? `${news.message}: ${news.hint}` : news.message })
+      return
+    }
+    const { arm, way, pulled } = news
+    useGrip.setState(pulled || arm !== useGrip.getState().arm ? { arm, way, pulled, refused: '' } : { arm, way, pulled })
+  }
+  opened.onclose = () => {
+    if (socket !== opened) return
+    letGo()
+    socket = undefined
+    useGrip.setState(NONE)
+  }
+}

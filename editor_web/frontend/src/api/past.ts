@@ -1,0 +1,69 @@
+/** Past moments in the 3D view of this page: asked for over a connection of their own, which ends with the past. */
+import { create } from 'zustand'
+import { PAGE } from './shown'
+
+/** What the 3D view shows: a run at a time of it, recorded from and until; or `problem`, and so the present. */
+export interface PastState {
+  readonly run: string
+  readonly time_s: number
+  readonly from_s: number
+  readonly until_s: number
+  readonly problem: string
+}
+
+interface PastStore {
+  /** What was asked for; null for the present. */
+  readonly wanted: { readonly run: string; readonly time_s: number } | null
+  /** What the server has drawn last of it. */
+  readonly shown: PastState | null
+}
+
+export const usePast = create<PastStore>(() => ({ wanted: null, shown: null }))
+
+const AGAIN_MS = 1000
+
+let socket: WebSocket | undefined
+let again: ReturnType<typeof setTimeout> | undefined
+
+/** Let the 3D view of this page show a run as it was at a time of it; null lets it show the present again. */
+export function showCellAt(run: string, timeS: number | null): void {
+  if (timeS === null) {
+    leave()
+    return
+  }
+  const { wanted, shown } = usePast.getState()
+  const isSameRun = wanted?.run === run
+  usePast.setState({ wanted: { run, time_s: timeS }, shown: isSameRun ? shown : null })
+  // A run that was not recorded has no other moment either.
+  if (isSameRun && shown?.problem) return
+  if (socket === undefined) open()
+  else send()
+}
+
+function leave(): void {
+  clearTimeout(again)
+  socket?.close()
+  socket = undefined
+  usePast.setState({ wanted: null, shown: null })
+}
+
+function open(): void {
+  const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/cell/past/${PAGE}`)
+  socket = opened
+  opened.onopen = send
+  opened.onmessage = (message: MessageEvent<string>) => {
+    const state = JSON.parse(message.data) as PastState
+    if (socket === opened && usePast.getState().wanted?.run === state.run) usePast.setState({ shown: state })
+  }
+  opened.onclose = () => {
+    if (socket !== opened) return
+    socket = undefined
+    usePast.setState({ shown: null })
+    again = setTimeout(() => usePast.getState().wanted && socket === undefined && open(), AGAIN_MS)
+  }
+}
+
+function send(): void {
+  const { wanted } = usePast.getState()
+  if (wanted && socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(wanted))
+}

@@ -1,0 +1,25 @@
+/** The userdata of the moment of the past that is shown. */
+import { useEffect, useState } from 'react'
+import { wordsOf } from './client'
+import { useLive } from './live'
+import { pastApi, runSubject, useTimeline, type PastValues } from './timeline'
+
+/** Undefined while the present is shown; kept up with the cursor, one request at a time. */
+export function usePastValues(run: string | undefined, isShown: boolean): PastValues | undefined {
+  const seq = useLive((s) => s.past?.seq)
+  const opened = useTimeline((s) => s.opened)
+  const [told, setTold] = useState<PastValues>()
+  const [isAsking, setAsking] = useState(false)
+  useEffect(() => setTold(undefined), [run, opened])
+  useEffect(() => {
+    const subject = opened ?? (run ? runSubject(run) : undefined)
+    if (!isShown || seq === undefined || !subject || isAsking || told?.seq === seq) return
+    setAsking(true)
+    pastApi
+      .userdata(subject, seq)
+      .then(setTold, (error: unknown) => setTold({ seq, scopes: {}, problem: wordsOf(error) }))
+      .finally(() => setAsking(false))
+  }, [run, opened, seq, isShown, isAsking, told])
+  // Of another run or time than what was told last, until that has come.
+  return seq === undefined ? undefined : (told ?? { seq, scopes: {}, problem: '' })
+}

@@ -1,0 +1,200 @@
+/** The connection of the page for teaching: what jogs and presses ends with it; and what it asks over HTTP. */
+import { create } from 'zustand'
+import { call, post } from './client'
+import { useLive } from './live'
+import type {
+  ArmCard,
+  ArmCards,
+  ArmNow,
+  ArmsNow,
+  Button,
+  EntriesChanged,
+  EntryPage,
+  Fits,
+  Go,
+  HandNews,
+  Jog,
+  Jogging,
+  LookAt,
+  PlayBody,
+  Played,
+  PushBody,
+  Refused,
+  Rest,
+  TeachStatus,
+  Trigger,
+} from './types'
+
+type FromServer = ArmCards | ArmsNow | HandNews | EntriesChanged | Jogging | Refused
+type ToServer = Jog | Go | Rest | Button | LookAt
+
+export interface TeachStore {
+  readonly isOpen: boolean
+  /** Undefined until the server has told. */
+  readonly arms: readonly ArmCard[] | undefined
+  readonly canPush: boolean
+  readonly now: Readonly<Record<string, ArmNow>>
+  /** Null where there is no Helping Hand, undefined until told. */
+  readonly hand: TeachStatus | null | undefined
+  /** Counts changes of the store. */
+  readonly entries: number
+  /** The arm that this page jogs. */
+  readonly jogging: string
+  readonly heldBy: string
+  readonly refused: Readonly<Partial<Record<Refused['what'], Refused>>>
+}
+
+const NOTHING: TeachStore = {
+  isOpen: false,
+  arms: undefined,
+  canPush: false,
+  now: {},
+  hand: undefined,
+  entries: 0,
+  jogging: '',
+  heldBy: '',
+  refused: {},
+}
+
+export const useTeach = create<TeachStore>(() => NOTHING)
+
+const RETRY_MS = 1000
+let socket: WebSocket | undefined
+
+/** Say something to the server; nothing while it is not connected. */
+export function tellServer(message: ToServer): void {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message))
+}
+
+/** Take the words of a refusal away. */
+export function forgiveTeach(what: Refused['what']): void {
+  const { [what]: _, ...others } = useTeach.getState().refused
+  useTeach.setState({ refused: others })
+}
+
+/** Open the connection and keep it open; returns how to end it. */
+export function connectTeach(): () => void {
+  let ended = false
+  let retry: ReturnType<typeof setTimeout> | undefined
+
+  function open(): void {
+    const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/teach/live`)
+    socket = opened
+    opened.onopen = () => useTeach.setState({ isOpen: true })
+    opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as FromServer)
+    opened.onclose = () => {
+      if (socket !== opened) return
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '' })
+      if (!ended) retry = setTimeout(open, RETRY_MS)
+    }
+  }
+
+  open()
+  return () => {
+    ended = true
+    clearTimeout(retry)
+    socket?.close()
+    socket = undefined
+    useTeach.setState(NOTHING)
+  }
+}
+
+function take(message: FromServer): void {
+  const before = useTeach.getState()
+  switch (message.k) {
+    case 'arms':
+      useTeach.setState({ arms: message.arms, canPush: message.can_push })
+      break
+    case 'now':
+      useTeach.setState({ now: { ...before.now, ...message.arms } })
+      break
+    case 'hand':
+      useTeach.setState({ hand: message.status })
+      break
+    case 'entries':
+      useTeach.setState({ entries: before.entries + 1 })
+      break
+    case 'jogging':
+      useTeach.setState({ jogging: message.arm, heldBy: message.held_by })
+      break
+    case 'refused':
+      useTeach.setState({ refused: { ...before.refused, [message.what]: message } })
+  }
+}
+
+/** Why nothing can be commanded now; undefined where it can. */
+export function useObstacle(): string | undefined {
+  const isOpen = useTeach((s) => s.isOpen)
+  const role = useLive((s) => s.role)
+  if (!isOpen) return 'the server does not answer'
+  return role === 'operator' ? undefined : 'you may look only; log in with the operator token'
+}
+
+/** Names an entry, or a capture by its number. */
+export interface Reference {
+  readonly kind: string
+  readonly name: string
+  readonly capture: number
+}
+
+/** One change of an entry. */
+export interface EntryChange {
+  readonly revision: number
+  readonly deleted: boolean
+  readonly tags: readonly string[]
+  readonly by: string
+  readonly reason: string
+  readonly changed_unix_ms: number
+}
+
+export interface TriggerDocument {
+  readonly file: string
+  readonly text: string
+}
+
+interface GoalEnd {
+  readonly status: string
+  readonly cause: unknown
+}
+
+function ask<T>(address: string, request: unknown): Promise<T> {
+  return post<T>('/bus/call', { address, request })
+}
+
+function query(fields: Readonly<Record<string, string | number>>): string {
+  return new URLSearchParams(Object.entries(fields).map(([name, value]) => [name, String(value)])).toString()
+}
+
+function aborted<T>(path: string, body: unknown, signal: AbortSignal): Promise<T> {
+  const headers = { 'content-type': 'application/json', accept: 'application/json' }
+  return call<T>(path, { method: 'POST', headers, body: JSON.stringify(body), signal })
+}
+
+export interface SaveRequest {
+  readonly id: number
+  readonly name: string
+  readonly form: string
+  readonly tags: readonly string[]
+  readonly replace: boolean
+  readonly by: string
+  readonly reason: string
+}
+
+export const teach = {
+  entries: (kind: string, text: string) => call<EntryPage>(`/teach/entries?${query({ kind, text })}`),
+  fits: (arm: string, what: Reference) => call<Fits>(`/teach/fits?${query({ arm, ...what })}`),
+  now: (robot: string, callback: Trigger['trig_callback'], pressed = true) =>
+    ask<TeachStatus>('teach/teach_now', { robot, callback, pressed }),
+  save: (body: SaveRequest) => ask<unknown>('teach/save_capture', body),
+  discard: (id: number) => ask<TeachStatus>('teach/discard_capture', { id }),
+  setTriggers: (triggers: readonly Trigger[]) => ask<TeachStatus>('teach/set_triggers', { triggers }),
+  document: () => ask<TriggerDocument>('teach/read_trigger_document', {}),
+  writeDocument: (text: string) => ask<TeachStatus>('teach/write_trigger_document', { text }),
+  history: (kind: string, name: string) => ask<{ readonly changes: readonly EntryChange[] }>('store/read_history', { kind, name }),
+  undo: (kind: string, name: string) => ask<unknown>('store/undo_entry', { kind, name, by: 'the dashboard', reason: 'undone' }),
+  remove: (kind: string, name: string) => ask<unknown>('store/delete_entry', { kind, name, by: 'the dashboard', reason: 'deleted' }),
+  /** Ends when the arm rests, also when it is aborted. */
+  play: (body: PlayBody, signal: AbortSignal) => aborted<Played>('/teach/play', body, signal),
+  goal: (address: string, request: unknown, signal: AbortSignal) => aborted<GoalEnd>('/bus/goal', { address, request }, signal),
+  push: (body: PushBody) => post<void>('/teach/push', body),
+}

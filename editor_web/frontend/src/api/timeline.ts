@@ -1,0 +1,194 @@
+/** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
+import { create } from 'zustand'
+import { nextMoment } from '../document/timelineMoment'
+import { withTimeline, type Course } from '../document/timeline'
+import { call, idPath, wordsOf } from './client'
+import type { ScopeLine } from './data'
+import { showMoment, useLive } from './live'
+import { showCellAt } from './past'
+import type { Failure, Moment, OpenedPastBody, PastRunsBody, RecordingBody, Timeline } from './types'
+
+/** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
+export interface Subject {
+  /** Below `/api/v1`. */
+  readonly address: string
+  readonly run: string
+  /** What the 3D view shows it from: the run, or the path of its recording. */
+  readonly recorded: string
+  /** There is no present to go back to. */
+  readonly isPast: boolean
+}
+
+export function runSubject(run: string, isPast = false): Subject {
+  return { address: `/runs/${encodeURIComponent(run)}`, run, recorded: run, isPast }
+}
+
+export function recordingSubject(path: string, run: string): Subject {
+  return { address: `/recordings/${idPath(path)}`, run, recorded: path, isPast: true }
+}
+
+/** The userdata of a moment. */
+export interface PastValues {
+  readonly seq: number
+  readonly scopes: Readonly<Record<string, ScopeLine>>
+  readonly problem: string
+}
+
+export interface PastQuery {
+  readonly text: string
+  readonly kind: string
+  /** Of the wall clock, seconds since 1970. */
+  readonly sinceS: number | undefined
+  readonly untilS: number | undefined
+  readonly limit: number
+}
+
+export const pastApi = {
+  runs: ({ text, kind, sinceS, untilS, limit }: PastQuery) =>
+    call<PastRunsBody>(`/past-runs?${query({ text, kind, since_s: sinceS, until_s: untilS, limit })}`),
+  recordings: () => call<readonly RecordingBody[]>('/recordings'),
+  openRun: (run: string) => call<OpenedPastBody>(`/runs/${encodeURIComponent(run)}/past`),
+  openRecording: (path: string) => call<OpenedPastBody>(`/recordings/${idPath(path)}`),
+  timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
+    call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
+  userdata: (subject: Subject, seq: number) => call<PastValues>(`${subject.address}/userdata?${query({ seq })}`),
+  failure: (subject: Subject) => call<Failure | null>(`${subject.address}/failure`),
+}
+
+function query(values: Readonly<Record<string, string | number | undefined>>): string {
+  return new URLSearchParams(
+    Object.entries(values).flatMap(([key, value]) => (value === undefined || value === '' ? [] : [[key, String(value)]])),
+  ).toString()
+}
+
+interface TimelineStore {
+  /** What is looked at, where it is not simply the run that the page shows. */
+  readonly opened: Subject | undefined
+  readonly course: Course | undefined
+  readonly problem: string
+  /** Where the cursor is; undefined at the present. */
+  readonly timeS: number | undefined
+  readonly isPlaying: boolean
+  /** Times as fast as the run was. */
+  readonly speed: number
+}
+
+export const SPEEDS = [0.25, 0.5, 1, 2, 4, 8] as const
+
+export const useTimeline = create<TimelineStore>(() => ({
+  opened: undefined,
+  course: undefined,
+  problem: '',
+  timeS: undefined,
+  isPlaying: false,
+  speed: 1,
+}))
+
+/** Look at a past run or a recording until this is undone. */
+export function openSubject(opened: Subject): () => void {
+  leave(opened)
+  useTimeline.setState({ opened })
+  void lookAt(opened, { seq: undefined, timeS: undefined })
+  return () => {
+    leave(opened)
+    useTimeline.setState({ opened: undefined })
+  }
+}
+
+/** Ask for what is new of the timeline. */
+export async function refresh(subject: Subject): Promise<void> {
+  const before = useTimeline.getState().course
+  const known = before?.run === subject.run ? before : undefined
+  try {
+    const told = await pastApi.timeline(subject, known && !known.merged ? known.seq : 0)
+    useTimeline.setState(({ course }) => ({ course: course === before ? withTimeline(known, told) : course, problem: '' }))
+  } catch (error) {
+    useTimeline.setState({ problem: wordsOf(error) })
+  }
+}
+
+/** Forget the timeline of another run. */
+export function forget(): void {
+  useTimeline.setState({ course: undefined, problem: '' })
+}
+
+/** At most that often a moment is asked for, and one at a time: the newest wish counts. */
+const APART_MS = 50
+
+interface Wish {
+  readonly timeS: number | undefined
+  readonly seq: number | undefined
+}
+
+let hasCell = false
+
+/** Whether this server has a 3D view that can show the past. */
+export function servesCell(isServed: boolean): void {
+  hasCell = isServed
+}
+
+let wished: Wish | undefined
+let wishedOf: Subject | undefined
+let isAsking = false
+
+/** Go to a time of the run's clock. */
+export function seek(subject: Subject, timeS: number): void {
+  useTimeline.setState({ timeS })
+  void lookAt(subject, { timeS, seq: undefined })
+}
+
+/** Go to the moment right after an event. */
+export function seekEvent(subject: Subject, event: { readonly seq: number; readonly time_s: number }): void {
+  useTimeline.setState({ timeS: event.time_s, isPlaying: false })
+  void lookAt(subject, { timeS: undefined, seq: event.seq })
+}
+
+/** Show the present again; of a past run, its end. */
+export function backToPresent(subject: Subject): void {
+  if (!subject.isPast) {
+    leave(subject)
+    return
+  }
+  useTimeline.setState({ timeS: undefined, isPlaying: false })
+  void lookAt(subject, { timeS: undefined, seq: undefined })
+}
+
+/** Show no past any more. */
+export function leave(subject: Subject): void {
+  wished = undefined
+  wishedOf = undefined
+  useTimeline.setState({ timeS: undefined, isPlaying: false })
+  showMoment(undefined)
+  if (hasCell) showCellAt(subject.recorded, null)
+}
+
+async function lookAt(subject: Subject, wish: Wish): Promise<void> {
+  wished = wish
+  wishedOf = subject
+  if (isAsking) return
+  isAsking = true
+  while (wished !== undefined) {
+    const next: Wish = wished
+    const of: Subject = wishedOf
+    wished = undefined
+    const pause = new Promise((resolve) => setTimeout(resolve, APART_MS))
+    await show(of, next)
+    if (wished !== undefined) await pause
+  }
+  isAsking = false
+}
+
+async function show(subject: Subject, { timeS, seq }: Wish): Promise<void> {
+  const before = useLive.getState().past
+  try {
+    const told = await call<Moment | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
+    // Meanwhile somebody may have gone back to the present, or to another run.
+    if (wishedOf?.address !== subject.address) return
+    const at = timeS ?? told?.time_s ?? before?.timeS ?? 0
+    const moment = told ? nextMoment(before, told, at) : before && { ...before, timeS: at }
+    showMoment(moment)
+    if (hasCell) showCellAt(subject.recorded, at)
+  } catch (error) {
+    useTimeline.setState({ problem: wordsOf(error) })
+  }
+}

@@ -1,0 +1,28 @@
+/** Runs of the shown behavior whose engine died, offered on top of its page. */
+import { api } from '../api/client'
+import { useLive } from '../api/live'
+import { Interrupted } from '../features/runs/Interrupted'
+import { useFetched } from './useFetched'
+
+export interface InterruptedHereProps {
+  /** Name of the behavior that is shown; all runs where none is. */
+  readonly behavior?: string | undefined
+  readonly onResumed: (run: string) => void
+}
+
+export function InterruptedHere({ behavior, onResumed }: InterruptedHereProps) {
+  // A resumed run is one more run of this server.
+  const count = useLive((s) => s.runs.length)
+  const role = useLive((s) => s.role)
+  const isConnected = useLive((s) => s.connection === 'live')
+  const interrupted = useFetched('interrupted', api.interrupted, count)
+  const runs = (interrupted.value ?? []).filter((run) => behavior === undefined || run.behavior === behavior)
+  if (runs.length === 0) return null
+  const obstacle = role === 'operator' ? undefined : 'you may look only; log in with the operator token'
+  return (
+    <section aria-label="Interrupted runs" className="interrupted-area">
+      <h2>Interrupted runs</h2>
+      <Interrupted runs={runs} obstacle={isConnected ? obstacle : 'the server does not answer'} onResumed={onResumed} />
+    </section>
+  )
+}

@@ -1,0 +1,120 @@
+/** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
+import { useEffect, useMemo, useState } from 'react'
+import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
+import type { OpenedPastBody, RunLine, SessionBody } from '../api/types'
+import { Empty } from '../components/Empty'
+import { OpenedTabs } from '../components/OpenedTabs'
+import { Panel } from '../components/Panel'
+import { StatusBadge } from '../components/StatusBadge'
+import { duration, wallTime } from '../document/time'
+import { nodeAt } from '../document/tree'
+import { CellFrame } from '../features/cell/CellFrame'
+import { Graph, type Shown } from '../features/graph/Graph'
+import { Outline } from '../features/graph/Outline'
+import { Selection } from '../features/graph/Selection'
+import { PastLine } from '../features/timeline/PastLine'
+import { Breadcrumb } from './Breadcrumb'
+import { pastBodies } from './dock'
+import { useFetched } from './useFetched'
+import { Wide } from './WorkSpace'
+
+export interface PastPageProps {
+  /** The run, or the path of the recording. */
+  readonly id: string
+  readonly isRecording: boolean
+  readonly session: SessionBody | undefined
+  readonly isNarrow: boolean
+  readonly onAll: () => void
+}
+
+export function PastPage(props: PastPageProps) {
+  const { id, isRecording } = props
+  const fetched = useFetched(`${isRecording} ${id}`, () => (isRecording ? pastApi.openRecording(id) : pastApi.openRun(id)))
+  if (fetched.problem) {
+    return (
+      <Empty title={isRecording ? 'This recording cannot be opened' : 'This run cannot be opened'}>
+        {fetched.problem}
+        <br />
+        <button type="button" className="link" onClick={props.onAll}>
+          All past runs
+        </button>
+      </Empty>
+    )
+  }
+  if (!fetched.value) return <div className="page-wait" role="status" aria-label="Loading" />
+  return <Opened {...props} opened={fetched.value} />
+}
+
+function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageProps & { opened: OpenedPastBody }) {
+  const { behavior } = opened
+  const [selected, setSelected] = useState<string>()
+  const [shown, setShown] = useState<Shown>()
+  const run = useMemo(() => lineOf(opened), [opened])
+  const runId = opened.run.id
+  const isOpen = useTimeline((s) => s.opened !== undefined)
+  const node = behavior.graph && selected ? nodeAt(behavior.graph, selected) : undefined
+
+  useEffect(() => openSubject(isRecording ? recordingSubject(id, runId) : runSubject(id, true)), [id, isRecording, runId])
+
+  // What stands in the page asks for the timeline of what is opened.
+  if (!isOpen) return null
+
+  function show(path: string): void {
+    setSelected(path)
+    setShown({ path })
+  }
+
+  const graph = behavior.graph ? (
+    <Graph root={behavior.graph} selected={selected} onSelect={setSelected} shown={shown} breadcrumb={<Breadcrumb selected={selected} onSelect={show} />} />
+  ) : (
+    <Panel title="Graph">
+      <Empty title="There is no graph to draw">Nothing tells which behavior was executed; its events are below.</Empty>
+    </Panel>
+  )
+  const cell = (
+    <Panel title="Cell" className="cell-panel">
+      <CellFrame isServed={session?.has_cell_view ?? false} />
+    </Panel>
+  )
+  const outline = (
+    <div className="tab-body is-flush">
+      {behavior.graph && <Outline root={behavior.graph} selected={selected} onSelect={show} />}
+      {node && <Selection node={node} />}
+    </div>
+  )
+  const dock = pastBodies({ behavior, run, node: selected, session, onShow: show }, opened.run.failed)
+  return (
+    <div className="behavior-page">
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>{behavior.name || opened.run.behavior}</h1>
+          <p className="quiet">
+            {isRecording ? `Recording ${id}` : 'Past run'} of {wallTime(run.started_at_s)}, {duration(run.duration_s)}, read-only
+          </p>
+        </div>
+        <StatusBadge status={run.status === 'running' ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+        {run.cause && (
+          <span className="page-cause" title={run.cause}>
+            {run.cause}
+          </span>
+        )}
+        <span className="spacer" />
+        <button type="button" className="command" onClick={onAll}>
+          <span className="command-label">All past runs</span>
+        </button>
+      </header>
+      <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
+      {isNarrow ? (
+        <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock, Graph: graph, Cell: cell, Outline: outline }} />
+      ) : (
+        <Wide graph={graph} log={<OpenedTabs label="Below the graph" bodies={dock} className="dock" />} cell={cell} tabs={<Panel title="Outline">{outline}</Panel>} below={40} />
+      )}
+    </div>
+  )
+}
+
+/** The run as a line of the list of runs; what has no end is not under way here. */
+function lineOf({ run, behavior }: OpenedPastBody): RunLine {
+  const { id, status, outcome, success, cause, started_at_s, duration_s } = run
+  return { id, behavior: behavior.id, status: status === 'running' ? 'interrupted' : status, outcome, success, cause, started_at_s, duration_s, waits: '' }
+}

@@ -1,0 +1,100 @@
+/** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
+import { useEffect, useState } from 'react'
+import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { connectTeach, useTeach } from '../api/teaching'
+import type { ArmCard, SessionBody } from '../api/types'
+import { Empty } from '../components/Empty'
+import { OpenedTabs } from '../components/OpenedTabs'
+import { Panel } from '../components/Panel'
+import { CellFrame } from '../features/cell/CellFrame'
+import { HandleMenu } from '../features/cell/HandleMenu'
+import { ShowMenu } from '../features/cell/ShowMenu'
+import { RobotStrip } from '../features/robots/RobotStrip'
+import { StopCell } from '../features/robots/StopCell'
+import { ArmHead } from '../features/teaching/ArmHead'
+import { ButtonPanel } from '../features/teaching/ButtonPanel'
+import { CaptureList } from '../features/teaching/CaptureList'
+import { EntryList } from '../features/teaching/EntryList'
+import { JogPanel } from '../features/teaching/JogPanel'
+import { LeadPanel } from '../features/teaching/LeadPanel'
+import '../features/teaching/styles/teaching.css'
+import { TriggerTable } from '../features/teaching/TriggerTable'
+import { useButtons } from '../features/teaching/useButtons'
+
+interface TeachPageProps {
+  readonly session: SessionBody | undefined
+  readonly isNarrow: boolean
+}
+
+export function TeachPage({ session, isNarrow }: TeachPageProps) {
+  const arms = useTeach((s) => s.arms)
+  const [chosen, setChosen] = useState('')
+  useEffect(connectTeach, [])
+  useButtons()
+  const arm = arms?.find((each) => each.name === chosen) ?? arms?.[0]
+  const cell = (
+    <Panel
+      title="Cell"
+      className="cell-panel teach-cell"
+      tools={
+        <>
+          <span className="spacer" />
+          {session?.has_cell_view && <ShowMenu />}
+          {session?.has_cell_view && session.role === 'operator' && <HandleMenu />}
+          {session?.role === 'operator' && <StopCell />}
+        </>
+      }
+      foot={<RobotStrip />}
+    >
+      <CellFrame isServed={session?.has_cell_view ?? false} />
+    </Panel>
+  )
+  return (
+    <div className="teach">
+      <h1 className="visually-hidden">Teach</h1>
+      {arms === undefined ? (
+        <div className="page-wait" role="status" aria-label="Loading" />
+      ) : arm === undefined ? (
+        <Empty title="No arm to teach">Serve a cell with arms: flexcell serve --cell behaviors/cells/dual_panda.yaml</Empty>
+      ) : (
+        <>
+          <ArmHead arms={arms} arm={arm} onArm={setChosen} />
+          {isNarrow ? (
+            <div className="teach-work">
+              {cell}
+              <Tabs arms={arms} arm={arm} />
+            </div>
+          ) : (
+            <Group orientation="horizontal" className="teach-work">
+              <Pane id="teach-cell" defaultSize="56%" minSize="25%">
+                {cell}
+              </Pane>
+              <Separator className="splitter" aria-label="Width of the cell" />
+              <Pane id="teach-tabs" defaultSize="44%" minSize="30%">
+                <Tabs arms={arms} arm={arm} />
+              </Pane>
+            </Group>
+          )}
+        </>
+      )}
+    </div>
+  )
+}
+
+function Tabs({ arms, arm }: { readonly arms: readonly ArmCard[]; readonly arm: ArmCard }) {
+  const names = arms.map((each) => each.name)
+  const bodies = {
+    Move: (
+      <>
+        <JogPanel key={arm.name} arm={arm} />
+        <LeadPanel key={`lead ${arm.name}`} arm={arm} />
+      </>
+    ),
+    Captures: <CaptureList arm={arm.name} />,
+    Entries: <EntryList arm={arm.name} />,
+    Triggers: <TriggerTable arms={names} />,
+    Buttons: <ButtonPanel />,
+  }
+  const shown = Object.fromEntries(Object.entries(bodies).map(([name, body]) => [name, <div key={name} className="teach-body">{body}</div>]))
+  return <OpenedTabs label="Teaching" bodies={shown} />
+}

@@ -1,0 +1,62 @@
+/** Any JSON value as a tree to unfold; short values stand on one line. */
+import './valueTree.css'
+import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
+import { memo, useState } from 'react'
+import { inShort, isShort } from '../document/values'
+
+interface ValueTreeProps {
+  readonly label: string
+  readonly value: unknown
+  /** Levels that are unfolded at first. */
+  readonly open?: number
+}
+
+export const ValueTree = memo(function ValueTree({ label, value, open = 1 }: ValueTreeProps) {
+  return (
+    <ul className="value-tree" aria-label={label}>
+      {isShort(value) ? (
+        <li className="value-line">
+          <Short value={value} />
+        </li>
+      ) : (
+        <Parts value={value} open={open} />
+      )}
+    </ul>
+  )
+})
+
+function Parts({ value, open }: { value: unknown; open: number }) {
+  const parts = Array.isArray(value) ? value.map((each, index) => [String(index), each] as const) : Object.entries(value as object)
+  return parts.map(([name, part]) => <Part key={name} name={name} value={part as unknown} open={open} />)
+}
+
+function Part({ name, value, open }: { name: string; value: unknown; open: number }) {
+  const [isOpen, setOpen] = useState(open > 0)
+  if (isShort(value)) {
+    return (
+      <li className="value-line">
+        <span className="value-name">{name}</span>
+        <Short value={value} />
+      </li>
+    )
+  }
+  const Chevron = isOpen ? IconChevronDown : IconChevronRight
+  return (
+    <li>
+      <button type="button" className="value-fold" aria-expanded={isOpen} onClick={() => setOpen(!isOpen)}>
+        <Chevron size={12} aria-hidden />
+        <span className="value-name">{name}</span>
+        {!isOpen && <span className="quiet">{inShort(value)}</span>}
+      </button>
+      {isOpen && (
+        <ul>
+          <Parts value={value} open={open - 1} />
+        </ul>
+      )}
+    </li>
+  )
+}
+
+function Short({ value }: { value: unknown }) {
+  return <span className={`value is-${value === null ? 'null' : typeof value}`}>{inShort(value)}</span>
+}

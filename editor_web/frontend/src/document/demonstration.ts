@@ -1,0 +1,72 @@
+/** The steps that a behavior is proposed from: taught entries in their order, and actions of the tool. Pure. */
+import type { DecidedStepBody, EntryBody, TaughtStepBody } from '../api/types'
+
+export type Role = DecidedStepBody['role']
+export type Kind = TaughtStepBody['kind']
+
+export interface Step {
+  /** Tells two steps of the same entry apart. */
+  readonly key: number
+  readonly kind: Kind
+  readonly name: string
+  /** Chosen by a person; guessed otherwise. */
+  readonly role?: Role
+  /** What a grasp takes, chosen by a person; empty for something without a name. */
+  readonly part?: string
+}
+
+export const ROLE_WORDS: Readonly<Record<Role, string>> = {
+  via: 'Move there',
+  approach: 'Approach',
+  grasp: 'Grasp',
+  release: 'Release',
+  depart: 'Depart',
+  follow: 'Follow',
+  open: 'Open',
+  close: 'Close',
+}
+
+export const KIND_WORDS: Readonly<Record<Kind, string>> = {
+  joints: 'joints',
+  pose: 'pose',
+  trajectory: 'recording',
+  dmp: 'motion',
+  cart_dmp: 'tool motion',
+  gripper: 'gripper',
+  action: 'gripper',
+}
+
+const PLACES: readonly Role[] = ['via', 'approach', 'grasp', 'release', 'depart']
+
+/** What a step of this kind can be for. */
+export function rolesOf(kind: Kind): readonly Role[] {
+  if (kind === 'joints' || kind === 'pose') return PLACES
+  return kind === 'gripper' || kind === 'action' ? ['open', 'close'] : ['follow']
+}
+
+/** The entries that a motion can be made of. */
+export function teachable(entries: readonly EntryBody[]): readonly (EntryBody & { kind: Kind })[] {
+  return entries.filter((entry): entry is EntryBody & { kind: Kind } => entry.kind in KIND_WORDS)
+}
+
+export function added(steps: readonly Step[], kind: Kind, name: string): readonly Step[] {
+  return [...steps, { key: 1 + Math.max(0, ...steps.map((step) => step.key)), kind, name }]
+}
+
+/** With the step at `index` as many places further on. */
+export function moved(steps: readonly Step[], index: number, by: number): readonly Step[] {
+  const target = index + by
+  const step = steps[index]
+  if (!step || target < 0 || target >= steps.length) return steps
+  const rest = steps.filter((_, each) => each !== index)
+  return [...rest.slice(0, target), step, ...rest.slice(target)]
+}
+
+export function bodyOf({ kind, name, role, part }: Step): TaughtStepBody {
+  return { kind, name, ...(role ? { role } : {}), ...(part === undefined ? {} : { part }) }
+}
+
+/** Whether a step takes something: a grasp, or the tool that closes with no grasp before it. */
+export function takes(step: DecidedStepBody, before: DecidedStepBody | undefined): boolean {
+  return step.role === 'grasp' || (step.role === 'close' && before?.role !== 'grasp')
+}

@@ -1,0 +1,56 @@
+/** The userdata of a run as it is shown: scopes merged from what has changed, searched, named. Pure. */
+import { inShort } from './values'
+
+interface Line {
+  readonly value: unknown
+  readonly by: string
+  readonly at_s: number
+  readonly writes: number
+}
+
+export interface Scope {
+  readonly is_open: boolean
+  readonly since_s: number
+  readonly values: Readonly<Record<string, Line>>
+}
+
+export type Scopes = Readonly<Record<string, Scope>>
+
+/** Scopes with what has changed in them; null takes one away. */
+export function withChanges(before: Scopes, changes: Readonly<Record<string, Scope | null>>, isAll: boolean): Scopes {
+  const merged = isAll ? { ...changes } : { ...before, ...changes }
+  return Object.fromEntries(Object.entries(merged).filter((entry): entry is [string, Scope] => entry[1] !== null))
+}
+
+export interface ScopeShown {
+  readonly path: string
+  readonly name: string
+  readonly isOpen: boolean
+  readonly lines: readonly (Line & { readonly key: string })[]
+}
+
+/** The scopes that have values, or values that match; those of active containers first, each in the order of its path. */
+export function shownScopes(scopes: Scopes, search: string): readonly ScopeShown[] {
+  const words = search.toLowerCase().split(/\s+/).filter(Boolean)
+  const shown = Object.entries(scopes).map(([path, scope]) => ({
+    path,
+    name: scopeName(path),
+    isOpen: scope.is_open,
+    lines: Object.entries(scope.values)
+      .map(([key, line]) => ({ key, ...line }))
+      .filter((line) => {
+        const text = `${path} ${line.key} ${inShort(line.value)} ${line.by}`.toLowerCase()
+        return words.every((word) => text.includes(word))
+      }),
+  }))
+  const withLines = shown.filter((scope) => scope.lines.length > 0)
+  return withLines.sort((a, b) => Number(b.isOpen) - Number(a.isOpen) || (a.path < b.path ? -1 : 1))
+}
+
+/** `Behavior`, `root/inner`, `root/loop, round 3`, `root/both/left, not merged yet`. */
+export function scopeName(path: string): string {
+  if (path === '') return 'Behavior'
+  const [container, round] = path.split('#')
+  if (round !== undefined) return `${container}, round ${Number(round) + 1}`
+  return path.endsWith('*') ? `${path.slice(0, -1)}, not merged yet` : path
+}

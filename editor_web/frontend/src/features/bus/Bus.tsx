@@ -1,0 +1,135 @@
+/** The skill bus: topics with their traffic and messages, services, actions and parameters with forms, who holds what. */
+import './bus.css'
+import { CloseButton, SegmentedControl, TextInput } from '@mantine/core'
+import { useElementSize } from '@mantine/hooks'
+import { IconPlugConnected, IconSearch } from '@tabler/icons-react'
+import { useEffect, useMemo, useRef, useState } from 'react'
+import { bus, type BusBoard } from '../../api/bus'
+import { wordsOf } from '../../api/client'
+import { useData, type MessageFrame, type TrafficFrame } from '../../api/data'
+import { Empty } from '../../components/Empty'
+import { Panel } from '../../components/Panel'
+import { useShown } from '../../components/useShown'
+import { found } from '../../document/busTree'
+import { entriesOf, KINDS, type BusKind } from './entries'
+import { EntryList } from './EntryList'
+import { Leases } from './Leases'
+import { ParameterView } from './ParameterView'
+import { leave } from './requests'
+import { SkillView } from './SkillView'
+import { TopicView } from './TopicView'
+
+interface BusProps {
+  readonly session: { readonly role: string } | undefined
+}
+
+export function Bus({ session }: BusProps) {
+  const area = useRef<HTMLDivElement>(null)
+  const isShown = useShown(area)
+  const { ref: toolsRef, width } = useElementSize()
+  const [kind, setKind] = useState<BusKind>('topics')
+  const [search, setSearch] = useState('')
+  const [chosen, setChosen] = useState<Readonly<Partial<Record<BusKind, string>>>>({})
+  const [board, setBoard] = useState<BusBoard>()
+  const [problem, setProblem] = useState('')
+  const [traffic, setTraffic] = useState<TrafficFrame>()
+  const [message, setMessage] = useState<MessageFrame>()
+  const name = chosen[kind]
+  const topic = kind === 'topics' && name ? name : ''
+  const shape = traffic?.shape
+
+  useData(isShown ? { traffic: true, topic } : undefined, (frame) => {
+    if (frame.k === 'traffic') setTraffic(frame)
+    if (frame.k === 'message') setMessage(frame)
+  })
+  useEffect(() => {
+    if (shape === undefined) return
+    bus.board().then(setBoard, (error: unknown) => setProblem(wordsOf(error)))
+  }, [shape])
+
+  // Whoever goes lets the server cancel what was sent.
+  useEffect(() => leave, [])
+
+  const all = useMemo(() => (board ? entriesOf(board, kind) : []), [board, kind])
+  const entries = useMemo(() => found(all, search), [all, search])
+  const mayChange = session?.role === 'operator'
+
+  function choose(entry: string): void {
+    setChosen({ ...chosen, [kind]: entry })
+  }
+
+  const tools = (
+    <div className="bus-tools" ref={toolsRef}>
+      {width === 0 ? null : width > 520 ? (
+        <SegmentedControl size="xs" aria-label="What of the bus" data={KINDS} value={kind} onChange={(value) => setKind(value as BusKind)} />
+      ) : (
+        <select className="bus-kind" aria-label="What of the bus" value={kind} onChange={(event) => setKind(event.currentTarget.value as BusKind)}>
+          {KINDS.map((each) => (
+            <option key={each.value} value={each.value}>
+              {each.label}
+            </option>
+          ))}
+        </select>
+      )}
+      <span className="spacer" />
+      <TextInput
+        size="xs"
+        aria-label="Find on the bus"
+        placeholder="Find"
+        leftSection={<IconSearch size={14} aria-hidden />}
+        rightSection={search && <CloseButton size="xs" aria-label="Clear" onClick={() => setSearch('')} />}
+        value={search}
+        onChange={(event) => setSearch(event.currentTarget.value)}
+        className="bus-find"
+      />
+    </div>
+  )
+
+  function body() {
+    if (problem) return <Empty title="The bus cannot be shown">{problem}</Empty>
+    if (!board) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (kind === 'leases') return <Leases leases={traffic?.leases ?? []} goals={traffic?.goals ?? []} search={search} />
+    if (entries.length === 0) return <NoEntries kind={kind} isFiltered={all.length > 0} />
+    return (
+      <div className={`bus-halves${name ? ' has-choice' : ''}`}>
+        <EntryList key={kind} entries={entries} kind={kind} chosen={name} onChoose={choose} traffic={traffic?.topics} />
+        <div className="bus-detail" role="group" aria-label="What is chosen" tabIndex={0}>
+          {detail(board)}
+        </div>
+      </div>
+    )
+  }
+
+  function detail(known: BusBoard) {
+    if (!name) return <Empty title="Nothing is chosen">Choose one on the left to see what it is, and what it says or takes.</Empty>
+    const shared = { mayChange, onBack: () => setChosen({ ...chosen, [kind]: undefined }) }
+    const facts = known.topics.find((each) => each.name === name)
+    if (kind === 'topics' && facts) {
+      const newest = message?.topic === name ? message : undefined
+      return <TopicView key={name} {...shared} facts={facts} message={newest} traffic={traffic?.topics[name]} />
+    }
+    const parameter = known.parameters.find((each) => each.name === name)
+    if (kind === 'parameters' && parameter) return <ParameterView key={name} {...shared} facts={parameter} />
+    const skill = known.skills.find((each) => each.name === name)
+    if (skill) return <SkillView key={name} {...shared} facts={skill} />
+    return <Empty title={`${name} is not there any more`}>Its device has left the bus.</Empty>
+  }
+
+  return (
+    <Panel title="Bus" tools={tools} className="bus-panel">
+      <div className="bus" ref={area}>
+        {body()}
+      </div>
+    </Panel>
+  )
+}
+
+function NoEntries({ kind, isFiltered }: { kind: BusKind; isFiltered: boolean }) {
+  const icon = <IconPlugConnected size={26} stroke={1.4} aria-hidden />
+  if (isFiltered) return <Empty icon={icon} title="Nothing matches">Clear the search to see everything.</Empty>
+  return (
+    <Empty icon={icon} title={`There are no ${kind}`}>
+      The robots and modules of a cell bring them: serve one with <code>flexcell serve --cell FILE</code>.
+    </Empty>
+  )
+}

@@ -1,0 +1,48 @@
+/** One parameter: what it is for, its value, and the field that sets it. */
+import { Button } from '@mantine/core'
+import { useState } from 'react'
+import { bus, type ParameterFacts } from '../../api/bus'
+import { wordsOf } from '../../api/client'
+import { ValueTree } from '../../components/ValueTree'
+import { valueField } from '../../document/requestForm'
+import { shortName } from '../../document/busTree'
+import { Caution, Detail } from './Detail'
+import { RequestForm } from './RequestForm'
+import { useForm } from './useForm'
+
+interface ParameterViewProps {
+  readonly facts: ParameterFacts
+  readonly mayChange: boolean
+  readonly onBack: () => void
+}
+
+export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) {
+  const name = shortName(facts.name)
+  const form = useForm(() => Promise.resolve([valueField(name, facts.schema, facts.value)]))
+  const [value, setValue] = useState<unknown>(facts.value)
+  const [refusal, setRefusal] = useState('')
+
+  async function set(wanted: unknown): Promise<void> {
+    setRefusal('')
+    await bus.setParameter(facts.name, wanted).then(setValue, (error: unknown) => setRefusal(wordsOf(error)))
+  }
+
+  return (
+    <Detail name={facts.name} type="parameter" doc={facts.doc} onBack={onBack}>
+      <ValueTree label={`Value of ${facts.name}`} value={value} />
+      <Caution mayChange={mayChange} words="This changes at once what the robot does, and may move it." />
+      <RequestForm
+        label={`Set ${facts.name}`}
+        form={form}
+        isOff={!mayChange}
+        onSend={(filled) => void set(filled[name])}
+        refusal={refusal}
+        buttons={
+          <Button type="submit" size="xs" disabled={!mayChange}>
+            Set
+          </Button>
+        }
+      />
+    </Detail>
+  )
+}

@@ -1,0 +1,51 @@
+/** The form of a request or message, made from its JSON Schema, with what was answered or refused below it. */
+import { Alert } from '@mantine/core'
+import { IconAlertCircle } from '@tabler/icons-react'
+import type { ReactNode } from 'react'
+import { ParameterField } from '../../components/ParameterField'
+import type { FormState } from './useForm'
+
+interface RequestFormProps {
+  readonly label: string
+  readonly form: FormState
+  readonly isOff: boolean
+  readonly onSend: (request: Record<string, unknown>) => void
+  readonly refusal: string
+  readonly buttons: ReactNode
+}
+
+export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: RequestFormProps) {
+  if (form.problem) return <p className="is-failed">{form.problem}</p>
+  if (!form.fields) return <div className="page-wait" role="status" aria-label="Loading" />
+  return (
+    <form
+      className="bus-form"
+      aria-label={label}
+      noValidate
+      onSubmit={(event) => {
+        event.preventDefault()
+        const request = isOff ? undefined : form.filled()
+        if (request) onSend(request)
+      }}
+    >
+      <fieldset disabled={isOff}>
+        {form.fields.length === 0 && <p className="quiet">It takes nothing.</p>}
+        {form.fields.map((field) => (
+          <ParameterField
+            key={field.name}
+            field={field}
+            value={form.values[field.name]}
+            problem={form.problems[field.name]}
+            onChange={(value) => form.set(field.name, value)}
+          />
+        ))}
+      </fieldset>
+      <div className="bus-buttons">{buttons}</div>
+      {refusal && (
+        <Alert color="red" variant="light" p="xs" icon={<IconAlertCircle size={16} aria-hidden />} role="alert">
+          {refusal}
+        </Alert>
+      )}
+    </form>
+  )
+}

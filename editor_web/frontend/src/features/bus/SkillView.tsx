@@ -1,0 +1,88 @@
+/** One service or action: what it is for, the form of its request, and its answer or course. */
+import { Button, Progress } from '@mantine/core'
+import { IconPlayerStopFilled, IconSend } from '@tabler/icons-react'
+import { bus, type SkillFacts } from '../../api/bus'
+import { ValueTree } from '../../components/ValueTree'
+import { requestFields } from '../../document/requestForm'
+import { Caution, Detail } from './Detail'
+import { RequestForm } from './RequestForm'
+import { cancel, isOver, send, useRequests, type Course } from './requests'
+import { useForm } from './useForm'
+
+interface SkillViewProps {
+  readonly facts: SkillFacts
+  readonly mayChange: boolean
+  readonly onBack: () => void
+}
+
+export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
+  const form = useForm(async () => requestFields((await bus.requestForm(facts.name)).schema))
+  const course = useRequests((s) => s.courses[facts.name])
+  const isAction = facts.kind === 'action'
+  const isUnderWay = course !== undefined && !isOver(course)
+  return (
+    <Detail name={facts.name} type={`${facts.type} → ${facts.answer}`} doc={facts.doc} onBack={onBack}>
+      <Caution
+        mayChange={mayChange}
+        words={
+          isAction
+            ? 'This may move the robot. The goal is cancelled when you leave this page.'
+            : 'This may change what the robot does, and may move it.'
+        }
+      />
+      <RequestForm
+        label={`Request to ${facts.name}`}
+        form={form}
+        isOff={!mayChange || isUnderWay}
+        onSend={(request) => void send(facts, request)}
+        refusal={course?.status === 'refused' ? course.cause : ''}
+        buttons={
+          <>
+            <Button type="submit" size="xs" disabled={!mayChange || isUnderWay} leftSection={<IconSend size={14} aria-hidden />}>
+              {isAction ? 'Send goal' : 'Call'}
+            </Button>
+            {isUnderWay && isAction && (
+              <Button size="xs" color="red" variant="outline" onClick={() => void cancel(facts.name)} leftSection={<IconPlayerStopFilled size={14} aria-hidden />}>
+                Cancel goal
+              </Button>
+            )}
+          </>
+        }
+      />
+      {course && course.status !== 'refused' && <CourseView course={course} />}
+    </Detail>
+  )
+}
+
+function CourseView({ course }: { course: Course }) {
+  const share = shareOf(course.feedback)
+  return (
+    <div className="bus-course" role="status" aria-label="Course of the request">
+      <p className={`bus-status is-${course.status}`}>
+        {STATUS_WORDS[course.status] ?? course.status}
+        {course.cause && `: ${course.cause}`}
+      </p>
+      {share !== undefined && !isOver(course) && <Progress value={share * 100} size="sm" aria-label="Share of the way" />}
+      {course.feedback != null && !isOver(course) && <ValueTree label="Feedback" value={course.feedback} />}
+      {course.answer != null && <ValueTree label="Answer" value={course.answer} />}
+    </div>
+  )
+}
+
+function shareOf(feedback: unknown): number | undefined {
+  const share = typeof feedback === 'object' && feedback !== null ? (feedback as { progress?: unknown }).progress : undefined
+  return typeof share === 'number' ? Math.min(1, Math.max(0, share)) : undefined
+}
+
+const STATUS_WORDS: Readonly<Record<string, string>> = {
+  sent: 'Sent',
+  pending: 'Waits to be accepted',
+  active: 'Under way',
+  held: 'Held',
+  canceling: 'Comes to rest',
+  succeeded: 'Done',
+  canceled: 'Cancelled, the device is at rest',
+  aborted: 'It failed',
+  rejected: 'It was refused',
+  answered: 'Answered',
+}

@@ -1,0 +1,68 @@
+/** One topic: its traffic, its newest message as it changes, and a form where it takes commands. */
+import { Button } from '@mantine/core'
+import { IconSend } from '@tabler/icons-react'
+import { useState } from 'react'
+import { bus, type TopicFacts } from '../../api/bus'
+import { wordsOf } from '../../api/client'
+import type { MessageFrame, TopicLine } from '../../api/data'
+import { ValueTree } from '../../components/ValueTree'
+import { requestFields } from '../../document/requestForm'
+import { Caution, Detail } from './Detail'
+import { RequestForm } from './RequestForm'
+import { useForm } from './useForm'
+import { ageText, rateText } from './words'
+
+interface TopicViewProps {
+  readonly facts: TopicFacts
+  readonly message: MessageFrame | undefined
+  readonly traffic: TopicLine | undefined
+  readonly mayChange: boolean
+  readonly onBack: () => void
+}
+
+export function TopicView({ facts, message, traffic, mayChange, onBack }: TopicViewProps) {
+  const heard = traffic && traffic.subscribers === 1 ? '1 subscriber' : `${traffic?.subscribers ?? 0} subscribers`
+  return (
+    <Detail name={facts.name} type={facts.type} doc={facts.doc} onBack={onBack}>
+      <p className="bus-traffic">
+        {[rateText(traffic), `latest ${ageText(traffic)}`, heard].map((words) => (
+          <span key={words}>{words}</span>
+        ))}
+      </p>
+      {facts.takes_commands && <Publish topic={facts.name} mayChange={mayChange} />}
+      {message?.problem ? (
+        <p className="quiet">There is no message: {message.problem}.</p>
+      ) : (
+        message && <ValueTree label={`Newest message of ${facts.name}`} value={message.value} open={2} />
+      )}
+    </Detail>
+  )
+}
+
+function Publish({ topic, mayChange }: { topic: string; mayChange: boolean }) {
+  const form = useForm(async () => requestFields((await bus.messageForm(topic)).schema))
+  const [refusal, setRefusal] = useState('')
+
+  async function publish(message: Record<string, unknown>): Promise<void> {
+    setRefusal('')
+    await bus.publish(topic, message).catch((error: unknown) => setRefusal(wordsOf(error)))
+  }
+
+  return (
+    <>
+      <Caution mayChange={mayChange} words="This topic takes commands: what is published here may move the robot." />
+      <RequestForm
+        label={`Publish on ${topic}`}
+        form={form}
+        isOff={!mayChange}
+        onSend={(message) => void publish(message)}
+        refusal={refusal}
+        buttons={
+          <Button type="submit" size="xs" disabled={!mayChange} leftSection={<IconSend size={14} aria-hidden />}>
+            Publish
+          </Button>
+        }
+      />
+    </>
+  )
+}

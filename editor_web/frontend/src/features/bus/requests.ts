@@ -1,0 +1,80 @@
+/** Requests to services and actions, from sending to answer, refusal or end; they go on while another entry is looked at. */
+import { create } from 'zustand'
+import { bus, sendGoal, type SkillFacts } from '../../api/bus'
+import { wordsOf } from '../../api/client'
+
+export interface Course {
+  readonly status: string
+  readonly feedback: unknown
+  readonly answer: unknown
+  /** Why it did not succeed, or was not even taken. */
+  readonly cause: string
+  /** By which it is cancelled. */
+  readonly goal: string
+}
+
+const SENT: Course = { status: 'sent', feedback: undefined, answer: undefined, cause: '', goal: '' }
+const UNDER_WAY: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
+
+/** The newest request to each address. */
+export const useRequests = create<{ readonly courses: Readonly<Record<string, Course>> }>(() => ({ courses: {} }))
+
+let leaving = new AbortController()
+
+/** Has it ended? */
+export function isOver(course: Course): boolean {
+  return !UNDER_WAY.includes(course.status)
+}
+
+/** Ask a service, or send a goal and follow it. */
+export async function send(facts: SkillFacts, request: Record<string, unknown>): Promise<void> {
+  const { signal } = leaving
+  put(facts.name, SENT)
+  try {
+    await (facts.kind === 'service' ? ask(facts.name, request) : follow(facts.name, request, signal))
+  } catch (error) {
+    if (!signal.aborted) put(facts.name, { ...SENT, status: 'refused', cause: wordsOf(error) })
+  }
+}
+
+/** Ask for the stop of a goal; its course tells when the device rests. */
+export async function cancel(address: string): Promise<void> {
+  const course = useRequests.getState().courses[address]
+  try {
+    if (course?.goal) await bus.cancel(course.goal)
+  } catch (error) {
+    const latest = useRequests.getState().courses[address]
+    if (latest) put(address, { ...latest, cause: wordsOf(error) })
+  }
+}
+
+/** Let the server cancel every goal that was sent from here. */
+export function leave(): void {
+  leaving.abort()
+  leaving = new AbortController()
+  useRequests.setState({ courses: {} })
+}
+
+async function ask(address: string, request: Record<string, unknown>): Promise<void> {
+  put(address, { ...SENT, status: 'answered', answer: await bus.call(address, request) })
+}
+
+async function follow(address: string, request: Record<string, unknown>, signal: AbortSignal): Promise<void> {
+  let latest = SENT
+  await sendGoal(
+    address,
+    request,
+    (line) => {
+      if (line.k === 'sent') latest = { ...latest, goal: line.goal }
+      else if (line.k === 'course') latest = { ...latest, status: line.status, feedback: line.feedback }
+      else latest = { ...latest, status: line.status, answer: line.result, cause: line.cause?.message ?? '' }
+      if (!signal.aborted) put(address, latest)
+    },
+    signal,
+  )
+  if (!isOver(latest)) throw new Error('the connection was lost; the server cancels the goal')
+}
+
+function put(address: string, course: Course): void {
+  useRequests.setState(({ courses }) => ({ courses: { ...courses, [address]: course } }))
+}

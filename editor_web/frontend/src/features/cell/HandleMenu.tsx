@@ -1,0 +1,62 @@
+/** Moves an arm, or pushes at it, by a handle in the 3D view. */
+import { Popover, SegmentedControl } from '@mantine/core'
+import { IconHandMove } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { takeHandle, useGrip, type Way } from '../../api/grip'
+import { useLive } from '../../api/live'
+
+const WORDS: Record<Way, string> = {
+  move: 'Drag the handle: the tool follows slowly, as long as the mouse is down.',
+  push: 'Drag the handle: an arm that floats is pulled towards it. In simulation only.',
+}
+
+export function HandleMenu() {
+  const [isOpen, setOpen] = useState(false)
+  const robots = useLive((s) => s.robots)
+  const { arm, way, pulled, refused } = useGrip()
+  useEffect(() => () => takeHandle(''), [])
+  const arms = Object.keys(robots)
+  if (arms.length === 0) return null
+  return (
+    <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
+      <Popover.Target>
+        <button
+          type="button"
+          className="command"
+          aria-pressed={arm !== ''}
+          title="Move an arm by a handle in the 3D view"
+          onClick={() => setOpen(!isOpen)}
+        >
+          <IconHandMove size={15} aria-hidden />
+          <span className="command-label">{arm ? `Handle: ${arm}` : 'Handle'}</span>
+        </button>
+      </Popover.Target>
+      <Popover.Dropdown className="handle-menu">
+        <SegmentedControl
+          fullWidth
+          size="xs"
+          aria-label="Arm with the handle"
+          data={[{ value: '', label: 'None' }, ...arms.map((each) => ({ value: each, label: each }))]}
+          value={arm}
+          onChange={(next) => takeHandle(next, way)}
+        />
+        <SegmentedControl
+          fullWidth
+          size="xs"
+          aria-label="What the handle does"
+          disabled={arm === ''}
+          data={[
+            { value: 'move', label: 'Move the tool' },
+            { value: 'push', label: 'Push the arm' },
+          ]}
+          value={way}
+          onChange={(next) => takeHandle(arm, next as Way)}
+        />
+        <p className="quiet handle-words">{WORDS[way]}</p>
+        <p role="status" className={refused ? 'handle-refused' : 'quiet handle-words'}>
+          {refused || (pulled ? `${arm} follows` : '')}
+        </p>
+      </Popover.Dropdown>
+    </Popover>
+  )
+}

@@ -1,0 +1,131 @@
+/** The userdata of the shown run: every value of every container, who wrote it last and when. */
+import './data.css'
+import { CloseButton, TextInput } from '@mantine/core'
+import { IconDatabase, IconSearch } from '@tabler/icons-react'
+import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
+import { useData, type DataLine } from '../../api/data'
+import { usePastValues } from '../../api/pastValues'
+import { Empty } from '../../components/Empty'
+import { Panel } from '../../components/Panel'
+import { useShown } from '../../components/useShown'
+import { ValueTree } from '../../components/ValueTree'
+import { shownScopes, withChanges, type Scopes } from '../../document/userdata'
+import { inShort, isShort } from '../../document/values'
+
+interface DataProps {
+  readonly run: { readonly id: string } | undefined
+  readonly onShow: (path: string) => void
+}
+
+export function Data({ run, onShow }: DataProps) {
+  const area = useRef<HTMLDivElement>(null)
+  const isShown = useShown(area)
+  const [search, setSearch] = useState('')
+  const [told, setTold] = useState<{ readonly run: string; readonly scopes: Scopes; readonly problem: string }>()
+
+  const past = usePastValues(run?.id, isShown)
+
+  useData(isShown && run && !past ? { run: run.id } : undefined, (frame) => {
+    if (frame.k !== 'userdata') return
+    setTold((before) => ({
+      run: frame.run,
+      scopes: withChanges(before?.run === frame.run ? before.scopes : {}, frame.scopes, frame.first),
+      problem: frame.problem,
+    }))
+  })
+  const current = past ?? (told?.run === run?.id ? told : undefined)
+  const scopes = useMemo(() => shownScopes(current?.scopes ?? {}, search), [current, search])
+
+  const tools = (
+    <div className="data-tools">
+      <span className="spacer" />
+      <TextInput
+        size="xs"
+        aria-label="Find in the data"
+        placeholder="Find"
+        leftSection={<IconSearch size={14} aria-hidden />}
+        rightSection={search && <CloseButton size="xs" aria-label="Clear" onClick={() => setSearch('')} />}
+        value={search}
+        onChange={(event) => setSearch(event.currentTarget.value)}
+        className="data-find"
+      />
+    </div>
+  )
+
+  function body() {
+    if (!run) return <NoData title="No run is shown">Start the behavior; what its states share appears here.</NoData>
+    if (!current) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (current.problem) return <NoData title="The data cannot be shown">{current.problem}</NoData>
+    if (scopes.length === 0 && search) return <NoData title="Nothing matches">Clear the search to see everything.</NoData>
+    if (scopes.length === 0) return <NoData title="This behavior shares no data">States share values that stand under <code>userdata</code> of the behavior or a container.</NoData>
+    return (
+      <div className="data-scroll" tabIndex={0} role="region" aria-label="Userdata">
+        {scopes.map((scope) => (
+          <section key={scope.path} className={`data-scope${scope.isOpen ? '' : ' is-over'}`} aria-label={scope.name}>
+            <h3>
+              <span className="mono">{scope.name}</span>
+              {!scope.isOpen && <span className="data-over">over</span>}
+            </h3>
+            <ul className="plain-list">
+              {scope.lines.map((line) => (
+                <Line key={line.key} name={line.key} line={line} onShow={onShow} />
+              ))}
+            </ul>
+          </section>
+        ))}
+      </div>
+    )
+  }
+
+  return (
+    <Panel title="Data" tools={tools} className="data-panel">
+      <div className="data" ref={area}>
+        {body()}
+      </div>
+    </Panel>
+  )
+}
+
+function NoData({ title, children }: { title: string; children: ReactNode }) {
+  return (
+    <Empty icon={<IconDatabase size={26} stroke={1.4} aria-hidden />} title={title}>
+      {children}
+    </Empty>
+  )
+}
+
+interface LineProps {
+  readonly name: string
+  readonly line: DataLine
+  readonly onShow: (path: string) => void
+}
+
+/** Drawn again when it is written again, and lit for a moment then. */
+const Line = memo(
+  function Line({ name, line, onShow }: LineProps) {
+    return (
+      <li className="data-line">
+        <span className="data-key mono">{name}</span>
+        <span className="data-value" key={line.writes} data-written={line.writes > 0 || undefined}>
+          {isShort(line.value) ? <span className="mono">{inShort(line.value)}</span> : <ValueTree label={`Value of ${name}`} value={line.value} open={0} />}
+        </span>
+        <span className="data-by">
+          {line.by ? (
+            <>
+              <button type="button" className="link" onClick={() => onShow(line.by)}>
+                {line.by}
+              </button>
+              <span className="quiet">
+                {' '}
+                at {line.at_s.toFixed(2)} s{line.writes > 1 && `, ×${line.writes}`}
+              </span>
+            </>
+          ) : (
+            <span className="quiet">from the start</span>
+          )}
+        </span>
+      </li>
+    )
+  },
+  (before, after) => before.line.at_s === after.line.at_s && before.line.writes === after.line.writes && before.line.by === after.line.by,
+)

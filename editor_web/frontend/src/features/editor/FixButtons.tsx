@@ -1,0 +1,48 @@
+/** What would mend a problem, each to be chosen; and the problems of one node in its form. */
+import { IconBulb } from '@tabler/icons-react'
+import type { FixBody } from '../../api/types'
+import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { fixesOf, makeFix, useFreshFixes } from './fixes'
+import { draftOf, useEditor } from './store'
+
+export function FixButtons({ fixes }: { fixes: readonly FixBody[] }) {
+  if (fixes.length === 0) return null
+  return (
+    <div className="fixes" role="group" aria-label="Fixes">
+      {fixes.map((fix) => (
+        <button key={fix.title} type="button" className="fix" onClick={() => makeFix(fix)}>
+          <IconBulb size={13} aria-hidden />
+          <span>
+            <Words text={fix.title} />
+          </span>
+        </button>
+      ))}
+    </div>
+  )
+}
+
+/** Names in backticks are set as code. */
+export function Words({ text }: { text: string }) {
+  return text.split('`').map((part, index) => (index % 2 === 1 ? <code key={index}>{part}</code> : part))
+}
+
+export function NodeFindings({ path }: { path: string }) {
+  const findings = useEditor((s) => draftOf(s).findings)
+  const own = findings.filter((finding) => finding.path === path)
+  const fixes = useFreshFixes(own.length > 0)
+  if (own.length === 0) return null
+  return (
+    <ul className="plain-list node-findings" aria-label="Problems of this node">
+      {own.map((finding, index) => (
+        <li key={index}>
+          <StatusIcon status={statusOf(finding.severity)} size={15} />
+          <div>
+            <span className="visually-hidden">{finding.severity}: </span>
+            <Words text={finding.message} />
+            <FixButtons fixes={fixesOf(fixes, finding)} />
+          </div>
+        </li>
+      ))}
+    </ul>
+  )
+}

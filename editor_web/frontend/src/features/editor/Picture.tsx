@@ -1,0 +1,185 @@
+/** A behavior as one standing drawing, as the canvas shows it: for comparing versions and for files. */
+import { getSmoothStepPath, Position } from '@xyflow/react'
+import type { ReactNode } from 'react'
+import { roundedPath } from '../../document/geometry'
+import type { Marking } from '../../document/editing/changes'
+import { portY } from '../../document/editing/measure'
+import { isFailure } from '../../document/editing/model'
+import type { Box, Point, Size } from '../../document/geometry'
+import { canvasEdges, canvasNodes, type CanvasNode, type DrawnInput } from './elements'
+import { nodeBoxes } from './nodeBoxes'
+import { colourOf, Frame, Leaf, Pill, Rules, Twig, type Palette } from './pictureParts'
+
+export interface PictureProps {
+  readonly drawn: DrawnInput & { readonly arrangement: { readonly size: Size } }
+  readonly title: string
+  readonly palette: Palette
+  /** By the path of a node, or the id of an arrow. */
+  readonly markings?: ReadonlyMap<string, Marking>
+  readonly onPick?: (path: string) => void
+}
+
+const MARGIN = 26
+export function Picture({ drawn, title, palette, markings, onPick }: PictureProps) {
+  const nodes = canvasNodes(drawn)
+  const boxes = nodeBoxes(nodes)
+  const bounds = around([...boxes.values()], [...drawn.arrangement.routes.values()].flat())
+  const edges = canvasEdges(drawn, [])
+  return (
+    <svg
+      xmlns="http://www.w3.org/2000/svg"
+      viewBox={`${bounds.x} ${bounds.y} ${bounds.width} ${bounds.height}`}
+      width={bounds.width}
+      height={bounds.height}
+      role="img"
+      aria-label={title}
+    >
+      <title>{title}</title>
+      <rect {...bounds} style={{ fill: palette.canvas }} />
+      {nodes
+        .filter((node) => node.type === 'frame')
+        .map((node) => (
+          <Frame
+            key={node.id}
+            node={node}
+            box={boxOf(boxes, node.id)}
+            palette={palette}
+            mark={markings?.get(node.id)}
+            onPick={onPick}
+          />
+        ))}
+      {edges.map((edge) => {
+        const source = boxes.get(edge.source)
+        const target = boxes.get(edge.target)
+        const from = nodes.find((node) => node.id === edge.source)
+        if (!source || !target || !from) return null
+        const mark = markings?.get(edge.id)
+        const colour = colourOf(mark, palette.edge, palette)
+        if (edge.type !== 'way') {
+          const [a, b] = [
+            { x: source.x + source.width / 2, y: source.y + source.height },
+            { x: target.x + target.width / 2, y: target.y },
+          ]
+          const bend = (a.y + b.y) / 2
+          const path =
+            a.x === b.x
+              ? `M ${a.x} ${a.y} L ${b.x} ${b.y}`
+              : roundedPath([a, { x: a.x, y: bend }, { x: b.x, y: bend }, b])
+          return <path key={edge.id} d={path} style={{ fill: 'none', stroke: colour, strokeWidth: 1.6 }} />
+        }
+        const points = wayPoints(
+          edge.data?.points,
+          from,
+          source,
+          target,
+          nodes.find((node) => node.id === edge.target),
+          edge.data?.outcome ?? '',
+        )
+        return (
+          <g key={edge.id}>
+            <path
+              d={points.path}
+              style={{
+                fill: 'none',
+                stroke: colour,
+                strokeWidth: mark ? 2.6 : 1.6,
+                strokeDasharray: isFailure(edge.data?.outcome ?? '') ? '5 4' : undefined,
+              }}
+            />
+            <path d={head(points.end)} style={{ fill: colour }} />
+          </g>
+        )
+      })}
+      {nodes.map((node): ReactNode => {
+        const box = boxOf(boxes, node.id)
+        switch (node.type) {
+          case 'leaf':
+            return (
+              <Leaf
+                key={node.id}
+                node={node}
+                box={box}
+                palette={palette}
+                mark={markings?.get(node.id)}
+                onPick={onPick}
+              />
+            )
+          case 'twig':
+            return (
+              <Twig
+                key={node.id}
+                node={node}
+                box={box}
+                palette={palette}
+                mark={markings?.get(node.id)}
+                onPick={onPick}
+              />
+            )
+          case 'pill':
+            return <Pill key={node.id} node={node} box={box} palette={palette} />
+          case 'rules':
+            return (
+              <g key={node.id}>
+                <rect {...box} rx={10} style={{ fill: palette.pill, stroke: palette.line }} />
+                <Rules node={node.data.node} box={box} palette={palette} />
+              </g>
+            )
+          default:
+            return null
+        }
+      })}
+    </svg>
+  )
+}
+
+/** Along the laid-out points, else as the canvas draws it from port to port. */
+function wayPoints(
+  points: readonly Point[] | undefined,
+  from: CanvasNode,
+  source: Box,
+  target: Box,
+  to: CanvasNode | undefined,
+  outcome: string,
+): { readonly path: string; readonly end: Point } {
+  const last = points?.at(-1)
+  if (points && last) return { path: roundedPath(points, 7), end: last }
+  const ways = from.type === 'leaf' || from.type === 'frame' ? from.data.ways : []
+  const index = Math.max(
+    0,
+    ways.findIndex((way) => way.outcome === outcome),
+  )
+  const entry = to && 'entryY' in to.data ? Number(to.data['entryY']) : target.height / 2
+  const end = { x: target.x, y: target.y + entry }
+  const [path] = getSmoothStepPath({
+    sourceX: source.x + source.width,
+    sourceY: source.y + portY(source.height, ways.length, index),
+    targetX: end.x,
+    targetY: end.y,
+    sourcePosition: Position.Right,
+    targetPosition: Position.Left,
+    borderRadius: 8,
+    offset: 18,
+  })
+  return { path, end }
+}
+
+function head({ x, y }: Point): string {
+  return `M ${x - 8} ${y - 4} L ${x + 1} ${y} L ${x - 8} ${y + 4} z`
+}
+
+function boxOf(boxes: ReadonlyMap<string, Box>, id: string): Box {
+  return boxes.get(id) ?? { x: 0, y: 0, width: 0, height: 0 }
+}
+
+function around(boxes: readonly Box[], points: readonly Point[]): Box {
+  const corners = [...points, ...boxes, ...boxes.map((box) => ({ x: box.x + box.width, y: box.y + box.height }))]
+  if (corners.length === 0) return { x: 0, y: 0, width: 240, height: 80 }
+  const x = corners.reduce((least, point) => Math.min(least, point.x), Infinity) - MARGIN
+  const y = corners.reduce((least, point) => Math.min(least, point.y), Infinity) - MARGIN
+  return {
+    x,
+    y,
+    width: corners.reduce((most, point) => Math.max(most, point.x), -Infinity) + MARGIN - x,
+    height: corners.reduce((most, point) => Math.max(most, point.y), -Infinity) + MARGIN - y,
+  }
+}

@@ -1,0 +1,28 @@
+/** Laying out a whole behavior that is drawn once: a version, or a file to be taken along. */
+import { layOutByElk } from '../../components/elk'
+import { arrange, type Arrangement } from '../../document/editing/arrange'
+import { openByItself } from '../../document/editing/opening'
+import type { EditNode } from '../../document/editing/model'
+import type { DrawnInput } from './elements'
+import { declaredOutcomes } from './useArrangement'
+
+export interface Drawing extends DrawnInput {
+  readonly arrangement: Arrangement
+}
+
+export async function drawingOf(
+  root: EditNode,
+  outcomes: readonly string[],
+  isOpen: (path: string) => boolean,
+  rowLimit: number,
+): Promise<Drawing> {
+  const declared = declaredOutcomes(root, outcomes)
+  const arrangement = await arrange(root, { isOpen, declared, rowLimit, call: layOutByElk })
+  return { root, scope: root, arrangement, isOpen, declared }
+}
+
+/** Open what is open by itself on the canvas. */
+export function openWith(root: EditNode): (path: string) => boolean {
+  const byItself = openByItself(root)
+  return (path) => byItself.has(path)
+}

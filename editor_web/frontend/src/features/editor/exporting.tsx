@@ -1,0 +1,78 @@
+/** The whole behavior as a picture file, in the colours of the page: SVG, or PNG at twice the size. */
+import { createRoot } from 'react-dom/client'
+import { flushSync } from 'react-dom'
+import { openness } from '../../document/editing/opening'
+import { wordsOf } from '../../api/client'
+import { drawingOf } from './drawing'
+import { Picture } from './Picture'
+import { OF_PAGE, type Palette } from './pictureParts'
+import { draftOf, editor, refused, rootOf, told } from './store'
+
+const ROW_PX = 1800
+const SCALE = 2
+/** No browser draws more on one canvas than so many pixels a side. */
+const LARGEST_PX = 8192
+
+export async function exportPicture(format: 'svg' | 'png'): Promise<void> {
+  try {
+    const svg = await pictureOfDraft()
+    const name = `${(editor().id.split('/').pop() ?? 'behavior').replace(/\.[a-z]+$/, '')}.${format}`
+    if (format === 'svg') download(name, new Blob([svg], { type: 'image/svg+xml' }))
+    else download(name, await pngOf(svg))
+    told(`Exported ${name}`)
+  } catch (error) {
+    refused('Export', wordsOf(error))
+  }
+}
+
+/** The SVG of the present draft, with containers as they are opened by hand. */
+export async function pictureOfDraft(): Promise<string> {
+  const state = editor()
+  const root = rootOf(state)
+  if (!root) throw new Error('there is nothing to draw yet')
+  const { document: info } = draftOf(state)
+  const isOpen = openness(root, state.opened, state.opensByItself)
+  const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, ROW_PX)
+  const host = document.createElement('div')
+  const page = createRoot(host)
+  flushSync(() => page.render(<Picture drawn={drawn} title={info?.name || state.id} palette={colours()} />))
+  const element = host.querySelector('svg')
+  if (!element) throw new Error('the behavior could not be drawn')
+  const text = new XMLSerializer().serializeToString(element)
+  page.unmount()
+  return `<?xml version="1.0" encoding="UTF-8"?>\n${text}\n`
+}
+
+/** What the variables of the page stand for now: a file of its own has none. */
+function colours(): Palette {
+  const style = getComputedStyle(document.documentElement)
+  const value = (variable: string) => style.getPropertyValue(variable.slice(4, -1)).trim()
+  return Object.fromEntries(
+    Object.entries(OF_PAGE).map(([part, variable]) => [part, value(String(variable))]),
+  ) as unknown as Palette
+}
+
+async function pngOf(svg: string): Promise<Blob> {
+  const image = new Image()
+  image.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`
+  await image.decode()
+  const scale = Math.min(SCALE, LARGEST_PX / Math.max(image.width, image.height))
+  const canvas = document.createElement('canvas')
+  canvas.width = Math.ceil(image.width * scale)
+  canvas.height = Math.ceil(image.height * scale)
+  const context = canvas.getContext('2d')
+  if (!context) throw new Error('this browser draws no pictures')
+  context.drawImage(image, 0, 0, canvas.width, canvas.height)
+  return new Promise((resolve, reject) =>
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture is too large'))), 'image/png'),
+  )
+}
+
+function download(name: string, content: Blob): void {
+  const link = document.createElement('a')
+  link.href = URL.createObjectURL(content)
+  link.download = name
+  link.click()
+  // The browser has taken it when the click has been handled; a moment later nobody needs it.
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000)
+}

@@ -1,0 +1,14 @@
+/** Which dialog about the file of the behavior is open. */
+import { create } from 'zustand'
+
+export type FileDialog = 'versions' | 'rename' | 'duplicate' | 'delete'
+
+export const useFileDialog = create<{ readonly open: FileDialog | undefined }>(() => ({ open: undefined }))
+
+export function openFileDialog(dialog: FileDialog): void {
+  useFileDialog.setState({ open: dialog })
+}
+
+export function closeFileDialog(): void {
+  useFileDialog.setState({ open: undefined })
+}

@@ -1,0 +1,18 @@
+/** Where nodes are on the canvas itself, those in frames too. */
+import type { Box } from '../../document/geometry'
+import type { CanvasNode } from './elements'
+
+/** By id, outcomes and rules included; frames come before what is in them. */
+export function nodeBoxes(nodes: readonly CanvasNode[]): ReadonlyMap<string, Box> {
+  const boxes = new Map<string, Box>()
+  for (const node of nodes) {
+    const outer = node.parentId === undefined ? undefined : boxes.get(node.parentId)
+    boxes.set(node.id, {
+      x: (outer?.x ?? 0) + node.position.x,
+      y: (outer?.y ?? 0) + node.position.y,
+      width: node.width ?? 0,
+      height: node.height ?? 0,
+    })
+  }
+  return boxes
+}

@@ -1,0 +1,49 @@
+/** The graph of a large behavior from far away: plain boxes in the colours of the run, and all arrows as one line. */
+import { ViewportPortal, type NodeProps } from '@xyflow/react'
+import { memo, useMemo, type ComponentType } from 'react'
+import { create } from 'zustand'
+import { useNodeLive } from '../../api/liveParts'
+import { statusOf } from '../../components/StatusIcon'
+import type { Course } from '../../document/layout'
+import type { CanvasNode } from './elements'
+
+/** More nodes than this are drawn in full only where they are seen. */
+export const MANY = 300
+/** Below this zoom nothing that is written on a node can be read. */
+export const FAR = 0.4
+
+const useFar = create<{ readonly isFar: boolean }>(() => ({ isFar: false }))
+
+/** Draw plain boxes from now on, or everything in full. */
+export function setFar(isFar: boolean): void {
+  useFar.setState({ isFar })
+}
+
+/** A kind of node that is a plain box when seen from far away. */
+export function fromFar<P extends NodeProps<CanvasNode>>(Near: ComponentType<P>): ComponentType<P> {
+  return memo(function Levelled(props: P) {
+    const isFar = useFar((s) => s.isFar)
+    return isFar ? <PlainStep id={props.id} type={props.type} selected={props.selected} /> : <Near {...props} />
+  })
+}
+
+function PlainStep({ id, type, selected }: { id: string; type: string; selected: boolean }) {
+  const status = statusOf(useNodeLive(id)?.status ?? 'idle')
+  return <div className={`plain-step is-${type} is-${status}${selected ? ' is-selected' : ''}`} data-status={status} />
+}
+
+/** Every arrow in one path. */
+export const FarCourses = memo(function FarCourses({ courses }: { courses: readonly Course[] }) {
+  const path = useMemo(() => courses.map(lineOf).join(''), [courses])
+  return (
+    <ViewportPortal>
+      <svg className="far-courses" aria-hidden>
+        <path d={path} />
+      </svg>
+    </ViewportPortal>
+  )
+})
+
+function lineOf({ points }: Course): string {
+  return points.map(({ x, y }, index) => `${index === 0 ? 'M' : 'L'}${Math.round(x)} ${Math.round(y)}`).join('')
+}

@@ -1,0 +1,133 @@
+/** The runs of the journal: found by words, by how they ended, by the day; failures are one press away. */
+import './past.css'
+import { CloseButton, TextInput } from '@mantine/core'
+import { IconHistory, IconSearch } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { useLive } from '../../api/live'
+import { pastApi, type PastQuery } from '../../api/timeline'
+import type { PastRunBody, PastRunsBody } from '../../api/types'
+import { Empty } from '../../components/Empty'
+import { StatusBadge } from '../../components/StatusBadge'
+import { duration, wallTime } from '../../document/time'
+import { dayEndS, dayStartS } from './days'
+
+const KINDS = [
+  ['all', 'All'],
+  ['failed', 'Failed'],
+  ['finished', 'Finished'],
+  ['stopped', 'Stopped'],
+  ['running', 'Not ended'],
+] as const
+const PAGE = 50
+
+export interface PastRunsProps {
+  readonly href: (run: string) => string
+  readonly onOpen: (run: string) => void
+}
+
+export function PastRuns({ href, onOpen }: PastRunsProps) {
+  const [text, setText] = useState('')
+  const [kind, setKind] = useState<string>('all')
+  const [since, setSince] = useState('')
+  const [until, setUntil] = useState('')
+  const [limit, setLimit] = useState(PAGE)
+  const { found, problem } = useFound({ text, kind, sinceS: dayStartS(since), untilS: dayEndS(until), limit })
+  const isFiltered = text !== '' || kind !== 'all' || since !== '' || until !== ''
+  return (
+    <div className="past-runs">
+      <div className="past-filters">
+        <TextInput
+          size="sm"
+          className="past-find"
+          aria-label="Find a run"
+          placeholder="Behavior, outcome, cause or run"
+          leftSection={<IconSearch size={15} aria-hidden />}
+          rightSection={text && <CloseButton size="sm" aria-label="Clear" onClick={() => setText('')} />}
+          value={text}
+          onChange={(event) => setText(event.currentTarget.value)}
+        />
+        <label className="past-day">
+          from <input type="date" value={since} max={until || undefined} onChange={(event) => setSince(event.currentTarget.value)} />
+        </label>
+        <label className="past-day">
+          to <input type="date" value={until} min={since || undefined} onChange={(event) => setUntil(event.currentTarget.value)} />
+        </label>
+      </div>
+      <div className="past-kinds" role="group" aria-label="How they ended">
+        {KINDS.map(([id, words]) => (
+          <button key={id} type="button" className={`past-kind is-${id}`} aria-pressed={kind === id} onClick={() => setKind(id)}>
+            {words} <span className="past-count">{found?.counts[id] ?? 0}</span>
+          </button>
+        ))}
+      </div>
+      {problem && (
+        <p className="past-problem" role="alert">
+          {problem}
+        </p>
+      )}
+      {found?.runs.length === 0 && (
+        <Empty icon={<IconHistory size={26} stroke={1.4} aria-hidden />} title={isFiltered ? 'No run matches' : 'No past runs'}>
+          {isFiltered ? 'Use fewer words, another day, or show all.' : 'Every run that is started here is kept in the journal and listed on this page.'}
+        </Empty>
+      )}
+      <ul className="plain-list" aria-label="Past runs">
+        {found?.runs.map((run) => (
+          <Item key={run.id} run={run} href={href(run.id)} onOpen={() => onOpen(run.id)} />
+        ))}
+      </ul>
+      {found && found.total > found.runs.length && (
+        <button type="button" className="command past-more" onClick={() => setLimit(Math.min(200, limit + PAGE))} disabled={limit >= 200}>
+          {limit >= 200 ? `${found.total - found.runs.length} older ones: narrow the search` : `Show more of ${found.total}`}
+        </button>
+      )}
+    </div>
+  )
+}
+
+function Item({ run, href, onOpen }: { run: PastRunBody; href: string; onOpen: () => void }) {
+  return (
+    <li>
+      <a
+        className="past-item"
+        href={href}
+        onClick={(event) => {
+          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
+          event.preventDefault()
+          onOpen()
+        }}
+      >
+        <span className="past-item-name">{run.behavior}</span>
+        <StatusBadge status={run.status === 'running' && !run.here ? 'interrupted' : run.status} outcome={run.outcome} success={run.success} />
+        <span className="quiet past-item-facts">
+          {wallTime(run.started_at_s)} · {duration(run.duration_s)} · {run.events} events{run.recording && ' · recorded'}
+        </span>
+        <span className="quiet mono past-item-id">{run.id}</span>
+        {run.cause && <span className={`past-item-cause${run.failed ? '' : ' quiet'}`}>{run.cause}</span>}
+      </a>
+    </li>
+  )
+}
+
+const PATIENCE_MS = 150
+
+/** What matches; asked for when nobody has typed for a moment, and again when a run begins or ends. */
+function useFound(query: PastQuery): { readonly found: PastRunsBody | undefined; readonly problem: string } {
+  const [state, setState] = useState<{ found: PastRunsBody | undefined; problem: string }>({ found: undefined, problem: '' })
+  const runs = useLive((s) => s.runs.map((run) => run.status).join(' '))
+  const key = JSON.stringify(query)
+  useEffect(() => {
+    let isCurrent = true
+    const timer = setTimeout(() => {
+      pastApi.runs(JSON.parse(key) as PastQuery).then(
+        (found) => isCurrent && setState({ found, problem: '' }),
+        (error: unknown) => isCurrent && setState((before) => ({ ...before, problem: wordsOf(error) })),
+      )
+    }, PATIENCE_MS)
+    return () => {
+      isCurrent = false
+      clearTimeout(timer)
+    }
+  }, [key, runs])
+  return state
+}

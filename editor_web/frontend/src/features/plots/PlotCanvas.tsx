@@ -1,0 +1,119 @@
+/** The canvas of the curves: drawn when something has come, zoomed by wheel or keys, panned by dragging. */
+import { useElementSize, useMergedRef } from '@mantine/hooks'
+import { useEffect, useRef, type KeyboardEvent, type PointerEvent } from 'react'
+import { draw, LEFT_PX, RIGHT_PX, timeAt, type Curve, type Look } from './draw'
+import type { Plot } from './usePlot'
+
+interface PlotCanvasProps {
+  readonly plot: Plot
+  readonly curves: readonly Curve[]
+  readonly atS: number | undefined
+  readonly onPoint: (atS: number | undefined) => void
+}
+
+export function PlotCanvas({ plot, curves, atS, onPoint }: PlotCanvasProps) {
+  const { ref: sizeRef, width, height } = useElementSize<HTMLDivElement>()
+  const area = useRef<HTMLDivElement>(null)
+  const canvas = useRef<HTMLCanvasElement>(null)
+  const drag = useRef<{ readonly x: number; readonly endS: number }>(undefined)
+  const both = useMergedRef(sizeRef, area)
+  const samples = plot.curves
+  const endS = plot.pausedS ?? (samples.length > 0 ? samples.time(samples.length - 1) : 0)
+  const { spanS } = plot
+
+  useEffect(() => {
+    const frame = requestAnimationFrame(() => {
+      const pen = canvas.current && sized(canvas.current, width, height)
+      if (pen && area.current) draw(pen, { width, height }, samples, curves, { endS, spanS, atS }, lookOf(area.current))
+    })
+    return () => cancelAnimationFrame(frame)
+  }, [width, height, samples, curves, endS, spanS, atS, plot.revision])
+
+  // React's own wheel listener cannot keep the page from scrolling.
+  const zoom = useRef(plot.zoom)
+  useEffect(() => {
+    zoom.current = (factor) => plot.zoom(spanS * factor)
+  })
+  useEffect(() => {
+    const element = area.current
+    const turn = (event: WheelEvent) => {
+      event.preventDefault()
+      zoom.current(event.deltaY > 0 ? 1.25 : 0.8)
+    }
+    element?.addEventListener('wheel', turn, { passive: false })
+    return () => element?.removeEventListener('wheel', turn)
+  }, [])
+
+  function move(event: PointerEvent<HTMLDivElement>): void {
+    const x = event.clientX - event.currentTarget.getBoundingClientRect().left
+    if (drag.current) {
+      const moved = ((x - drag.current.x) / (width - LEFT_PX - RIGHT_PX)) * spanS
+      if (plot.pausedS !== undefined || Math.abs(x - drag.current.x) > 4) plot.panTo(drag.current.endS - moved)
+    }
+    onPoint(x >= LEFT_PX && x <= width - RIGHT_PX ? timeAt(x, width, { endS, spanS }) : undefined)
+  }
+
+  function press(event: KeyboardEvent): void {
+    const step = spanS / 40
+    const actions: Readonly<Record<string, () => void>> = {
+      ArrowLeft: () => onPoint((atS ?? endS) - step),
+      ArrowRight: () => onPoint(Math.min(endS, (atS ?? endS) + step)),
+      '+': () => plot.zoom(spanS * 0.8),
+      '-': () => plot.zoom(spanS * 1.25),
+      ' ': () => (plot.pausedS === undefined ? plot.pause() : plot.goOn()),
+      PageUp: () => plot.panTo(endS - spanS / 2),
+      PageDown: () => plot.panTo(endS + spanS / 2),
+      Escape: () => onPoint(undefined),
+    }
+    const act = actions[event.key]
+    if (!act) return
+    event.preventDefault()
+    event.stopPropagation()
+    act()
+  }
+
+  return (
+    <div
+      className="plot-canvas"
+      ref={both}
+      role="img"
+      tabIndex={0}
+      aria-label={`${curves.length} curves over ${Math.round(spanS)} s; arrows read values, plus and minus zoom, space pauses`}
+      onPointerMove={move}
+      onPointerLeave={() => !drag.current && onPoint(undefined)}
+      onPointerDown={(event) => {
+        event.currentTarget.setPointerCapture(event.pointerId)
+        drag.current = { x: event.clientX - event.currentTarget.getBoundingClientRect().left, endS }
+      }}
+      onPointerUp={() => (drag.current = undefined)}
+      onPointerCancel={() => (drag.current = undefined)}
+      onKeyDown={press}
+    >
+      <canvas ref={canvas} aria-hidden />
+    </div>
+  )
+}
+
+/** The pen of a canvas in CSS pixels, sharp on every screen. */
+function sized(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D | null {
+  const scale = window.devicePixelRatio || 1
+  const [wide, high] = [Math.round(width * scale), Math.round(height * scale)]
+  if (canvas.width !== wide || canvas.height !== high) {
+    canvas.width = wide
+    canvas.height = high
+  }
+  const pen = canvas.getContext('2d')
+  pen?.setTransform(scale, 0, 0, scale, 0, 0)
+  return pen
+}
+
+function lookOf(element: HTMLElement): Look {
+  const style = getComputedStyle(element)
+  const named = (name: string) => style.getPropertyValue(name).trim()
+  return {
+    text: named('--quiet'),
+    line: named('--line'),
+    colors: Array.from({ length: 8 }, (_, index) => named(`--curve-${index}`)),
+    font: `11px ${style.fontFamily}`,
+  }
+}

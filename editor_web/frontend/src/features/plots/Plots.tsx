@@ -1,0 +1,138 @@
+/** Curves of chosen numbers of topics: joints, forces, widths, over the last two minutes. */
+import './plots.css'
+import { Button, SegmentedControl } from '@mantine/core'
+import { IconChartLine, IconDownload, IconListTree, IconPlayerPauseFilled, IconPlayerPlayFilled } from '@tabler/icons-react'
+import { useEffect, useMemo, useRef, useState } from 'react'
+import { bus, type TopicFields } from '../../api/bus'
+import { wordsOf } from '../../api/client'
+import { Empty } from '../../components/Empty'
+import { Panel } from '../../components/Panel'
+import { useShown } from '../../components/useShown'
+import { csvOf } from '../../document/curves'
+import { wallTime } from '../../document/time'
+import { coloured, describe } from './fields'
+import { FieldChooser } from './FieldChooser'
+import { Legend } from './Legend'
+import { PlotCanvas } from './PlotCanvas'
+import { SPANS_S, usePlot } from './usePlot'
+
+const NONE: readonly TopicFields[] = []
+/** New devices bring new numbers. */
+const ASK_AGAIN_MS = 5000
+
+export function Plots() {
+  const area = useRef<HTMLDivElement>(null)
+  const isShown = useShown(area)
+  const plot = usePlot(isShown)
+  const { topics, problem } = useFields(isShown)
+  const [atS, setAtS] = useState<number>()
+  const [isChoosing, setChoosing] = useState(true)
+  const colors = useRef<ReadonlyMap<string, number>>(new Map())
+  const entries = useMemo(() => {
+    colors.current = coloured(colors.current, plot.chosen)
+    return plot.chosen.map((id) => ({ id, color: colors.current.get(id) ?? 0, ...describe(id, topics ?? NONE) }))
+  }, [plot.chosen, topics])
+
+  function save(): void {
+    const headings = Object.fromEntries(entries.map(({ id, topic, label, unit }) => [id, `${topic} ${label}${unit && ` (${unit})`}`]))
+    const link = document.createElement('a')
+    link.href = URL.createObjectURL(new Blob([csvOf(plot.curves, headings)], { type: 'text/csv' }))
+    link.download = `curves-${new Date().toISOString().slice(0, 19).replaceAll(':', '')}.csv`
+    link.click()
+    URL.revokeObjectURL(link.href)
+  }
+
+  const isPaused = plot.pausedS !== undefined
+  const tools = (
+    <div className="plot-tools">
+      <Button size="compact-xs" variant={isChoosing ? 'light' : 'subtle'} aria-pressed={isChoosing} leftSection={<IconListTree size={14} aria-hidden />} onClick={() => setChoosing(!isChoosing)}>
+        Choose
+      </Button>
+      <span className="plot-time">
+        {atS !== undefined ? wallTime(atS) : isPaused ? `paused at ${wallTime(plot.pausedS ?? 0)}` : ''}
+        {plot.dropped > 0 && <span title="This page was too slow for them"> {plot.dropped} samples missing</span>}
+      </span>
+      <SegmentedControl
+        size="xs"
+        aria-label="Time shown"
+        data={SPANS_S.map((span) => ({ value: String(span), label: span < 60 ? `${span} s` : `${span / 60} min` }))}
+        value={String(SPANS_S.find((span) => span === plot.spanS) ?? '')}
+        onChange={(span) => plot.zoom(Number(span))}
+      />
+      <Button
+        size="compact-xs"
+        variant="default"
+        disabled={entries.length === 0}
+        leftSection={isPaused ? <IconPlayerPlayFilled size={12} aria-hidden /> : <IconPlayerPauseFilled size={12} aria-hidden />}
+        onClick={isPaused ? plot.goOn : plot.pause}
+      >
+        {isPaused ? 'Go on' : 'Hold'}
+      </Button>
+      <Button size="compact-xs" variant="default" disabled={entries.length === 0} leftSection={<IconDownload size={14} aria-hidden />} onClick={save}>
+        CSV
+      </Button>
+    </div>
+  )
+
+  function body() {
+    if (problem) return <Empty title="There are no numbers to plot">{problem}</Empty>
+    if (!topics) return <div className="page-wait" role="status" aria-label="Loading" />
+    if (topics.length === 0) {
+      return (
+        <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="There is nothing to plot yet">
+          The robots of a cell publish numbers: serve one with <code>flexcell serve --cell FILE</code>.
+        </Empty>
+      )
+    }
+    return (
+      <div className={`plot-halves${isChoosing ? ' is-choosing' : ''}`}>
+        {isChoosing && <FieldChooser topics={topics} chosen={plot.chosen} onChoose={plot.choose} />}
+        {entries.length === 0 ? (
+          <Empty icon={<IconChartLine size={26} stroke={1.4} aria-hidden />} title="Nothing is chosen">
+            Unfold a topic and tick what you want to see: joints, forces, widths.
+          </Empty>
+        ) : (
+          <div className="plot-main">
+            <PlotCanvas plot={plot} curves={entries} atS={atS} onPoint={setAtS} />
+            <Legend
+              entries={entries}
+              curves={plot.curves}
+              atS={atS}
+              endS={plot.pausedS}
+              onRemove={(id) => plot.choose(plot.chosen.filter((each) => each !== id))}
+            />
+          </div>
+        )}
+      </div>
+    )
+  }
+
+  return (
+    <Panel title="Plots" tools={tools} className="plot-panel">
+      <div className="plots" ref={area}>
+        {body()}
+      </div>
+    </Panel>
+  )
+}
+
+/** What can be plotted, asked for again while it is looked at. */
+function useFields(isShown: boolean): { readonly topics: readonly TopicFields[] | undefined; readonly problem: string } {
+  const [topics, setTopics] = useState<readonly TopicFields[]>()
+  const [problem, setProblem] = useState('')
+  useEffect(() => {
+    if (!isShown) return
+    const load = () =>
+      bus.fields().then(
+        (found) => {
+          setProblem('')
+          setTopics((before) => (JSON.stringify(before) === JSON.stringify(found.topics) ? before : found.topics))
+        },
+        (error: unknown) => setProblem(wordsOf(error)),
+      )
+    void load()
+    const timer = setInterval(() => void load(), ASK_AGAIN_MS)
+    return () => clearInterval(timer)
+  }, [isShown])
+  return { topics, problem }
+}

@@ -1,0 +1,84 @@
+/** Which arm is taught, what it does, and what is captured of it. */
+import { IconFlag, IconHandGrab, IconPlayerRecordFilled, IconPlayerStopFilled, IconTopologyRing3 } from '@tabler/icons-react'
+import { SegmentedControl } from '@mantine/core'
+import { useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { teach, useObstacle, useTeach } from '../../api/teaching'
+import type { ArmCard, Trigger } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { StatusIcon, type Status } from '../../components/StatusIcon'
+import { toolWords } from './ToolRow'
+
+const LOOKS: Readonly<Record<string, Status>> = {
+  moving: 'active',
+  jogging: 'active',
+  guiding: 'active',
+  reflex: 'failed',
+  fault: 'failed',
+  direct: 'warning',
+}
+
+interface ArmHeadProps {
+  readonly arms: readonly ArmCard[]
+  readonly arm: ArmCard
+  readonly onArm: (name: string) => void
+}
+
+export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
+  const now = useTeach((s) => s.now[arm.name])
+  const hand = useTeach((s) => s.hand)
+  const off = useObstacle()
+  const [problem, setProblem] = useState('')
+  const isRecording = hand?.recording.includes(arm.name) ?? false
+  const obstacle = off ?? (hand === null ? 'this server has no Helping Hand' : undefined)
+  const tool = toolWords(now)
+  const look = LOOKS[now?.mode ?? ''] ?? 'idle'
+
+  function take(callback: Trigger['trig_callback'], pressed = true): void {
+    teach.now(arm.name, callback, pressed).then(
+      () => setProblem(''),
+      (error: unknown) => setProblem(wordsOf(error)),
+    )
+  }
+
+  return (
+    <div className="teach-head">
+      {arms.length > 1 ? (
+        <SegmentedControl size="xs" aria-label="Arm" value={arm.name} onChange={onArm} data={arms.map((each) => each.name)} />
+      ) : (
+        <strong>{arm.name}</strong>
+      )}
+      <span className={`badge is-${look}`} role="status" aria-label={`State of ${arm.name}`}>
+        <StatusIcon status={look} size={13} />
+        {now?.mode === 'guiding' ? 'floats' : (now?.mode ?? 'unknown')}
+      </span>
+      {tool && <span className="quiet teach-tool">{tool}</span>}
+      <span className="spacer" />
+      <div className="command-row" role="group" aria-label="Capture">
+        <CommandButton label="Joints" hint="Capture where the joints are" icon={<IconTopologyRing3 size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_save')} />
+        <CommandButton label="Pose" hint="Capture where the tool is" icon={<IconFlag size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('pose_save')} />
+        {arm.skills.includes('gripper/gripper_open') && (
+          <CommandButton label="Grip" hint="Capture how the gripper stands" icon={<IconHandGrab size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('gripper_save')} />
+        )}
+        {isRecording ? (
+          <CommandButton label="End recording" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_dmp_save', false)} />
+        ) : (
+          <>
+            <CommandButton label="Record" hint="Record a motion, in joints" icon={<IconPlayerRecordFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_dmp_save')} />
+            <CommandButton label="Record tool" hint="Record a motion of the tool" icon={<IconPlayerRecordFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('cart_dmp_save')} />
+          </>
+        )}
+      </div>
+      {hand?.said && (
+        <p className="teach-said" role="status" aria-label="The Helping Hand says">
+          {hand.said}
+        </p>
+      )}
+      {problem && (
+        <p className="teach-problem" role="alert">
+          {problem}
+        </p>
+      )}
+    </div>
+  )
+}

@@ -1,0 +1,182 @@
+/** Moving an arm by hand: held or step by step, by joints or at the tool, with mouse, touch or keyboard. */
+import { SegmentedControl, Slider } from '@mantine/core'
+import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
+import { useId, useState } from 'react'
+import { useObstacle, useTeach } from '../../api/teaching'
+import type { ArmCard, ArmNow } from '../../api/types'
+import { degrees, jogVelocity, rollPitchYaw, shareOfRange, TOOL_AXES, toolStep, type Frame, type Space } from '../../document/teaching'
+import { HoldButton } from './HoldButton'
+import { jogKey } from './jogKeys'
+import { ToolRow } from './ToolRow'
+import { useJog } from './useJog'
+import { useSteps } from './useSteps'
+
+const BUSY = new Set(['moving', 'guiding', 'direct', 'reflex', 'fault', 'disconnected'])
+const STEPS_MM = ['1', '5', '10', '50']
+const STEPS_DEG = ['1', '5', '15']
+const JOINT_STEP_SPEED = 0.1
+
+/** Why an arm cannot be jogged now. */
+function busy(now: ArmNow | undefined): string | undefined {
+  if (!now) return 'nothing is known of the arm yet'
+  if (!BUSY.has(now.mode)) return undefined
+  if (now.mode === 'guiding') return 'it floats: let it hold itself first'
+  if (now.mode === 'reflex' || now.mode === 'fault') return now.error || 'it has stopped by itself: recover it first'
+  return `it is ${now.mode}${now.activity ? `: ${now.activity}` : ''}`
+}
+
+export function JogPanel({ arm }: { readonly arm: ArmCard }) {
+  const [space, setSpace] = useState<Space>('tool')
+  const [frame, setFrame] = useState<Frame>('world')
+  const [isStepping, setStepping] = useState(false)
+  const [share, setShare] = useState(20)
+  const [stepMm, setStepMm] = useState('5')
+  const [stepDeg, setStepDeg] = useState('5')
+  const now = useTeach((s) => s.now[arm.name])
+  const refusal = useTeach((s) => s.refused.jog)
+  const heldBy = useTeach((s) => s.heldBy)
+  const steps = useSteps()
+  const jog = useJog(arm.name, space, frame)
+  const hint = useId()
+  const off = useObstacle()
+  const obstacle = off ?? (jog.held || steps.isBusy ? undefined : busy(now))
+  const rows = space === 'tool' ? toolRows(now) : jointRows(arm, now)
+
+  function press(axis: number, way: 1 | -1): void {
+    if (obstacle !== undefined) return
+    if (!isStepping) {
+      jog.hold(`${rows[axis]?.name ?? ''}${way}`, jogVelocity(space, axis, (way * share) / 100, arm.joint_names.length))
+      return
+    }
+    const turn_rad = (way * Number(stepDeg) * Math.PI) / 180
+    if (space === 'tool') {
+      const speed_m_s = Math.max(0.005, (0.25 * share) / 100)
+      steps.send(`${arm.name}/step_tool`, { ...toolStep(axis, (way * Number(stepMm)) / 1000, turn_rad), frame, speed_m_s })
+    } else {
+      const step_rad = arm.joint_names.map((_, at) => (at === axis ? turn_rad : 0))
+      steps.send(`${arm.name}/step_joints`, { step_rad, speed: Math.max(0.01, (JOINT_STEP_SPEED * share) / 100) })
+    }
+  }
+
+  return (
+    <div className="jog">
+      <div className="jog-choices">
+        <SegmentedControl size="xs" aria-label="What is jogged" value={space} onChange={(value) => setSpace(value as Space)} data={[{ value: 'tool', label: 'Tool' }, { value: 'joints', label: 'Joints' }]} />
+        <SegmentedControl size="xs" aria-label="How it is jogged" value={isStepping ? 'step' : 'hold'} onChange={(value) => setStepping(value === 'step')} data={[{ value: 'hold', label: 'Hold to run' }, { value: 'step', label: 'Step' }]} />
+        {space === 'tool' && (
+          <SegmentedControl size="xs" aria-label="Along the axes of" value={frame} onChange={(value) => setFrame(value as Frame)} data={[{ value: 'world', label: 'World' }, { value: 'base', label: 'Base' }, { value: 'tool', label: 'Tool axes' }]} />
+        )}
+      </div>
+      <div className="jog-speed">
+        <span id={`${hint}-speed`}>Speed</span>
+        <Slider size="sm" min={1} max={100} value={share} onChange={setShare} label={(value) => `${value} %`} thumbProps={{ 'aria-labelledby': `${hint}-speed` }} />
+        <output>{space === 'tool' ? `${((0.25 * share * 1000) / 100).toFixed(0)} mm/s` : `${degrees(share / 100).toFixed(0)}°/s`}</output>
+      </div>
+      {isStepping && (
+        <div className="jog-choices">
+          {space === 'tool' && <SegmentedControl size="xs" aria-label="Size of a step" value={stepMm} onChange={setStepMm} data={STEPS_MM.map((value) => ({ value, label: `${value} mm` }))} />}
+          <SegmentedControl size="xs" aria-label="Angle of a step" value={stepDeg} onChange={setStepDeg} data={STEPS_DEG.map((value) => ({ value, label: `${value}°` }))} />
+        </div>
+      )}
+      <ul className={`plain-list jog-rows is-${space}`} aria-label={space === 'tool' ? 'Axes of the tool' : 'Joints'}>
+        {rows.map((row, axis) => (
+          <li key={row.name} className="jog-row">
+            <JogKey row={row} axis={axis} way={-1} jog={jog} press={press} obstacle={obstacle} />
+            <span className="jog-name">{row.name}</span>
+            <span className="jog-value">{row.value}</span>
+            {space === 'joints' && <LimitBar share={row.share ?? 0.5} words={row.limits} />}
+            <JogKey row={row} axis={axis} way={1} jog={jog} press={press} obstacle={obstacle} />
+          </li>
+        ))}
+      </ul>
+      <button
+        type="button"
+        className={`jog-keyboard${jog.held ? ' is-held' : ''}`}
+        aria-describedby={hint}
+        onKeyDown={(event) => {
+          const pressed = jogKey(space, event.key, event.shiftKey, rows.length)
+          if (!pressed) return
+          event.preventDefault()
+          if (!event.repeat) press(pressed.axis, pressed.way)
+        }}
+        onKeyUp={jog.letGo}
+        onBlur={jog.letGo}
+      >
+        <IconKeyboard size={16} aria-hidden />
+        <span>Jog with the keyboard</span>
+        <span id={hint} className="quiet">
+          {space === 'tool' ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.' : 'Digits turn that joint, with Shift the other way.'}
+        </span>
+      </button>
+      <p className="teach-said" role="status" aria-label="State of jogging">
+        {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It goes as long as this is held' : '')}
+      </p>
+      <ToolRow arm={arm} now={now} steps={steps} obstacle={off} />
+      {steps.isBusy && (
+        <button type="button" className="command is-danger" onClick={steps.stop}>
+          Stop (Escape)
+        </button>
+      )}
+    </div>
+  )
+}
+
+interface Row {
+  readonly name: string
+  readonly value: string
+  readonly share?: number
+  readonly limits?: string
+}
+
+function toolRows(now: ArmNow | undefined): readonly Row[] {
+  const pose = now?.tool_pose ?? []
+  const turns = pose.length === 7 ? rollPitchYaw(pose.slice(3)) : []
+  return TOOL_AXES.map((name, axis) => {
+    const value = axis < 3 ? pose[axis] : turns[axis - 3]
+    if (value === undefined) return { name, value: '–' }
+    return { name, value: axis < 3 ? `${(value * 1000).toFixed(1)} mm` : `${degrees(value).toFixed(1)}°` }
+  })
+}
+
+function jointRows(arm: ArmCard, now: ArmNow | undefined): readonly Row[] {
+  return arm.joint_names.map((_, at) => {
+    const value = now?.joints[at]
+    const [lower = 0, upper = 0] = [arm.lower_rad[at], arm.upper_rad[at]]
+    const limits = `from ${degrees(lower).toFixed(0)}° to ${degrees(upper).toFixed(0)}°`
+    if (value === undefined) return { name: `J${at + 1}`, value: '–', limits }
+    return { name: `J${at + 1}`, value: `${degrees(value).toFixed(1)}°`, share: shareOfRange(value, lower, upper), limits }
+  })
+}
+
+function LimitBar({ share, words }: { readonly share: number; readonly words: string | undefined }) {
+  const isNear = share < 0.05 || share > 0.95
+  return (
+    <span className={`limit-bar${isNear ? ' is-near' : ''}`} role="img" aria-label={`${words}${isNear ? ', near a limit' : ''}`} title={words}>
+      <span style={{ left: `${share * 100}%` }} />
+    </span>
+  )
+}
+
+interface JogKeyProps {
+  readonly row: Row
+  readonly axis: number
+  readonly way: 1 | -1
+  readonly jog: ReturnType<typeof useJog>
+  readonly press: (axis: number, way: 1 | -1) => void
+  readonly obstacle: string | undefined
+}
+
+function JogKey({ row, axis, way, jog, press, obstacle }: JogKeyProps) {
+  const Icon = way > 0 ? IconPlus : IconMinus
+  return (
+    <HoldButton
+      label={`${row.name} ${way > 0 ? 'plus' : 'minus'}`}
+      isHeld={jog.held === `${row.name}${way}`}
+      obstacle={obstacle}
+      onHold={() => press(axis, way)}
+      onLetGo={jog.letGo}
+    >
+      <Icon size={16} aria-hidden />
+    </HoldButton>
+  )
+}

@@ -1,0 +1,107 @@
+/** Leading an arm by hand: let it float, record what it does, and push it where there is nobody to do so. */
+import { IconArrowDown, IconArrowLeft, IconArrowRight, IconArrowUp, IconChevronsDown, IconChevronsUp, IconFeather } from '@tabler/icons-react'
+import { Slider } from '@mantine/core'
+import { useEffect, useId, useRef, useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { teach, useObstacle, useTeach } from '../../api/teaching'
+import type { ArmCard } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { HoldButton } from './HoldButton'
+
+const PUSH_S = 0.3
+const REPEAT_MS = 200
+const WAYS = [
+  { name: 'forward', force: [1, 0, 0], Icon: IconArrowUp, area: 'up' },
+  { name: 'back', force: [-1, 0, 0], Icon: IconArrowDown, area: 'down' },
+  { name: 'left', force: [0, 1, 0], Icon: IconArrowLeft, area: 'left' },
+  { name: 'right', force: [0, -1, 0], Icon: IconArrowRight, area: 'right' },
+  { name: 'up', force: [0, 0, 1], Icon: IconChevronsUp, area: 'top' },
+  { name: 'down', force: [0, 0, -1], Icon: IconChevronsDown, area: 'bottom' },
+] as const
+
+export function LeadPanel({ arm }: { readonly arm: ArmCard }) {
+  const now = useTeach((s) => s.now[arm.name])
+  const canPush = useTeach((s) => s.canPush)
+  const off = useObstacle()
+  const [problem, setProblem] = useState('')
+  const isFloating = now?.mode === 'guiding'
+
+  function float(): void {
+    teach.now(arm.name, 'grav_comp', !isFloating).then(
+      () => setProblem(''),
+      (error: unknown) => setProblem(wordsOf(error)),
+    )
+  }
+
+  return (
+    <section className="lead" aria-label="Lead by hand">
+      <div className="command-row">
+        <CommandButton
+          label={isFloating ? 'Hold itself' : 'Let it float'}
+          hint={isFloating ? 'The arm stays where it is' : 'The arm carries its own weight and gives way to a hand'}
+          icon={<IconFeather size={15} aria-hidden />}
+          isPressed={isFloating}
+          obstacle={off}
+          onPress={float}
+        />
+        <span className="quiet">{isFloating ? 'It floats: lead it by hand.' : 'It holds itself.'}</span>
+      </div>
+      {canPush && <PushPad arm={arm.name} obstacle={off ?? (isFloating ? undefined : 'let it float first')} onProblem={setProblem} />}
+      {problem && (
+        <p className="teach-problem" role="alert">
+          {problem}
+        </p>
+      )}
+    </section>
+  )
+}
+
+function PushPad({ arm, obstacle, onProblem }: { readonly arm: string; readonly obstacle: string | undefined; readonly onProblem: (words: string) => void }) {
+  const [force_n, setForce] = useState(12)
+  const [held, setHeld] = useState('')
+  const timer = useRef<ReturnType<typeof setInterval>>(undefined)
+  const id = useId()
+
+  function letGo(): void {
+    clearInterval(timer.current)
+    timer.current = undefined
+    setHeld('')
+  }
+
+  function hold(name: string, way: readonly number[]): void {
+    letGo()
+    const [x = 0, y = 0, z = 0] = way
+    const push = () =>
+      void teach.push({ arm, force_n: [x * force_n, y * force_n, z * force_n], duration_s: PUSH_S }).then(
+        () => onProblem(''),
+        (error: unknown) => {
+          letGo()
+          onProblem(wordsOf(error))
+        },
+      )
+    push()
+    timer.current = setInterval(push, REPEAT_MS)
+    setHeld(name)
+  }
+
+  useEffect(() => () => clearInterval(timer.current), [])
+
+  return (
+    <div className="push">
+      <div className="push-pad" role="group" aria-label="Push at the tool">
+        {WAYS.map(({ name, force, Icon, area }) => (
+          <span key={name} style={{ gridArea: area }}>
+            <HoldButton label={`Push ${name}`} isHeld={held === name} obstacle={obstacle} onHold={() => hold(name, force)} onLetGo={letGo}>
+              <Icon size={17} aria-hidden />
+            </HoldButton>
+          </span>
+        ))}
+      </div>
+      <div className="push-force">
+        <span id={id}>Push with {force_n} N</span>
+        <Slider size="sm" min={2} max={40} value={force_n} onChange={setForce} label={null} thumbProps={{ 'aria-labelledby': id }} />
+        <p className="quiet">Here you are the hand: the arrows push at the tool of the simulated arm, along the axes of the world.</p>
+      </div>
+    </div>
+  )
+}

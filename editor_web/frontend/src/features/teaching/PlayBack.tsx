@@ -1,0 +1,86 @@
+/** Plays back something taught, slowly: it is shown first, a person says yes, and Escape stops it. */
+import { NativeSelect } from '@mantine/core'
+import { IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
+import { useCallback, useEffect, useRef, useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { teach, tellServer, useObstacle, type Reference } from '../../api/teaching'
+import { CommandButton } from '../../components/CommandButton'
+
+const SPEEDS = [5, 10, 25, 50]
+
+interface PlayBackProps {
+  readonly arm: string
+  readonly what: Reference
+  readonly words: string
+  /** Show in the cell where the arm will go. */
+  readonly onLook: () => void
+}
+
+export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
+  const [stage, setStage] = useState<'idle' | 'asks' | 'moves'>('idle')
+  const [percent, setPercent] = useState(10)
+  const [said, setSaid] = useState('')
+  const under = useRef<AbortController>(undefined)
+  const off = useObstacle()
+
+  const stop = useCallback(() => under.current?.abort(), [])
+
+  function move(): void {
+    const control = new AbortController()
+    under.current = control
+    setStage('moves')
+    setSaid(`${arm} goes along ${words}`)
+    teach
+      .play({ arm, speed: percent / 100, ...what }, control.signal)
+      .then(
+        (played) => setSaid(played.status === 'succeeded' ? `${arm} has gone along ${words}` : played.cause),
+        (error: unknown) => setSaid(control.signal.aborted ? 'Stopped' : wordsOf(error)),
+      )
+      .finally(() => {
+        setStage('idle')
+        tellServer({ k: 'look', arm: '', kind: '', name: '', capture: 0 })
+      })
+  }
+
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => event.key === 'Escape' && stop()
+    addEventListener('keydown', onKey)
+    return () => {
+      removeEventListener('keydown', onKey)
+      stop()
+    }
+  }, [stop])
+
+  return (
+    <div className="play-back">
+      {stage === 'idle' && (
+        <CommandButton
+          label="Play back slowly"
+          icon={<IconPlayerPlay size={15} aria-hidden />}
+          obstacle={off}
+          onPress={() => {
+            onLook()
+            setSaid('')
+            setStage('asks')
+          }}
+        />
+      )}
+      {stage === 'asks' && (
+        <div className="play-asks" role="group" aria-label="Play back">
+          <p>
+            <strong>{arm} will move</strong> to the beginning of {words} and along it, whatever stands there. Look at the blue ghost first, and keep people out of reach.
+          </p>
+          <div className="command-row">
+            <NativeSelect size="xs" aria-label="Speed of the play-back" value={String(percent)} onChange={(event) => setPercent(Number(event.currentTarget.value))} data={SPEEDS.map((each) => ({ value: String(each), label: `${each} % of its speed` }))} />
+            <CommandButton label="Move the arm" tone="strong" obstacle={off} onPress={move} />
+            <CommandButton label="Cancel" tone="quiet" onPress={() => setStage('idle')} />
+          </div>
+        </div>
+      )}
+      {stage === 'moves' && <CommandButton label="Stop (Escape)" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} onPress={stop} />}
+      <span className="quiet" role="status" aria-label="Play-back">
+        {said}
+      </span>
+    </div>
+  )
+}

@@ -1,0 +1,124 @@
+/** Saves a capture as a named entry; overwriting one says first what that changes. */
+import { NativeSelect, TextInput } from '@mantine/core'
+import { IconDeviceFloppy } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { teach, useObstacle, useTeach } from '../../api/teaching'
+import type { CaptureSummary, Fits, Trace } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { changesOf, endOf, nameFault, tagFault, tagsOf } from '../../document/teaching'
+import { FORM_WORDS, formsOf, type Form } from './forms'
+
+const TYPING_MS = 250
+
+interface SaveFormProps {
+  readonly capture: CaptureSummary
+  readonly fit: Fits | undefined
+  readonly arm: string
+}
+
+export function SaveForm({ capture, fit, arm }: SaveFormProps) {
+  const [name, setName] = useState('')
+  const [form, setForm] = useState<Form>(capture.form)
+  const [tags, setTags] = useState('')
+  const [reason, setReason] = useState('')
+  const [said, setSaid] = useState('')
+  const [problem, setProblem] = useState('')
+  const off = useObstacle()
+  const fault = nameFault(name)
+  const wrongTags = tagFault(tags)
+  const present = usePresent(arm, form, fault ? '' : name)
+  const changes = present.trace && fit ? changesOf(present.trace, asForm(fit, form)) : []
+  const obstacle = off ?? (fault || wrongTags || undefined)
+
+  function save(): void {
+    setSaid('')
+    teach
+      .save({ id: capture.id, name, form, tags: tagsOf(tags), replace: present.exists, by: 'the dashboard', reason })
+      .then(
+        () => {
+          setProblem('')
+          setSaid(`Saved as ${form} ${name}.`)
+          setName('')
+        },
+        (error: unknown) => setProblem(wordsOf(error)),
+      )
+  }
+
+  return (
+    <form
+      className="save-form"
+      aria-label={`Save capture ${capture.id}`}
+      onSubmit={(event) => {
+        event.preventDefault()
+        if (obstacle === undefined) save()
+      }}
+    >
+      <div className="save-fields">
+        <TextInput size="xs" label="Name" placeholder="above_tray" value={name} onChange={(event) => setName(event.currentTarget.value)} error={name !== '' && fault} autoComplete="off" spellCheck={false} />
+        <NativeSelect size="xs" label="As" value={form} onChange={(event) => setForm(event.currentTarget.value as Form)} data={formsOf(capture).map((value) => ({ value, label: FORM_WORDS[value] }))} />
+        <TextInput size="xs" label="Tags" placeholder="station_1, tested" value={tags} onChange={(event) => setTags(event.currentTarget.value)} error={wrongTags} autoComplete="off" spellCheck={false} />
+        <TextInput size="xs" label="Why" placeholder="more room" value={reason} maxLength={1000} onChange={(event) => setReason(event.currentTarget.value)} autoComplete="off" />
+      </div>
+      {present.exists && (
+        <div className="overwrites" role="status" aria-label="What overwriting changes">
+          <strong>
+            {form} {name} is there already.
+          </strong>{' '}
+          Behaviors that use it move differently from their next run on; its history keeps the old value.
+          {changes.length > 0 && (
+            <ul>
+              {changes.map((each) => (
+                <li key={each}>{each}</li>
+              ))}
+            </ul>
+          )}
+        </div>
+      )}
+      <div className="command-row">
+        <CommandButton label={present.exists ? 'Overwrite' : 'Save'} tone={present.exists ? 'danger' : 'strong'} icon={<IconDeviceFloppy size={15} aria-hidden />} obstacle={obstacle} onPress={save} />
+        <span className="quiet" role="status" aria-label="Saving">
+          {said}
+        </span>
+      </div>
+      {problem && (
+        <p className="teach-problem" role="alert">
+          {problem}
+        </p>
+      )}
+    </form>
+  )
+}
+
+/** What a capture is in a form. */
+function asForm(fit: Fits, form: Form): Trace {
+  const course = (form === 'trajectory' ? fit.demonstration : (fit.primitive ?? fit.demonstration)) ?? EMPTY
+  return form === 'joints' || form === 'pose' ? endOf(fit.demonstration ?? course) : course
+}
+
+const EMPTY: Trace = { times_s: [], joint_names: [], joints: [], poses: [], remark: '' }
+
+/** Whether there is an entry of this name, and where the arm is along it. */
+function usePresent(arm: string, form: Form, name: string): { readonly exists: boolean; readonly trace: Trace | undefined } {
+  const changed = useTeach((s) => s.entries)
+  const [found, setFound] = useState<{ readonly name: string; readonly form: Form; readonly exists: boolean; readonly trace: Trace | undefined }>()
+  useEffect(() => {
+    if (!name) return
+    let current = true
+    const asked = setTimeout(() => {
+      teach.entries(form, name).then(
+        async (page) => {
+          const exists = page.entries.some((each) => each.kind === form && each.name === name)
+          const fits = exists ? await teach.fits(arm, { kind: form, name, capture: 0 }).catch(() => undefined) : undefined
+          if (current) setFound({ name, form, exists, trace: fits?.primitive ?? fits?.demonstration ?? undefined })
+        },
+        () => current && setFound(undefined),
+      )
+    }, TYPING_MS)
+    return () => {
+      current = false
+      clearTimeout(asked)
+    }
+  }, [arm, form, name, changed])
+  return found && found.name === name && found.form === form ? found : { exists: false, trace: undefined }
+}

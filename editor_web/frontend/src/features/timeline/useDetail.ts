@@ -1,0 +1,40 @@
+/** The spans to draw: all of them, or, where those of a long run are merged, exactly those of the part that is seen. */
+import { useEffect, useState } from 'react'
+import { pastApi, type Subject } from '../../api/timeline'
+import type { Span } from '../../api/types'
+import type { Course, View } from '../../document/timeline'
+
+const PATIENCE_MS = 150
+
+interface Detail extends View {
+  readonly seq: number
+  readonly rows: ReadonlyMap<string, readonly Span[]>
+}
+
+export function useDetail(subject: Subject | undefined, course: Course | undefined, view: View, isPart: boolean): ReadonlyMap<string, readonly Span[]> {
+  const [detail, setDetail] = useState<Detail>()
+  const isWanted = isPart && course?.merged === true && subject !== undefined
+  const { fromS, untilS } = view
+  const fits = detail !== undefined && isWanted && detail.fromS <= fromS && detail.untilS >= untilS && detail.seq === course.seq
+  useEffect(() => {
+    if (!isWanted || fits) return
+    let isOver = false
+    const length = untilS - fromS
+    const [wideFromS, wideUntilS] = [Math.max(0, fromS - length / 2), untilS + length / 2]
+    const timer = setTimeout(() => {
+      pastApi.timeline(subject, 0, wideFromS, wideUntilS).then(
+        (told) => {
+          if (isOver) return
+          setDetail({ fromS: wideFromS, untilS: wideUntilS, seq: told.seq, rows: new Map(told.rows.map((row) => [row.path, row.spans])) })
+        },
+        // What is there already is good enough to go on with.
+        () => undefined,
+      )
+    }, PATIENCE_MS)
+    return () => {
+      isOver = true
+      clearTimeout(timer)
+    }
+  }, [isWanted, fits, fromS, untilS, subject, course?.seq])
+  return fits ? detail.rows : (course?.rows ?? new Map<string, readonly Span[]>())
+}

@@ -1,0 +1,149 @@
+"""How a run failed: the chain of causes with advice, the node where it began, and what happened there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import msgspec
+
+from editor_web.event_words import LogLine, log_line
+from engine.errors import FlexcellError
+from engine.event import Cause, Diverted, Entered, Event, Exited, RunEnded
+
+AROUND = 20
+_AROUND_KINDS = frozenset(
+    {"goal", "goal_finished", "call", "answer", "received", "userdata", "log", "fault", "retry", "exited", "diverted"}
+)
+
+
+class FailureLink(msgspec.Struct, frozen=True, kw_only=True):
+    """One link of the chain of causes, outermost first; `hint` says what to do about it, may be empty."""
+
+    message: str
+    where: str
+    kind: str
+    hint: str
+
+
+class FailureStep(msgspec.Struct, frozen=True, kw_only=True):
+    """How a node on the way from the root to the origin ended, after event `seq`."""
+
+    path: str
+    seq: int
+    time_s: float
+    text: str
+
+
+class Failure(msgspec.Struct, frozen=True, kw_only=True):
+    """A run that failed: it began at event `seq`, at node `path` (empty where no node did it).
+
+    `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote.
+    """
+
+    seq: int
+    time_s: float
+    path: str
+    text: str
+    hint: str
+    links: tuple[FailureLink, ...]
+    steps: tuple[FailureStep, ...]
+    around: tuple[LogLine, ...]
+
+
+def failure_of(events: Sequence[Event], *, is_failed: bool) -> Failure | None:
+    """Return how a run failed; None for one that did not, or is not over."""
+    end = events[-1] if events else None
+    if not isinstance(end, RunEnded) or not is_failed:
+        return None
+    links = tuple(map(_link, end.cause.chain())) if end.cause is not None else ()
+    origin = _origin(events, end)
+    path = _path(origin)
+    last = links[-1] if links else None
+    return Failure(
+        seq=origin.seq,
+        time_s=origin.time_s,
+        path=path,
+        text=last.message if last is not None else log_line(end).text,
+        hint=next((link.hint for link in reversed(links) if link.hint), ""),
+        links=links,
+        steps=tuple(_steps(events, path, origin.seq)),
+        around=_around(events, path, origin.seq),
+    )
+
+
+def _origin(events: Sequence[Event], end: RunEnded) -> Event:
+    """Return the event that began it: the deepest and earliest one of the same cause, in the last visit of its node."""
+    if end.cause is not None:
+        root = end.cause.chain()[-1]
+        found = _innermost(events, lambda event: _root_of(event) == root)
+        if found is not None:
+            return found
+    return _innermost(events, _is_end_of_node) or end
+
+
+def _innermost(events: Sequence[Event], fits: Callable[[Event], bool]) -> Event | None:
+    origin: Event | None = None
+    for event in reversed(events):
+        path = _path(event)
+        if origin is not None and isinstance(event, Entered) and path == _path(origin):
+            break
+        inside = origin is None or path == _path(origin) or path.startswith(f"{_path(origin)}/")
+        if path and inside and fits(event):
+            origin = event
+    return origin
+
+
+def _is_end_of_node(event: Event) -> bool:
+    return isinstance(event, Exited) and not event.preempted
+
+
+def _root_of(event: Event) -> Cause | None:
+    cause = getattr(event, "cause", None)
+    return cause.chain()[-1] if isinstance(cause, Cause) else None
+
+
+def _path(event: Event) -> str:
+    return str(getattr(event, "path", ""))
+
+
+def _steps(events: Sequence[Event], path: str, since_seq: int) -> Iterator[FailureStep]:
+    """Tell how the containers around the origin ended after it, outermost first."""
+    ends = {_path(event): event for event in events if event.seq >= since_seq and isinstance(event, Exited | Diverted)}
+    parts = path.split("/") if path else []
+    for depth in range(1, len(parts) + 1):
+        here = "/".join(parts[:depth])
+        event = ends.get(here)
+        if event is not None:
+            text = f"ended with {event.outcome or 'an error'}" if isinstance(event, Exited) else f"left by {event.by}"
+            yield FailureStep(path=here, seq=event.seq, time_s=event.time_s, text=text)
+
+
+def _around(events: Sequence[Event], path: str, seq: int) -> tuple[LogLine, ...]:
+    """Return the last lines of the node's last visit, and how it ended."""
+    begun = next((e for e in reversed(events) if e.seq <= seq and isinstance(e, Entered) and e.path == path), events[0])
+    lines = [
+        log_line(event, duration_s=event.time_s - begun.time_s)
+        for event in events
+        if event.seq >= begun.seq and _path(event) == path and event.__struct_config__.tag in _AROUND_KINDS
+    ]
+    return tuple(lines[-AROUND:])
+
+
+def _link(cause: Cause) -> FailureLink:
+    message, hint = _parted(cause.message) if cause.kind in _family(FlexcellError) else (cause.message, "")
+    return FailureLink(message=message, where=cause.where, kind=cause.kind, hint=hint)
+
+
+def _family(kind: type[FlexcellError]) -> frozenset[str]:
+    return frozenset({kind.__name__}.union(*(_family(each) for each in kind.__subclasses__())))
+
+
+def _parted(message: str) -> tuple[str, str]:
+    """Part the advice from what an error of ours says: it stands in brackets at the end."""
+    depth = 0
+    for index in range(len(message) - 1, 0, -1):
+        depth += {")": 1, "(": -1}.get(message[index], 0)
+        if depth == 0:
+            is_advice = index < len(message) - 1 and message[index - 1] == " "
+            return (message[: index - 1], message[index + 1 : -1]) if is_advice else (message, "")
+    return message, ""

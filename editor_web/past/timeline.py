@@ -1,0 +1,82 @@
+"""The timeline of a run: when each node was active, and what is marked."""
+
+from __future__ import annotations
+
+import math
+
+import msgspec
+
+from editor_web.past.marks import TimeMark, bounded, mark_of
+from editor_web.past.moments import Moments
+from editor_web.past.spans import MOST_SPANS, Span, Spans, merged
+from engine.event import Event
+
+
+class TimelineRow(msgspec.Struct, frozen=True, kw_only=True):
+    """The spans of one node, in order; its depth is in its path."""
+
+    path: str
+    spans: tuple[Span, ...]
+
+
+class Timeline(msgspec.Struct, frozen=True, kw_only=True):
+    """A run up to event `seq`, or what of it was begun or ended after the event that was asked for.
+
+    `merged` says that spans which lie close together became one: ask for a part of the time to see it exactly.
+    `left_out` marks are not in it.
+    """
+
+    run: str
+    seq: int
+    duration_s: float
+    ended: bool
+    merged: bool
+    rows: tuple[TimelineRow, ...]
+    marks: tuple[TimeMark, ...]
+    left_out: int
+
+
+class Course:
+    """A run followed from its first event: its moments, spans and marks; not to be used by two threads at once."""
+
+    def __init__(self, run_id: str) -> None:
+        self.run_id = run_id
+        self.moments = Moments(run_id)
+        self._spans = Spans()
+        self._marks: list[TimeMark] = []
+
+    def follow(self, event: Event) -> None:
+        """Take the next event; one that was taken already does nothing."""
+        changed = self.moments.follow(event)
+        if changed is None:
+            return
+        if changed:
+            self._spans.take(event, changed)
+        mark = mark_of(event)
+        if mark is not None:
+            self._marks.append(mark)
+
+    def timeline(
+        self, *, from_s: float = 0.0, until_s: float = math.inf, after_seq: int = 0, most: int = MOST_SPANS
+    ) -> Timeline:
+        """Return what of the run touches a time, and is newer than an event; all of it where spans are merged."""
+        now = self.moments.now
+        is_many = len(self._spans) > most
+        after_seq = 0 if is_many else after_seq
+        rows = self._spans.of(from_s=from_s, until_s=until_s, after_seq=after_seq)
+        count = sum(map(len, rows.values()))
+        if count > most:
+            rows = merged(rows, span_s=min(until_s, now.time_s) - max(from_s, 0.0), most=most)
+        marks, left_out = bounded(
+            mark for mark in self._marks if from_s <= mark.time_s <= until_s and mark.seq > after_seq
+        )
+        return Timeline(
+            run=self.run_id,
+            seq=now.seq,
+            duration_s=now.time_s,
+            ended=now.ended,
+            merged=is_many,
+            rows=tuple(TimelineRow(path=path, spans=rows[path]) for path in sorted(rows)),
+            marks=marks,
+            left_out=left_out,
+        )

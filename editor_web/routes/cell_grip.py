@@ -1,0 +1,97 @@
+"""The websocket `/api/v1/cell/grip/<page>`: the handle that a page pulls at in its 3D view, as long as it is open.
+
+For operators only: it moves robots. The page sends `Take` and, while the mouse is down, `Held`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections import deque
+from typing import cast
+
+import msgspec
+from fastapi import APIRouter, WebSocket
+from starlette.websockets import WebSocketDisconnect
+
+from editor_web.access import OPERATOR
+from editor_web.grip import Grip, Gripped, Held, Take
+from editor_web.routes.services import role_of, services_of
+from editor_web.teaching.jogging import Jogger
+from editor_web.teaching_wire import Refused
+
+router = APIRouter()
+_UNAVAILABLE = 1013
+_REFUSED = 1008
+_SEND_LIMIT_S = 5.0
+_MOST_WAITING = 100
+_decoder: msgspec.json.Decoder[Take | Held] = msgspec.json.Decoder(Take | Held)
+
+
+class _Closed(Exception):
+    """The page has gone, or has been sent away."""
+
+
+class _News:
+    """What the page is to be told; the oldest is dropped where it takes nothing."""
+
+    def __init__(self) -> None:
+        self.arrived = asyncio.Event()
+        self.waiting: deque[Gripped | Refused] = deque(maxlen=_MOST_WAITING)
+
+    def tell(self, news: Gripped | Refused) -> None:
+        self.waiting.append(news)
+        self.arrived.set()
+
+
+@router.websocket("/api/v1/cell/grip/{page}")
+async def cell_grip(socket: WebSocket, page: str) -> None:
+    """Let one page pull at an arm until it goes."""
+    services = services_of(socket)
+    view = services.cell_view
+    if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
+        await socket.close(_UNAVAILABLE, "this server has no such cell view")
+        return
+    if role_of(socket) != OPERATOR:
+        await socket.close(_REFUSED, "a viewer may look only")
+        return
+    await socket.accept()
+    news = _News()
+    joggers = cast("dict[str, Jogger]", socket.app.state.joggers)
+    grip = Grip(services.backend, view, page, joggers=joggers, tell=news.tell)
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(_receive(socket, grip), name="grip-receive")
+            tasks.create_task(_answer(socket, news), name="grip-answer")
+    except* _Closed:
+        pass
+    finally:
+        await grip.close()
+
+
+async def _receive(socket: WebSocket, grip: Grip) -> None:
+    while True:
+        try:
+            request = _decoder.decode(await socket.receive_text())
+        except WebSocketDisconnect as error:
+            raise _Closed from error
+        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
+            await socket.close(_REFUSED, "expected to take or to hold a handle")
+            raise _Closed from error
+        if isinstance(request, Take):
+            await grip.take(request)
+        else:
+            grip.held()
+
+
+async def _answer(socket: WebSocket, news: _News) -> None:
+    while True:
+        await news.arrived.wait()
+        news.arrived.clear()
+        while news.waiting:
+            try:
+                async with asyncio.timeout(_SEND_LIMIT_S):
+                    await socket.send_text(msgspec.json.encode(news.waiting.popleft()).decode())
+            except (WebSocketDisconnect, RuntimeError, TimeoutError) as error:
+                # Starlette raises RuntimeError for a send after the close.
+                raise _Closed from error

@@ -1,0 +1,109 @@
+"""The websocket `/api/v1/cell/past`: what past moment the 3D view of a page shows, as long as it is open.
+
+The page sends `PastOrder`s, many a second while somebody scrubs; `PastState`s come back, of the newest only.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from typing import Annotated
+
+import msgspec
+from fastapi import APIRouter, WebSocket
+from starlette.websockets import WebSocketDisconnect
+
+from editor_web.cell_view import CellView, PastState
+from editor_web.routes.services import services_of
+
+router = APIRouter()
+_UNAVAILABLE = 1013
+_MALFORMED = 1008
+_SEND_LIMIT_S = 5.0
+
+
+class PastOrder(msgspec.Struct, frozen=True, kw_only=True):
+    """From the page: show this run at this time of it; null shows the present."""
+
+    run: Annotated[str, msgspec.Meta(min_length=1, max_length=500)]
+    time_s: float | None
+
+
+class _Closed(Exception):
+    """The page has gone, or has been sent away."""
+
+
+_decoder = msgspec.json.Decoder(PastOrder)
+
+
+@router.websocket("/api/v1/cell/past/{page}")
+async def cell_past(socket: WebSocket, page: str) -> None:
+    """Show past moments to one page until it goes; it then sees the present again."""
+    view = services_of(socket).cell_view
+    if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
+        await socket.close(_UNAVAILABLE, "this server has no such cell view")
+        return
+    await socket.accept()
+    told = _Told(asyncio.get_running_loop())
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(_receive(socket, view, page, told), name="past-receive")
+            tasks.create_task(_answer(socket, told), name="past-answer")
+    except* _Closed:
+        pass
+    finally:
+        view.show_present(page)
+
+
+class _Told:
+    """The newest state that the page has not been told; `put` may be called on any thread."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._arrived = asyncio.Event()
+        self._state: PastState | None = None
+
+    def put(self, state: PastState) -> None:
+        """Tell this next."""
+        try:
+            self._loop.call_soon_threadsafe(self._take, state)
+        except RuntimeError:
+            return  # the server has just ended, and with it the page's view
+
+    async def next(self) -> PastState:
+        """Wait for something to tell."""
+        while self._state is None:
+            self._arrived.clear()
+            await self._arrived.wait()
+        state, self._state = self._state, None
+        return state
+
+    def _take(self, state: PastState) -> None:
+        self._state = state
+        self._arrived.set()
+
+
+async def _receive(socket: WebSocket, view: CellView, page: str, told: _Told) -> None:
+    while True:
+        try:
+            order = _decoder.decode(await socket.receive_text())
+        except WebSocketDisconnect as error:
+            raise _Closed from error
+        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
+            await socket.close(_MALFORMED, "expected a run and a time")
+            raise _Closed from error
+        if order.time_s is None:
+            view.show_present(page)
+        else:
+            view.show_past(page, order.run, order.time_s, tell=told.put)
+
+
+async def _answer(socket: WebSocket, told: _Told) -> None:
+    while True:
+        state = await told.next()
+        try:
+            async with asyncio.timeout(_SEND_LIMIT_S):
+                await socket.send_text(msgspec.json.encode(state).decode())
+        except (WebSocketDisconnect, RuntimeError, TimeoutError) as error:
+            # Starlette raises RuntimeError for a send after the close.
+            raise _Closed from error

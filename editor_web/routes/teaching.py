@@ -1,0 +1,253 @@
+"""Teaching: the page's own connection, with which jogging and buttons end, and what it asks of entries and captures."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from typing import Annotated, cast
+
+import msgspec
+from fastapi import APIRouter, Query, Request, Response, WebSocket
+from starlette.websockets import WebSocketDisconnect
+
+from editor_web.access import OPERATOR
+from editor_web.backend import Backend, Unsubscribe
+from editor_web.cell_view import CellView
+from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, while_there
+from editor_web.routes.services import ServicesOf, role_of, services_of
+from editor_web.teaching.arms import ArmBoard
+from editor_web.teaching.buttons import Buttons
+from editor_web.teaching.jogging import Jogger
+from editor_web.teaching.playing import play
+from editor_web.teaching.pushing import push
+from editor_web.teaching.taught import entries, fits, read_taught, trace
+from editor_web.teaching_wire import (
+    ArmsNow,
+    Button,
+    EntriesChanged,
+    FromPage,
+    Go,
+    HandNews,
+    Jog,
+    Jogging,
+    LookAt,
+    PlayBody,
+    PushBody,
+    Refused,
+    Rest,
+    ToPage,
+)
+from engine.errors import FlexcellError
+from engine.skills.planning import PathPreview
+from engine.skills.teaching import TeachStatus
+
+router = APIRouter(prefix="/api/v1/teach", tags=["teaching"])
+PERIOD_S = 0.1
+SEND_LIMIT_S = 5.0
+MOST_WAITING = 200
+MOST_ENTRIES = 200
+_decoder: msgspec.json.Decoder[FromPage] = msgspec.json.Decoder(FromPage)
+
+
+@router.get("/entries")
+async def list_entries(
+    services: ServicesOf,
+    kind: Annotated[str, Query(max_length=40)] = "",
+    text: Annotated[str, Query(max_length=200)] = "",
+    limit: Annotated[int, Query(ge=1, le=MOST_ENTRIES)] = 100,
+) -> Response:
+    """List entries of the cell's store, each with its last change."""
+    return _json(await entries(services.backend.bus, kind=kind, text=text, limit=limit))
+
+
+@router.get("/fits")
+async def get_fits(
+    services: ServicesOf,
+    arm: Annotated[str, Query(max_length=100)],
+    kind: Annotated[str, Query(max_length=40)] = "",
+    name: Annotated[str, Query(max_length=200)] = "",
+    capture: Annotated[int, Query(ge=0)] = 0,
+) -> Response:
+    """Return how an arm would go along an entry or a capture, beside the recording that it was learned from."""
+    return _json(await fits(services.backend.bus, arm, LookAt(arm=arm, kind=kind, name=name, capture=capture)))
+
+
+@router.post("/play")
+async def play_back(body: PlayBody, request: Request, services: ServicesOf) -> Response:
+    """Carry out what was taught, slowly; it is stopped when the page goes. This moves the robot."""
+    played = await while_there(play(services.backend.bus, body), request, name=f"play {body.arm}")
+    return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else _json(played)
+
+
+@router.post("/push", status_code=204)
+async def push_tool(body: PushBody, services: ServicesOf) -> None:
+    """Push at the tool of a simulated arm that floats."""
+    await push(services.backend, body)
+
+
+@router.websocket("/live")
+async def teach_live(socket: WebSocket) -> None:
+    """Serve one page: arms and captures go out; jogging, buttons and ghosts come in, and end with the connection."""
+    services = services_of(socket)
+    await socket.accept()
+    joggers = cast("dict[str, Jogger]", socket.app.state.joggers)
+    page = _Page(services.backend, services.cell_view, joggers, may_operate=role_of(socket) == OPERATOR)
+    try:
+        await page.open()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(_receive(socket, page), name="teach-receive")
+            tasks.create_task(_stream(socket, page), name="teach-stream")
+    except* (WebSocketDisconnect, RuntimeError, TimeoutError):
+        # The page has gone, or is too slow to be told anything; Starlette raises RuntimeError for a send after a close.
+        pass
+    finally:
+        await page.close()
+
+
+class _Page:
+    """One page and what it holds."""
+
+    def __init__(
+        self, backend: Backend, view: CellView | None, joggers: dict[str, Jogger], *, may_operate: bool
+    ) -> None:
+        self._backend = backend
+        self._view = view
+        self._may_operate = may_operate
+        self._waiting: deque[ToPage] = deque(maxlen=MOST_WAITING)
+        self._board = ArmBoard(backend)
+        self._jogger = Jogger(backend.bus, taken=joggers, tell=self._waiting.append)
+        self._buttons = Buttons(backend.bus, tell=self._waiting.append)
+        self._unsubscribe: list[Unsubscribe] = []
+        self._hand: TeachStatus | None = None
+        self._is_hand_news = True
+        self._are_entries_news = False
+        self._held_by = ""
+        self._looked_at = ""
+        self._looking: asyncio.Task[None] | None = None
+
+    async def open(self) -> None:
+        """Follow what the page is told of."""
+        self._waiting.append(await self._board.arms())
+        self._follow("teach/status", self._on_hand)
+        self._follow("store/changes", self._on_entries)
+
+    async def close(self) -> None:
+        """Let go of everything: the arm first."""
+        await self._jogger.rest()
+        await self._buttons.release()
+        await self._look_away()
+        for unsubscribe in self._unsubscribe:
+            unsubscribe()
+
+    async def take(self, request: FromPage) -> None:
+        """Do what the page says; a viewer's page may only look."""
+        match request:
+            case LookAt():
+                await self._look_away()
+                if request.arm:
+                    self._looking = asyncio.create_task(self._look(request), name="teach-look")
+            case _ if not self._may_operate:
+                self._waiting.append(
+                    Refused(what="jog", message="you may look only", hint="log in with the operator token")
+                )
+            case Jog():
+                await self._jogger.begin(request)
+            case Go():
+                await self._jogger.go(request.velocity)
+            case Rest():
+                await self._jogger.rest()
+            case Button():
+                await self._buttons.take(request)
+
+    async def news(self) -> list[ToPage]:
+        """Return what the page has not been told."""
+        told: list[ToPage] = list(self._waiting)
+        self._waiting.clear()
+        if self._is_hand_news:
+            self._is_hand_news = False
+            told.append(HandNews(status=self._hand))
+        if self._are_entries_news:
+            self._are_entries_news = False
+            told.append(EntriesChanged())
+        if (jogging := self._jogging()) is not None:
+            told.append(jogging)
+        arms = await self._board.changed()
+        return [*told, ArmsNow(arms=arms)] if arms else told
+
+    def _jogging(self) -> Jogging | None:
+        """Return what holds the jogged arm back, where that is another than told."""
+        arm = self._jogger.arm
+        goals = self._backend.desk.goals() if arm else ()
+        feedback = next((each.feedback for each in goals if each.address.startswith(f"{arm}/jog_")), None)
+        held_by = str(getattr(feedback, "held_by", ""))
+        if held_by == self._held_by:
+            return None
+        self._held_by = held_by
+        return Jogging(arm=arm, held_by=held_by) if arm else None
+
+    def _follow(self, topic: str, callback: Callable[[object], None]) -> None:
+        try:
+            self._unsubscribe.append(self._backend.subscribe_topic(topic, callback))
+        except FlexcellError:
+            # A cell without a Helping Hand or a store; the page says what is missing.
+            return
+
+    def _on_hand(self, message: object) -> None:
+        self._hand = message if isinstance(message, TeachStatus) else None
+        self._is_hand_news = True
+
+    def _on_entries(self, _message: object) -> None:
+        self._are_entries_news = True
+
+    async def _look(self, look: LookAt) -> None:
+        try:
+            course = await trace(self._backend.bus, look.arm, await read_taught(self._backend.bus, look))
+        except FlexcellError as error:
+            self._waiting.append(Refused(what="look", message=error.message, hint=error.hint or ""))
+            return
+        if course.remark:
+            self._waiting.append(Refused(what="look", message=course.remark, hint=""))
+        if self._view is not None:
+            self._looked_at = look.arm
+            self._view.show_ghost(
+                PathPreview(
+                    robot=look.arm,
+                    state="proposed",
+                    joint_names=course.joint_names,
+                    joints=course.joints,
+                    tool_path=tuple((pose[0], pose[1], pose[2]) for pose in course.poses),
+                )
+            )
+
+    async def _look_away(self) -> None:
+        if self._looking is not None:
+            self._looking.cancel()
+            await asyncio.wait({self._looking})
+            self._looking = None
+        if self._looked_at and self._view is not None:
+            self._view.show_ghost(PathPreview(robot=self._looked_at, state="none"))
+        self._looked_at = ""
+
+
+async def _receive(socket: WebSocket, page: _Page) -> None:
+    while True:
+        try:
+            request = _decoder.decode(await socket.receive_text())
+        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
+            await socket.close(1008, "expected a message of the page for teaching")
+            raise WebSocketDisconnect(1008) from error
+        await page.take(request)
+
+
+async def _stream(socket: WebSocket, page: _Page) -> None:
+    while True:
+        for message in await page.news():
+            async with asyncio.timeout(SEND_LIMIT_S):
+                await socket.send_text(msgspec.json.encode(message).decode())
+        # The frame rate's limit; what happens meanwhile is coalesced.
+        await asyncio.sleep(PERIOD_S)
+
+
+def _json(value: object) -> Response:
+    return Response(msgspec.json.encode(value), media_type="application/json")

@@ -1,0 +1,147 @@
+"""Numbers of messages: which ones a message has, under which name and unit, and reading one of them fast."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import cast
+
+import msgspec
+
+MAX_FIELDS = 200
+"""Numbers of one topic that can be chosen."""
+MAX_ROW = 40
+"""Items of a list whose numbers can be chosen; longer ones are data, not signals."""
+MAX_DEPTH = 5
+_UNITS = {
+    "m": "m",
+    "rad": "rad",
+    "s": "s",
+    "n": "N",
+    "nm": "Nm",
+    "kg": "kg",
+    "hz": "Hz",
+    "px": "px",
+    "percent": "%",
+    "m_s": "m/s",
+    "rad_s": "rad/s",
+    "m_s2": "m/s²",
+    "rad_s2": "rad/s²",
+    "nm_rad": "Nm/rad",
+    "deg": "°",
+    "v": "V",
+    "a": "A",
+}
+_OWN_TIME = "time_s"
+"""When a message was made; curves have the server's time instead."""
+_BY_NAME = {"xyz": "m"}
+_AXES = {"xyz": "xyz", "xyzw": "xyzw", "force_n": "xyz", "torque_nm": "xyz"}
+Path = tuple[str | int, ...]
+
+
+class SignalField(msgspec.Struct, frozen=True, kw_only=True):
+    """One number of a topic: its path `position_rad.0`, its name in words `position_rad joint1`, its unit."""
+
+    path: str
+    label: str
+    unit: str
+
+
+def signal_fields(message: object) -> tuple[SignalField, ...]:
+    """Return the numbers of a message, in order; truth values count as 0 and 1."""
+    found: list[SignalField] = []
+    for field in _walk(message, (), (), "", 0):
+        if field.path != _OWN_TIME:
+            found.append(field)
+        if len(found) == MAX_FIELDS:
+            break
+    return tuple(found)
+
+
+def path_of(text: str) -> Path:
+    """Return the path that `position_rad.0` writes."""
+    return tuple(int(part) if part.isascii() and part.isdigit() else part for part in text.split("."))
+
+
+def number_at(message: object, path: Path) -> float | None:
+    """Return the number of a message at `path`; None where it has none."""
+    value: object = message
+    for step in path:
+        match value:
+            case msgspec.Struct() if isinstance(step, str) and step in value.__struct_fields__:
+                value = getattr(value, step)
+            case Mapping():
+                value = cast("Mapping[object, object]", value).get(str(step))
+            case list() | tuple() if isinstance(step, int):
+                row = cast("list[object]", value)
+                value = row[step] if step < len(row) else None
+            case _:
+                return None
+    if not isinstance(value, bool | int | float):
+        return None
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def unit_of(name: str) -> str:
+    """Return the unit that the name of a field ends with, `width_m`; empty where it tells none."""
+    parts = name.lower().split("_")
+    for length in (2, 1):
+        unit = _UNITS.get("_".join(parts[-length:])) if len(parts) > length else None
+        if unit is not None:
+            return unit
+    return _BY_NAME.get(name, "")
+
+
+def _walk(value: object, path: Path, words: tuple[str, ...], unit: str, depth: int) -> Iterator[SignalField]:
+    if isinstance(value, bool | int | float):
+        if path:
+            yield SignalField(path=".".join(map(str, path)), label=" ".join(words), unit=unit)
+        return
+    if depth == MAX_DEPTH:
+        return
+    for step, word, own, inner in _parts(value, path):
+        yield from _walk(inner, (*path, step), (*words, word), own or unit, depth + 1)
+
+
+def _parts(value: object, path: Path) -> Iterator[tuple[str | int, str, str, object]]:
+    """The parts of a value: step, word, unit where its name tells one, and the part."""
+    match value:
+        case msgspec.Struct():
+            row = _row_names(value)
+            for name in value.__struct_fields__:
+                inner: object = getattr(value, name)
+                items = cast("tuple[object, ...]", inner) if isinstance(inner, tuple) else ()
+                named = row and len(items) == len(row)
+                yield name, name, unit_of(name), _Row(items, row) if named else inner
+        case _Row():
+            for index, word in enumerate(value.names):
+                yield index, word, "", value.items[index]
+        case Mapping():
+            for key, inner in cast("Mapping[object, object]", value).items():
+                if "." not in str(key):
+                    yield str(key), str(key), unit_of(str(key)), inner
+        case list() | tuple():
+            items = cast("list[object]", value)
+            if len(items) <= MAX_ROW:
+                axes = _AXES.get(str(path[-1]) if path else "", "")
+                for index, inner in enumerate(items):
+                    yield index, axes[index] if len(axes) == len(items) else str(index), "", inner
+        case _:
+            return
+
+
+class _Row:
+    """A row whose items are named by the message's `names`."""
+
+    def __init__(self, items: tuple[object, ...], names: tuple[str, ...]) -> None:
+        self.items = items
+        self.names = names
+
+
+def _row_names(message: msgspec.Struct) -> tuple[str, ...]:
+    """The names that a message gives to the items of its rows."""
+    names: object = getattr(message, "names", ())
+    if not isinstance(names, tuple) or len(cast("tuple[object, ...]", names)) > MAX_ROW:
+        return ()
+    return tuple(str(each) for each in cast("tuple[object, ...]", names))

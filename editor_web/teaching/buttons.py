@@ -1,0 +1,43 @@
+"""Buttons of a page on the bus: each is told when it goes down and up, and let go when the page is gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from editor_web.teaching_wire import Button, Refused
+from engine.bus.access import BusAccess
+from engine.errors import BusError
+
+MOST_BUTTONS = 64
+
+
+class Buttons:
+    """The buttons of one page that are down."""
+
+    def __init__(self, bus: BusAccess, *, tell: Callable[[Refused], None]) -> None:
+        self._bus = bus
+        self._tell = tell
+        self._down: set[str] = set()
+
+    async def take(self, button: Button) -> None:
+        """Tell the bus of a button; a topic that no trigger listens to is refused in words."""
+        topic = f"buttons/{button.source}/{button.button}"
+        if button.value and len(self._down) >= MOST_BUTTONS:
+            return
+        try:
+            await self._bus.publish(topic, {"value": button.value})
+        except BusError as error:
+            if button.value:
+                self._tell(Refused(what="button", message=f"no trigger listens to {topic}", hint=error.hint or ""))
+            return
+        (self._down.add if button.value else self._down.discard)(topic)
+
+    async def release(self) -> None:
+        """Let every button go."""
+        for topic in tuple(self._down):
+            self._down.discard(topic)
+            try:
+                await self._bus.publish(topic, {"value": False})
+            except BusError:
+                # The trigger was taken away meanwhile: nobody is left to be told.
+                continue

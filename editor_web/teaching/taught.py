@@ -1,0 +1,148 @@
+"""Entries and captures by reference, and where an arm is along them."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import Protocol, cast, get_args
+
+import msgspec
+
+from editor_web.teaching_wire import EntryPage, EntryRow, Fits
+from engine.bus.access import BusAccess
+from engine.errors import FlexcellError
+from engine.messages import Message
+from engine.skills.entries import EntryHistory, EntryList, EntryRecord
+from engine.skills.teaching import Capture
+from engine.skills.tracing import Trace, Traced
+
+_PLACED = frozenset(get_args(Traced))
+
+
+class Reference(Protocol):
+    """Names an entry (`kind`, `name`), or a capture by its number."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of the entry."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """Name of the entry."""
+        ...
+
+    @property
+    def capture(self) -> int:
+        """Number of the capture, 0 for an entry."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Taught:
+    """What is referred to: the kind of an entry and its fields."""
+
+    kind: str
+    value: dict[str, object]
+
+
+async def read_taught(bus: BusAccess, reference: Reference) -> Taught:
+    """Return what is referred to; raises FlexcellError where there is none."""
+    if reference.capture:
+        capture = await read_capture(bus, reference.capture)
+        kind = capture.summary.form
+        return Taught(kind=kind, value=msgspec.to_builtins(_value(capture)))
+    answer = await bus.call("store/read_entry", {"kind": reference.kind, "name": reference.name})
+    return Taught(kind=reference.kind, value=msgspec.json.decode(answer, type=EntryRecord).value)
+
+
+async def read_capture(bus: BusAccess, number: int) -> Capture:
+    """Return a capture with its data; raises FlexcellError where there is none."""
+    return msgspec.json.decode(await bus.call("teach/read_capture", {"id": number}), type=Capture)
+
+
+def _value(capture: Capture) -> Message | dict[str, object]:
+    match capture.summary.form:
+        case "dmp":
+            return cast("Message", capture.joint_dmp)
+        case "cart_dmp":
+            return cast("Message", capture.cart_dmp)
+        case "trajectory":
+            return cast("Message", capture.trajectory)
+        case "pose":
+            return cast("Message", capture.pose)
+        case "joints":
+            return {"joints": capture.joints, "names": capture.names}
+        case "gripper":
+            return cast("Message", capture.gripper)
+
+
+async def trace(bus: BusAccess, arm: str, taught: Taught, *, most: int = 200) -> Trace:
+    """Return where an arm is along it.
+
+    Raises:
+        FlexcellError: it is of another arm, or has no place.
+    """
+    if taught.kind not in _PLACED:
+        raise FlexcellError(f"a {taught.kind} has no place", hint=f"these have: {', '.join(sorted(_PLACED))}")
+    request = {"kind": taught.kind, "value": taught.value, "most": most}
+    return msgspec.json.decode(await bus.call(f"{arm}/trace_motion", request), type=Trace)
+
+
+async def fits(bus: BusAccess, arm: str, reference: Reference) -> Fits:
+    """Return a recording and its primitive side by side; of an entry the one that it is."""
+    if not reference.capture:
+        taught = await read_taught(bus, reference)
+        course = await trace(bus, arm, taught)
+        is_primitive = taught.kind in ("dmp", "cart_dmp")
+        return Fits(
+            demonstration=None if is_primitive else course,
+            primitive=course if is_primitive else None,
+            joint_fit=None,
+            cart_fit=None,
+        )
+    capture = await read_capture(bus, reference.capture)
+    if capture.trajectory is None:
+        value = msgspec.to_builtins(_value(capture))
+        shown = await trace(bus, arm, Taught(kind=capture.summary.form, value=value))
+        return Fits(demonstration=shown, primitive=None, joint_fit=None, cart_fit=None)
+    recorded = await trace(bus, arm, Taught(kind="trajectory", value=msgspec.to_builtins(capture.trajectory)))
+    learned = capture.cart_dmp or capture.joint_dmp
+    fit = capture.cart_fit if capture.cart_dmp is not None else capture.joint_fit
+    primitive = None
+    if learned is not None:
+        kind = "cart_dmp" if capture.cart_dmp is not None else "dmp"
+        primitive = await trace(bus, arm, Taught(kind=kind, value=msgspec.to_builtins(learned)))
+        if fit is not None:
+            # The primitive begins where the recording begins to move.
+            later = tuple(time_s + fit.cut.start_s for time_s in primitive.times_s)
+            primitive = msgspec.structs.replace(primitive, times_s=later)
+    return Fits(demonstration=recorded, primitive=primitive, joint_fit=capture.joint_fit, cart_fit=capture.cart_fit)
+
+
+async def entries(bus: BusAccess, *, kind: str, text: str, limit: int) -> EntryPage:
+    """Return the first entries that match, each with its last change.
+
+    Raises:
+        FlexcellError: the cell has no store.
+    """
+    answer = await bus.call("store/list_entries", {"kind": kind, "text": text})
+    found = msgspec.json.decode(answer, type=EntryList).entries
+    shown = found[:limit]
+    rows = await asyncio.gather(*(_row(bus, *each) for each in shown))
+    return EntryPage(entries=tuple(rows), total=len(found))
+
+
+async def _row(bus: BusAccess, kind: str, name: str, revision: int) -> EntryRow:
+    answer = await bus.call("store/read_history", {"kind": kind, "name": name})
+    changes = msgspec.json.decode(answer, type=EntryHistory).changes
+    last = changes[-1] if changes else None
+    return EntryRow(
+        kind=kind,
+        name=name,
+        revision=revision,
+        tags=last.tags if last else (),
+        by=last.by if last else "",
+        reason=last.reason if last else "",
+        changed_unix_ms=last.changed_unix_ms if last else 0,
+    )

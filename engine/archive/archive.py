@@ -1,0 +1,186 @@
+"""Opens what is left of a run, out of the journal or out of a recording, with the behavior as it was then."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import msgspec
+
+from engine.archive.past_runs import PastRun, PastRuns, is_success
+from engine.archive.recording_files import RecordingFile, recording_files, recording_path
+from engine.cause import describe
+from engine.document import Behavior, load_behavior
+from engine.errors import FlexcellError, JournalError
+from engine.event import AnyEvent, RunEnded
+from engine.graph import new_graph
+from engine.journal import journal_path, read_events, read_origin
+from engine.library import BehaviorView
+from engine.plan import Catalogue, Plan, new_plan
+from engine.recording import Documents, load_recording
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArchivedRun:
+    """One run to be looked at: what it was, its events, and the behavior as it began.
+
+    `behavior` has no graph, and there is no plan, where nothing tells what was executed.
+    """
+
+    summary: PastRun
+    events: tuple[AnyEvent, ...]
+    behavior: BehaviorView
+    plan: Plan | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Executed:
+    """What a run executed, as far as that is known here."""
+
+    view: BehaviorView
+    plan: Plan | None = None
+
+
+class Archive:
+    """The past runs and recordings of one project; may be used from any thread.
+
+    Args:
+        project: The folder of the project.
+        catalogue: The states that are known, to draw the outcomes of nodes.
+        journal: The directory or file of the journal; there need not be one.
+    """
+
+    def __init__(self, project: Path, catalogue: Catalogue, journal: Path) -> None:
+        self.project = project.resolve()
+        self.journal = journal_path(journal)
+        self._catalogue = catalogue
+        self._lock = threading.Lock()
+        self._executed: dict[str, _Executed] = {}
+        self._runs = PastRuns(self.journal, success=lambda run, document: self._of_run(run, document).view.success)
+
+    def runs(self) -> tuple[PastRun, ...]:
+        """Return the runs of the journal, newest first; none where there is no journal.
+
+        Raises:
+            JournalError: the journal cannot be read.
+        """
+        return self._runs.all()
+
+    def run(self, run_id: str) -> ArchivedRun:
+        """Open a run of the journal.
+
+        Raises:
+            JournalError: there is no such run, or an event of it is damaged.
+        """
+        found = next((run for run in self.runs() if run.id == run_id), None)
+        if found is None:
+            raise JournalError(f"there is no run {run_id!r}", hint="look at the list of past runs")
+        executed = self._of_run(run_id, found.document)
+        return ArchivedRun(
+            summary=found,
+            events=read_events(self.journal, run_id),
+            behavior=executed.view,
+            plan=executed.plan,
+        )
+
+    def recordings(self) -> tuple[RecordingFile, ...]:
+        """Return the recordings in the project, newest first."""
+        return recording_files(self.project)
+
+    def recording_file(self, path: str) -> Path:
+        """Return where a recording lies, by its path in the project.
+
+        Raises:
+            RecordingError: there is none in the project.
+        """
+        return recording_path(self.project, path)
+
+    def recording_of(self, run_id: str) -> str:
+        """Return the path in the project of the recording that a server made of a run; empty for none."""
+        file = self.journal.parent / "recordings" / f"{Path(run_id).name}.mcap"
+        inside = file.is_file() and file.resolve().is_relative_to(self.project)
+        return file.resolve().relative_to(self.project).as_posix() if inside else ""
+
+    def recording(self, path: str) -> ArchivedRun:
+        """Open a recording by its path in the project.
+
+        Raises:
+            RecordingError: it is not in the project, cannot be read, is damaged, or is no recording of a run.
+        """
+        recording = load_recording(recording_path(self.project, path))
+        told = recording.description
+        executed = self._read(recording.documents, told.behavior)
+        events = tuple(recorded.event for recorded in recording.events)
+        last = events[-1] if events else None
+        ended = last if isinstance(last, RunEnded) else None
+        success = ended is not None and is_success(ended, executed.view.success)
+        return ArchivedRun(
+            summary=PastRun(
+                id=told.run,
+                behavior=told.behavior,
+                document=told.document,
+                status=ended.status if ended is not None else "running",
+                outcome=ended.outcome if ended is not None else None,
+                success=success,
+                cause=describe(ended.cause) if ended is not None and ended.cause is not None and not success else "",
+                started_at_s=told.started_unix_s,
+                duration_s=last.time_s if last is not None else 0.0,
+                events=last.seq if last is not None else 0,
+            ),
+            events=events,
+            behavior=executed.view,
+            plan=executed.plan,
+        )
+
+    def _of_run(self, run_id: str, document: str) -> _Executed:
+        """Return what a run executed, read once for all runs of the same meaning."""
+        with self._lock:
+            known = self._executed.get(document)
+        if known is not None:
+            return known
+        try:
+            origin = read_origin(self.journal, run_id)
+        except JournalError:
+            # What cannot be told of how it began takes only the graph away.
+            origin = None
+        if origin is None or not origin.documents:
+            return _Executed(view=_unknown(""))
+        texts = {name: text.encode() for name, text in origin.documents.items()}
+        executed = self._read(Documents(behavior=origin.document, texts=texts), origin.behavior)
+        file = Path(origin.behavior)
+        if file.is_relative_to(self.project):
+            view = msgspec.structs.replace(executed.view, id=file.relative_to(self.project).as_posix())
+            executed = _Executed(view=view, plan=executed.plan)
+        with self._lock:
+            self._executed[document] = executed
+        return executed
+
+    def _read(self, documents: Documents, name: str) -> _Executed:
+        try:
+            with TemporaryDirectory(prefix="flexcell-") as folder:
+                behavior = load_behavior(documents.unpack(Path(folder)))
+                view = self._drawn(behavior, documents.behavior)
+        except FlexcellError:
+            # Its events can be looked at all the same.
+            return _Executed(view=_unknown(name))
+        try:
+            return _Executed(view=view, plan=new_plan(behavior, self._catalogue))
+        except FlexcellError:
+            # A state that is not installed here any more; only the initial values of userdata are not known then.
+            return _Executed(view=view)
+
+    def _drawn(self, behavior: Behavior, behavior_id: str) -> BehaviorView:
+        return BehaviorView(
+            id=behavior_id,
+            name=behavior.name,
+            description=behavior.document.description,
+            graph=new_graph(behavior, self._catalogue),
+            view=behavior.document.view,
+            success=behavior.success,
+        )
+
+
+def _unknown(name: str) -> BehaviorView:
+    return BehaviorView(id=name, name=name, description="")

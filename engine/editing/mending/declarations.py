@@ -1,0 +1,34 @@
+"""Fixes of what a behavior declares about itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from engine.editing.edit import SetDocument
+from engine.editing.mending.fix import Fix, Place, mapping, near, strings, without
+
+
+def unused_parameter(place: Place) -> Iterator[Fix]:
+    """Remove a parameter that nobody reads."""
+    name = place.names[0]
+    declared = mapping(place.bench.draft.data.get("parameters"))
+    if name in declared:
+        edit = SetDocument(changes={"parameters": without(declared, name)})
+        yield Fix(title=f"Remove the parameter `{name}`", edits=(edit,))
+
+
+def unknown_success(place: Place) -> Iterator[Fix]:
+    """Name an outcome that is declared, or none."""
+    wrong = place.names[1] if len(place.names) > 1 else ""
+    data = place.bench.draft.data
+    outcomes, good = strings(data.get("outcomes")), strings(data.get("success"))
+    if wrong not in good:
+        return
+    for right in near(wrong, outcomes):
+        if right not in good:
+            changed = [right if each == wrong else each for each in good]
+            yield Fix(title=f"Write `{right}` instead of `{wrong}`", edits=(SetDocument(changes={"success": changed}),))
+    rest = [each for each in good if each != wrong]
+    yield Fix(title=f"Remove `{wrong}` from `success`", edits=(SetDocument(changes={"success": rest or None}),))
+    edit = SetDocument(changes={"outcomes": [*outcomes, wrong]})
+    yield Fix(title=f"Make `{wrong}` an outcome of the behavior", edits=(edit,))

@@ -1,0 +1,91 @@
+"""A fix, and the place of a finding that fixes are made for."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import cast
+
+from engine.editing.bench import Bench
+from engine.editing.edit import AnyEdit
+from engine.editing.outline import MACHINES, Plain, Spot
+from engine.library import FindingView
+
+_NAMES = re.compile(r"`([^`]*)`")
+MOST = 5
+"""So many fixes of a finding are offered at most."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fix:
+    """Edits that would mend a finding; `title` says all that they do."""
+
+    title: str
+    edits: tuple[AnyEdit, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """A finding with the node it is about.
+
+    `names` are the names in the message, in its order: what a finding is about stands there in backticks.
+    """
+
+    finding: FindingView
+    bench: Bench
+    spot: Spot
+    names: tuple[str, ...]
+
+    @property
+    def machine(self) -> Spot | None:
+        """The machine around the node, if it is in one."""
+        parent = self.spot.parent
+        return parent if parent is not None and parent.kind in MACHINES else None
+
+    @property
+    def siblings(self) -> tuple[str, ...]:
+        """The names of the other nodes in the machine around it."""
+        machine = self.machine
+        inside = self.bench.outline.children(machine) if machine is not None else ()
+        return tuple(each.name for each in inside if each.name != self.spot.name)
+
+    @property
+    def leaving(self) -> tuple[str, ...]:
+        """The names by which the nodes of the machine around it may lead out."""
+        return self.bench.outcomes_inside(self.machine) if self.machine is not None else ()
+
+    def section(self, key: str) -> Plain:
+        """Return a mapping of the node; an empty one where it has none."""
+        return mapping(self.spot.data.get(key))
+
+
+def named(finding: FindingView) -> tuple[str, ...]:
+    """Return the names that the message of a finding is about."""
+    return tuple(_NAMES.findall(finding.message))
+
+
+def near(name: str, known: Iterable[str], *, most: int = 3) -> list[str]:
+    """Return the known names that a mistyped one may mean, the nearest first."""
+    return difflib.get_close_matches(name, sorted(set(known)), n=most, cutoff=0.6)
+
+
+def mapping(value: object) -> Plain:
+    """Return a mapping as it is, anything else as an empty one."""
+    return cast("Plain", value) if isinstance(value, dict) else {}
+
+
+def renamed(given: Plain, old: str, new: str) -> Plain:
+    """Return a mapping with one key under another name, in its place."""
+    return {new if key == old else key: value for key, value in given.items()}
+
+
+def without(given: Plain, name: str) -> Plain | None:
+    """Return a mapping without a key; None where nothing stays."""
+    return {key: value for key, value in given.items() if key != name} or None
+
+
+def strings(value: object) -> list[str]:
+    """Return the text items of a list."""
+    return [each for each in cast("list[object]", value) if isinstance(each, str)] if isinstance(value, list) else []

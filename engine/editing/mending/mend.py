@@ -1,0 +1,74 @@
+"""Finds the fixes of findings: each kind of finding has a maker, those without have no fix."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from engine.editing.bench import Bench
+from engine.editing.draft import Draft
+from engine.editing.knowledge import Knowledge
+from engine.editing.mending import conduct, declarations, keys, parameters, wiring
+from engine.editing.mending.fix import MOST, Fix, Place, named
+from engine.errors import DocumentError
+from engine.library import FindingView
+
+Maker = Callable[[Place], Iterator[Fix]]
+_ELSEWHERE = re.compile(r"^[^`:]+\.(?:ya?ml|json):\d+: ")
+_NAMELESS = ("uncovered-combination", "constant-guard", "idle-retry")
+_MAKERS: Mapping[str, Maker] = {
+    "unconnected-outcome": wiring.unconnected,
+    "unknown-outcome": wiring.unknown_outcome,
+    "unused-outcome": wiring.unused_outcome,
+    "unknown-target": wiring.unknown_target,
+    "missing-initial": wiring.missing_initial,
+    "unreachable-node": wiring.unreachable,
+    "ambiguous-target": wiring.ambiguous,
+    "unknown-child": wiring.unknown_child,
+    "uncovered-combination": wiring.uncovered,
+    "unknown-state": parameters.unknown_state,
+    "unknown-parameter": parameters.unknown,
+    "missing-parameter": parameters.missing,
+    "bad-parameter": parameters.bad,
+    "unknown-input": keys.unknown_input,
+    "unknown-output": keys.unknown_output,
+    "undefined-key": keys.undefined,
+    "maybe-undefined-key": keys.maybe_undefined,
+    "unused-parameter": declarations.unused_parameter,
+    "unknown-success": declarations.unknown_success,
+    "constant-guard": conduct.constant_guard,
+    "idle-retry": conduct.idle_retry,
+    "autonomy-never-passes": conduct.autonomy_never_passes,
+    "bad-resume": conduct.bad_resume,
+}
+
+
+def fixes_of(
+    text: str, findings: Sequence[FindingView], *, file: str, knowledge: Knowledge
+) -> tuple[tuple[Fix, ...], ...]:
+    """Return the fixes of each finding of a text, in the order of the findings; often none.
+
+    Args:
+        text: The document that the findings are of.
+        findings: What the check says of it.
+        file: Name of the document.
+        knowledge: The states and behaviors around it.
+    """
+    try:
+        bench = Bench(Draft(text, file=file), knowledge)
+    except DocumentError:
+        return tuple(() for _ in findings)
+    return tuple(_of(bench, finding) for finding in findings)
+
+
+def _of(bench: Bench, finding: FindingView) -> tuple[Fix, ...]:
+    maker = _MAKERS.get(finding.code)
+    spot = bench.outline.spots.get(finding.path)
+    # What is wrong in a behavior that is referred to is mended there.
+    if maker is None or spot is None or _ELSEWHERE.match(finding.message):
+        return ()
+    names = named(finding)
+    if not names and finding.code not in _NAMELESS:
+        return ()
+    place = Place(finding=finding, bench=bench, spot=spot, names=names)
+    return tuple(maker(place))[:MOST]

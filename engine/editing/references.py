@@ -1,0 +1,118 @@
+"""Which behaviors refer to which files, and how they follow when a file goes elsewhere."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+
+from engine.editing.apply import apply_edits
+from engine.editing.documents import Documents, Opened
+from engine.editing.draft import Draft
+from engine.editing.edit import AnyEdit, SetDocument, SetField
+from engine.editing.outline import Outline
+from engine.errors import DocumentError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Referrer:
+    """A behavior that refers to another one: its id and name, and the nodes that do."""
+
+    id: str
+    name: str
+    paths: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Moved:
+    """A document at its new place; `followed` are those whose references were changed, `left` those that were not."""
+
+    opened: Opened
+    followed: tuple[str, ...] = ()
+    left: tuple[str, ...] = ()
+
+
+def referrers(documents: Documents, document_id: str) -> tuple[Referrer, ...]:
+    """Return the behaviors of the project that refer to a document, sorted by id, itself left out."""
+    return tuple(referrer for referrer, _ in _referring(documents, document_id))
+
+
+def move(documents: Documents, document_id: str, new_id: str, *, follow: bool) -> Moved:
+    """Give a document another id; with `follow`, every reference to it, and its own, are written anew.
+
+    A reference that cannot be followed, as its file has mistakes or changes meanwhile, is told as `left`.
+
+    Raises:
+        DocumentError: there is no such document, the new id is taken, or it is of another format.
+    """
+    referring = _referring(documents, document_id) if follow else []
+    documents.rename(document_id, new_id)
+    followed: list[str] = []
+    left: list[str] = []
+    for referrer, opened in referring:
+        written = _relative(new_id, referrer.id)
+        edits = [SetField(path=path, field="behavior", value=written) for path in referrer.paths]
+        (followed if _rewrite(documents, opened, edits) else left).append(referrer.id)
+    if follow and PurePosixPath(document_id).parent != PurePosixPath(new_id).parent:
+        own = documents.open(new_id)
+        edits = list(_own_edits(own.text, document_id, new_id))
+        if edits and not _rewrite(documents, own, edits):
+            left.append(new_id)
+    return Moved(opened=documents.open(new_id), followed=tuple(followed), left=tuple(left))
+
+
+def _referring(documents: Documents, document_id: str) -> list[tuple[Referrer, Opened]]:
+    target, name = documents.file_of(document_id), PurePosixPath(document_id).name
+    found: list[tuple[Referrer, Opened]] = []
+    for other in sorted(documents.stamps()):
+        try:
+            # What does not even hold the name of the file is not worth being parsed.
+            if other == document_id or name.encode() not in documents.file_of(other).read_bytes():
+                continue
+            opened = documents.open(other)
+            data = Draft(opened.text, file=other).data
+        except (DocumentError, OSError):
+            continue  # no behavior, or not to be read: the list of behaviors says what is wrong with it
+        folder = documents.file_of(other).parent
+        written = ((path, spot.data.get("behavior")) for path, spot in Outline(data).spots.items())
+        paths = tuple(path for path, said in written if isinstance(said, str) and _names(folder, said, target))
+        if paths:
+            said = data.get("name")
+            found.append((Referrer(id=other, name=said if isinstance(said, str) else other, paths=paths), opened))
+    return found
+
+
+def _names(folder: Path, written: str, target: Path) -> bool:
+    try:
+        return (folder / written).resolve() == target
+    except (OSError, ValueError):
+        return False  # no path that this system can have
+
+
+def _relative(document_id: str, of: str) -> str:
+    return PurePosixPath(os.path.relpath(document_id, PurePosixPath(of).parent)).as_posix()
+
+
+def _own_edits(text: str, old_id: str, new_id: str) -> Iterator[AnyEdit]:
+    """Return the edits that let what a document refers to be found from its new folder."""
+    folder = PurePosixPath(old_id).parent
+    data = Draft(text, file=new_id).data
+    for path, spot in Outline(data).spots.items():
+        written = spot.data.get("behavior")
+        if isinstance(written, str):
+            yield SetField(path=path, field="behavior", value=_relative(os.path.normpath(folder / written), new_id))
+    cell = data.get("cell")
+    if isinstance(cell, str):
+        yield SetDocument(changes={"cell": _relative(os.path.normpath(folder / cell), new_id)})
+
+
+def _rewrite(documents: Documents, opened: Opened, edits: Sequence[AnyEdit]) -> bool:
+    done = apply_edits(opened.text, edits, file=opened.id, knowledge=documents.knowledge(opened.id))
+    if done.refused is not None:
+        return False
+    try:
+        documents.save(opened.id, done.text, base_hash=opened.hash)
+    except DocumentError:
+        return False  # it has changed meanwhile, or is not to be written; whoever moves it is told
+    return True

@@ -1,0 +1,118 @@
+"""The nodes of a proposed behavior, as they stand in its document."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from engine.skills.proposing import ToolName
+from engine.teaching.roles import Taught
+
+Node = dict[str, object]
+SPEED, LINE_SPEED, APPROACH = "${speed}", "${line_speed_m_s}", "${approach_m}"
+_KINDS = {"gripper": "gripper", "hand": "hand", "magnet": "magnet"}
+LINE_S = 3.0
+_LETS_GO = {
+    "gripper": ("gripper.Open", "opened"),
+    "hand": ("hand.Open", "opened"),
+    "magnet": ("magnet.Off", "released"),
+}
+_HOLDS = {"gripper": "gripper.Grasp", "hand": "hand.Close", "magnet": "magnet.On"}
+_ASKS = {"gripper": "gripper.CheckHeld", "hand": "hand.CheckHeld", "magnet": "magnet.CheckHeld"}
+
+
+@dataclass
+class Nodes:
+    """Makes nodes for one arm and its tool, and remembers which parameters and outcomes they need."""
+
+    arm: str
+    tool: ToolName
+    needed: dict[str, None] = field(default_factory=dict[str, None])
+    outcomes: dict[str, None] = field(default_factory=dict[str, None])
+
+    def free(self, place: Taught, then: str, words: str, *, before: bool = False) -> Node:
+        """Move to a place free of collisions, or to in front of it."""
+        where = "joints" if place.step.kind == "joints" else "pose"
+        given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
+        return self._free(given, then, words)
+
+    def free_to_start(self, motion: Taught, then: str, words: str) -> Node:
+        """Move to where a taught motion begins, free of collisions."""
+        return self._free({"robot": self.arm, "start_of": {motion.step.kind: motion.step.name}}, then, words)
+
+    def straight(self, place: Taught, then: str, words: str, *, before: bool = False) -> Node:
+        """Move the tool straight to a place, or to in front of it."""
+        where = "joints" if place.step.kind == "joints" else "target"
+        given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
+        if place.frame == "world":
+            self.needed["line_speed_m_s"] = None
+            given["speed_m_s"] = LINE_SPEED
+        else:
+            # How far it is in another frame is not known, and so no speed can be kept.
+            given["duration_s"] = LINE_S
+        return self._state("motion.MoveLinear", given, {"reached": then}, words)
+
+    def follow(self, motion: Taught, then: str, words: str) -> Node:
+        """Carry out a taught motion."""
+        state, key = {
+            "trajectory": ("motion.FollowRecording", "recording"),
+            "dmp": ("motion.FollowJointDmp", "dmp"),
+            "cart_dmp": ("motion.FollowCartDmp", "dmp"),
+        }[motion.step.kind]
+        return self._state(state, {"robot": self.arm, key: {"entry": motion.step.name}}, {"reached": then}, words)
+
+    def let_go(self, then: str, words: str, *, part: str = "") -> Node:
+        """Open the tool, or switch it off."""
+        state, outcome = _LETS_GO[self.tool]
+        return self._state(state, {**self._tool(), **_named(part)}, {outcome: then}, words)
+
+    def hold(self, then: str, missed: str, words: str, *, part: str, width: str, like: Taught | None) -> Node:
+        """Close the tool, or switch it on; `width` is the parameter of the width, empty where nobody knows it."""
+        given = {**self._tool(), **_named(part)}
+        if self.tool == "hand":
+            given["percent"] = 80
+        elif self.tool == "gripper" and width:
+            self.needed[width] = None
+            given["width_m"] = f"${{{width}}}"
+        elif self.tool == "gripper":
+            # Whatever is between the fingers counts.
+            given |= {"width_m": 0.04, "tolerance_inner_m": 0.038, "tolerance_outer_m": 0.2}
+        if self.tool == "gripper" and like is not None and like.force_n > 0.0:
+            given["force_n"] = round(like.force_n, 1)
+        return self._state(_HOLDS[self.tool], given, {"held": then, "missed": missed}, words)
+
+    def still_held(self, then: str, lost: str, words: str, *, part: str) -> Node:
+        """Ask the tool whether it holds its part."""
+        node = self._state(_ASKS[self.tool], {**self._tool(), **_named(part)}, {"held": then, "lost": lost}, words)
+        node["transitions"] = {"held": then, "lost": lost}
+        return node
+
+    def attach(self, part: str, then: str) -> Node:
+        """Plan with the part as with a piece of the arm."""
+        words = "From now on ways are planned with the part."
+        return self._state("scene.Attach", {"part": part, "robot": self.arm}, {"attached": then}, words)
+
+    def detach(self, part: str, then: str) -> Node:
+        """Plan without the part as held."""
+        words = "From now on the part stands where it is."
+        return self._state("scene.Detach", {"part": part}, {"detached": then}, words)
+
+    def _free(self, given: Node, then: str, words: str) -> Node:
+        self.needed["speed"] = None
+        self.outcomes["blocked"] = None
+        ends = {"reached": then, "blocked": "blocked", "no_way": "blocked"}
+        return self._state("motion.MoveFree", {**given, "speed": SPEED}, ends, words)
+
+    def _back(self) -> Node:
+        self.needed["approach_m"] = None
+        return {"back_m": APPROACH}
+
+    def _tool(self) -> Node:
+        return {self.tool: self.arm}
+
+    @staticmethod
+    def _state(state: str, given: Node, ends: dict[str, str], words: str) -> Node:
+        return {"description": words, "state": state, "with": given, "transitions": {**ends, "failed": "failed"}}
+
+
+def _named(part: str) -> Node:
+    return {"part": part} if part else {}

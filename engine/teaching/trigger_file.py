@@ -1,0 +1,133 @@
+"""Where the triggers of the Helping Hand are kept as YAML: what somebody wrote by hand stays as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+
+from engine.document.yaml_source import parse_source
+from engine.errors import DocumentError, StoreError
+from engine.skills.teaching import Trigger
+from engine.teaching.document import parse_triggers
+
+UNNAMED = "triggers.yaml"
+_HEAD = "flexcell: 1\ntriggers:"
+_ALWAYS = ("trig_name", "robot_ns", "trig_topic", "trig_type", "trig_value", "trig_callback")
+
+
+class TriggerFile:
+    """The text of a trigger document, in a file or, with `path` None, in memory only.
+
+    Args:
+        path: The file; it is made with the first change.
+        triggers: What holds where there is no file.
+    """
+
+    def __init__(self, path: Path | None, triggers: Sequence[Trigger] = ()) -> None:
+        self._path = path
+        self.text = rewritten("", tuple(triggers))
+
+    @property
+    def name(self) -> str:
+        """The file's path, empty where there is none."""
+        return str(self._path) if self._path is not None else ""
+
+    def load(self) -> tuple[Trigger, ...]:
+        """Return the triggers as the file has them now.
+
+        Raises:
+            DocumentError: it cannot be read, or is no trigger document; `where` is the position.
+        """
+        if self._path is not None and self._path.exists():
+            try:
+                self.text = self._path.read_text(encoding="utf-8")
+            except (OSError, UnicodeDecodeError) as error:
+                raise DocumentError(f"cannot read the triggers: {error}", where=self._path) from error
+        return parse_triggers(self.text, file=self.name or UNNAMED)
+
+    def write(self, triggers: Sequence[Trigger]) -> tuple[Trigger, ...]:
+        """Put these in the place of those before, and return them; a trigger that is as it was keeps its lines.
+
+        Raises:
+            StoreError: the file cannot be written; nothing is changed.
+        """
+        return self.write_text(rewritten(self.text, tuple(triggers)))
+
+    def write_text(self, text: str) -> tuple[Trigger, ...]:
+        """Write a whole document and return its triggers.
+
+        Raises:
+            DocumentError: it is none; `where` is the position. Nothing is changed.
+            StoreError: the file cannot be written; nothing is changed.
+        """
+        triggers = parse_triggers(text, file=self.name or UNNAMED)
+        if self._path is not None:
+            part = self._path.with_suffix(".part")
+            try:
+                self._path.parent.mkdir(parents=True, exist_ok=True)
+                part.write_text(text, encoding="utf-8")
+                part.replace(self._path)
+            except OSError as error:
+                raise StoreError(
+                    f"the triggers cannot be written: {error.strerror or error}", where=self.name
+                ) from error
+        self.text = text
+        return triggers
+
+
+def rewritten(text: str, triggers: tuple[Trigger, ...]) -> str:
+    """Return `text` with these triggers: those it has already keep their lines, with the comments above them."""
+    head, known = _blocks(text)
+    if not triggers:
+        return f"{_HEAD} []\n"
+    blocks = [known.get(_key(trigger)) or _block(trigger) for trigger in triggers]
+    return "\n".join((head, *blocks)) + "\n"
+
+
+def _key(trigger: Trigger) -> bytes:
+    # Python takes True for 1; a button does not.
+    return msgspec.json.encode(trigger)
+
+
+def _blocks(text: str) -> tuple[str, dict[bytes, str]]:
+    """Return the lines before the first trigger, and the lines of each; without blocks where they share lines."""
+    try:
+        triggers = parse_triggers(text, file=UNNAMED)
+        place = parse_source(text, file=UNNAMED).place
+    except DocumentError:
+        return _HEAD, {}
+    children = place.children or {}
+    items = children["triggers"].children if "triggers" in children else None
+    starts = [item.line for item in (items or {}).values()]
+    # A bare list, or one on a single line, is written anew.
+    if not starts or len(set(starts)) < len(starts) or starts[0] <= children["triggers"].key_line:
+        return _HEAD, {}
+    lines = text.rstrip("\n").split("\n")
+    begins = [_with_comments(lines, start) for start in starts]
+    ends = [*begins[1:], len(lines)]
+    indent = len(lines[starts[0]]) - len(lines[starts[0]].lstrip())
+    if indent != len(_INDENT):
+        return _HEAD, {}
+    blocks = ("\n".join(lines[begin:end]).rstrip() for begin, end in zip(begins, ends, strict=True))
+    return "\n".join(lines[: begins[0]]), dict(zip(map(_key, triggers), blocks, strict=True))
+
+
+_INDENT = "  "
+
+
+def _with_comments(lines: list[str], start: int) -> int:
+    while start > 0 and lines[start - 1].lstrip().startswith("#"):
+        start -= 1
+    return start
+
+
+def _block(trigger: Trigger) -> str:
+    fields = msgspec.structs.asdict(trigger)
+    defaults = {field.name: field.default for field in msgspec.structs.fields(Trigger)}
+    shown = [name for name, value in fields.items() if name in _ALWAYS or value != defaults[name]]
+    ordered = sorted(shown, key=lambda name: _ALWAYS.index(name) if name in _ALWAYS else len(_ALWAYS))
+    # JSON's scalars are YAML's, and quoted text means the same to every reader.
+    lines = [f"{name}: {msgspec.json.encode(fields[name]).decode()}" for name in ordered]
+    return "\n".join(f"{_INDENT}{'- ' if at == 0 else '  '}{line}" for at, line in enumerate(lines))

@@ -1,0 +1,59 @@
+"""motion.FollowRecording: moves an arm as it was led."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+import msgspec
+from msgspec import Meta
+
+from engine.cause import cause_of, under
+from engine.errors import SkillFailed
+from engine.skills.dmp import JointDMP, LearnJointDmp
+from engine.skills.motion import JointTrapVel
+from engine.state import Context, Outcome, State
+from states.failed_goal import goal_cause
+from states.motion.primitive import ApproachSpeed, RecordingEntry, TimeScale
+from states.motion.target import RobotName
+
+
+class FollowRecording(State, frozen=True, kw_only=True):
+    """Move an arm along a recorded motion: a joint-space movement primitive is learned from it, and followed.
+
+    Record it again, and the next run moves otherwise.
+    """
+
+    state_name: ClassVar[str] = "motion.FollowRecording"
+    outcomes: ClassVar[tuple[str, ...]] = ("reached", "failed")
+    success: ClassVar[tuple[str, ...]] = ("reached",)
+
+    robot: RobotName
+    recording: Annotated[RecordingEntry, Meta(description="`{entry: name}` of kind `trajectory`")]
+    time_scale: TimeScale = 1.0
+    approach_speed: ApproachSpeed = None
+
+    def resources(self) -> tuple[str, ...]:
+        """The arm."""
+        return (self.robot,)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Learn, go to the start if asked to, follow, and judge the end."""
+        name = self.recording.entry
+        try:
+            learned = await ctx.call(LearnJointDmp(entry=name), to=self.robot)
+        except SkillFailed as error:
+            what = f"no movement primitive was learned from trajectory entry {name}"
+            return Outcome("failed", cause=under(what, cause_of(error), where=ctx.path, kind=self.state_name))
+        dmp = msgspec.structs.replace(learned.dmp, tau=learned.dmp.tau * self.time_scale)
+        goals: list[tuple[str, JointTrapVel | JointDMP]] = [
+            (f"{self.robot} did not follow trajectory entry {name} to its end", JointDMP(dmp=dmp))
+        ]
+        if self.approach_speed is not None:
+            approach = JointTrapVel(joints=dmp.start, speed=self.approach_speed)
+            goals.insert(0, (f"{self.robot} did not reach the start of trajectory entry {name}", approach))
+        for what, goal in goals:
+            end = await ctx.perform(goal, to=self.robot)
+            if end.status != "succeeded":
+                cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
+                return Outcome("failed", cause=cause)
+        return Outcome("reached")

@@ -1,0 +1,232 @@
+"""The tab of the skill bus in a real browser, against a real session."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from engine.bus import Holder, SkillBus
+from engine.messages import JointState
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.fake_plant import FakePlant, TravelProgress
+from tests.editor_web.workshop import SHIFT_ID, Workshop
+
+LAPTOP: Size = (1280, 800)
+
+
+@pytest.fixture
+def plant() -> FakePlant:
+    """The devices on the bus."""
+    return FakePlant()
+
+
+@pytest.fixture
+def shop(tmp_path: Path, loopback: str, plant: FakePlant) -> Generator[Workshop]:
+    """A served session with them."""
+    with Workshop(host=loopback, project=tmp_path, furnish=plant.furnish) as opened:
+        yield opened
+
+
+@contextmanager
+def at_bus(
+    browser: Browser,
+    shop: Workshop,
+    *,
+    kind: str = "Topics",
+    size: Size = LAPTOP,
+    scheme: Scheme = "light",
+    login: str = "",
+) -> Generator[Page]:
+    """The page of a behavior with its bus in front."""
+    path = f"/behaviors/{SHIFT_ID}"
+    # The browser reports refused requests as errors.
+    with opened_page(browser, shop.running, path, size=size, scheme=scheme, login=login, quiet=False) as page:
+        page.get_by_role("tab", name="Bus").click()
+        chooser = page.get_by_label("What of the bus")
+        expect(chooser).to_be_visible()
+        if page.locator("select.bus-kind").count():
+            chooser.select_option(label=kind)
+        else:
+            chooser.get_by_text(kind, exact=True).click()
+        yield page
+
+
+def entry(page: Page, name: str) -> Locator:
+    """A row of the list."""
+    return page.locator(".bus-list").get_by_role("button", name=name)
+
+
+def test_a_topic_is_shown_live_with_its_type_rate_and_age(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
+    """What changes is seen; where nothing came, that is said."""
+    with at_bus(browser, shop) as page:
+        row = entry(page, "joint_state")
+        expect(row).to_contain_text("JointState")
+        expect(entry(page, "lamp")).to_contain_text("never")
+        row.click()
+        detail = page.get_by_role("region", name="plant/joint_state")
+        expect(detail).to_contain_text("Measured joints of one robot")
+        tree = page.get_by_role("list", name="Newest message of plant/joint_state")
+        expect(tree).to_contain_text("[0, 0.5]")
+        shop.on_loop(lambda: plant.publish(2.0))
+        expect(tree).to_contain_text("[0.9093, -0.32682]")
+        for _ in range(20):
+            shop.on_loop(lambda: plant.publish(3.0))
+        expect(row).to_contain_text("Hz")
+        page.get_by_label("Find on the bus").fill("gripper state")
+        expect(page.locator(".bus-row")).to_have_count(1)
+        page.get_by_label("Find on the bus").fill("no such thing")
+        expect(page.get_by_text("Nothing matches")).to_be_visible()
+
+
+def test_a_service_is_called_from_its_form_and_a_refusal_is_shown(browser: Browser, shop: Workshop) -> None:
+    """Fields come from the schema, defaults filled in; what is missing is said before anything is sent."""
+    with at_bus(browser, shop, kind="Services") as page:
+        entry(page, "add_numbers").click()
+        form = page.get_by_role("form", name="Request to plant/add_numbers")
+        expect(form.get_by_label("right")).to_have_value("1")
+        form.get_by_role("button", name="Call").click()
+        expect(form).to_contain_text("A value is required")
+        form.get_by_label("left").fill("41")
+        form.get_by_role("button", name="Call").click()
+        expect(page.get_by_role("status", name="Course of the request")).to_contain_text("Answered")
+        expect(page.get_by_role("list", name="Answer")).to_contain_text("42")
+        form.get_by_label("left").fill("5000")
+        form.get_by_role("button", name="Call").click()
+        expect(form.get_by_role("alert")).to_contain_text("these numbers are too large – add smaller ones")
+
+
+def test_a_goal_shows_its_feedback_and_can_be_cancelled(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
+    """Who holds the arm meanwhile stands under leases; afterwards it is free."""
+    with at_bus(browser, shop, kind="Actions") as page:
+        entry(page, "travel").click()
+        expect(page.get_by_text("This may move the robot.")).to_be_visible()
+        form = page.get_by_role("form", name="Request to plant/travel")
+        target = form.get_by_label("target")
+        expect(target).to_have_value('{"xyz":[0,0,0]}')
+        target.fill('{"xyz": [0.4, 0, 0.3]}')
+        form.get_by_role("button", name="Send goal").click()
+        course = page.get_by_role("status", name="Course of the request")
+        expect(course).to_contain_text("Under way")
+        expect(course).to_contain_text("0.25")
+        assert shop.on_loop(lambda: plant.asked[0].target.xyz) == (0.4, 0.0, 0.3)
+        shop.on_loop(lambda: plant.goals[0].feedback(TravelProgress(progress=0.75)))
+        expect(course.get_by_role("progressbar")).to_have_attribute("aria-valuenow", "75")
+        expect(form.get_by_label("speed")).to_be_disabled()
+        page.get_by_label("What of the bus").get_by_text("Leases", exact=True).click()
+        expect(page.get_by_role("row", name="plant")).to_contain_text("plant/travel (active)")
+        page.get_by_label("What of the bus").get_by_text("Actions", exact=True).click()
+        page.get_by_role("button", name="Cancel goal").click()
+        expect(course).to_contain_text("Cancelled, the device is at rest")
+        assert shop.on_loop(lambda: shop.session.desk.leases()) == ()
+
+
+def test_a_goal_is_cancelled_when_its_page_is_left(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
+    """Closing the browser must not leave a robot moving."""
+    with at_bus(browser, shop, kind="Actions") as page:
+        entry(page, "travel").click()
+        page.get_by_role("button", name="Send goal").click()
+        expect(page.get_by_role("status", name="Course of the request")).to_contain_text("Under way")
+    shop.call(ended(shop.session.cell.bus))
+    assert [goal.cancel_requested for goal in plant.goals] == [True]
+
+
+async def ended(bus: SkillBus) -> None:
+    """Wait until no goal is under way."""
+    for goal in bus.goals():
+        await goal.result()
+
+
+def test_leases_tell_who_holds_what_and_for_how_long(browser: Browser, shop: Workshop) -> None:
+    """A run's node and goal; before anybody holds anything, that is said."""
+    with at_bus(browser, shop, kind="Leases") as page:
+        expect(page.get_by_text("Nobody holds anything")).to_be_visible()
+        bus = shop.session.cell.bus
+        shop.on_loop(lambda: bus.leases.acquire(("plant",), Holder("run-7", "root/move")))
+        row = page.get_by_role("row", name="plant")
+        expect(row).to_contain_text("run run-7")
+        expect(row).to_contain_text("root/move")
+        expect(row).to_contain_text(" s")
+
+
+def test_a_parameter_is_set_and_a_topic_that_takes_commands_published_on(
+    browser: Browser, shop: Workshop, plant: FakePlant
+) -> None:
+    """Limits hold in the form already."""
+    with at_bus(browser, shop, kind="Parameters") as page:
+        entry(page, "stiffness").click()
+        field = page.get_by_role("form", name="Set plant/stiffness").get_by_role("textbox")
+        expect(field).to_have_value("300")
+        field.fill("1200")
+        page.get_by_role("button", name="Set", exact=True).click()
+        expect(page.get_by_text("Must be 0 – 900")).to_be_visible()
+        field.fill("450")
+        page.get_by_role("button", name="Set", exact=True).click()
+        expect(page.get_by_role("list", name="Value of plant/stiffness")).to_contain_text("450")
+        page.get_by_label("What of the bus").get_by_text("Topics", exact=True).click()
+        entry(page, "lamp").click()
+        page.get_by_label("brightness").fill("0.5")
+        page.get_by_role("button", name="Publish").click()
+        expect(page.get_by_role("region", name="plant/lamp")).to_contain_text("0.5")
+    assert [each.brightness for each in plant.lamp] == [0.5]
+
+
+def test_viewers_see_the_bus_and_cannot_send(browser: Browser, shop: Workshop) -> None:
+    """The form says why."""
+    viewer = shop.running.login_url.replace(shop.access.operator, shop.access.viewer)
+    assert viewer != shop.running.login_url
+    with at_bus(browser, shop, kind="Actions", login=viewer) as page:
+        entry(page, "travel").click()
+        expect(page.get_by_text("You may look only")).to_be_visible()
+        expect(page.get_by_role("button", name="Send goal")).to_be_disabled()
+
+
+def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> None:
+    """A new rate of all of them is drawn within two frames' worth of script."""
+    bus = shop.session.cell.bus
+
+    def fill() -> None:
+        for number in range(300):
+            bus.topic(f"hall/cell{number % 20}/sensor{number}", JointState)
+
+    shop.on_loop(fill)
+    with at_bus(browser, shop) as page:
+        expect(page.locator(".bus-row")).to_have_count(305)
+        spent_ms = page.evaluate(
+            """() => new Promise((done) => {
+                const find = document.querySelector('.bus-find input')
+                const write = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set
+                const began = performance.now()
+                write.call(find, 'sensor29')
+                find.dispatchEvent(new Event('input', { bubbles: true }))
+                requestAnimationFrame(() => setTimeout(() => done(performance.now() - began)))
+            })"""
+        )
+        expect(page.locator(".bus-row")).to_have_count(11)
+        assert spent_ms < 400
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_bus_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme) -> None:
+    """Every kind, in both themes."""
+    with at_bus(browser, shop, scheme=scheme) as page:
+        entry(page, "joint_state").click()
+        expect(page.get_by_role("list", name="Newest message of plant/joint_state")).to_be_visible()
+        require_accessible(page, "topics", part=".dock")
+        page.get_by_label("What of the bus").get_by_text("Actions", exact=True).click()
+        entry(page, "travel").click()
+        expect(page.get_by_role("form", name="Request to plant/travel")).to_be_visible()
+        require_accessible(page, "actions", part=".dock")
+
+
+def test_on_a_phone_the_list_gives_way_to_what_is_chosen(browser: Browser, shop: Workshop) -> None:
+    """And there is a way back."""
+    with at_bus(browser, shop, kind="Actions", size=PHONE) as page:
+        entry(page, "travel").click()
+        expect(page.get_by_role("button", name="Send goal")).to_be_visible()
+        expect(page.locator(".bus-list")).to_be_hidden()
+        page.get_by_role("button", name="Back to the list").click()
+        expect(entry(page, "travel")).to_be_visible()

@@ -1,0 +1,145 @@
+"""Userdata and the progress of goals in a real browser, against a real session."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from engine.messages import Pose
+from engine.state import Context, Outcome, State
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.fake_plant import FakePlant, Travel, TravelProgress
+from tests.editor_web.workshop import SHIFT_ID, Workshop
+
+LAPTOP: Size = (1280, 800)
+TRIP_ID = "behaviors/trip.yaml"
+TRIP = """
+flexcell: 1
+name: trip
+userdata: {count: 0, found: [], pose: {xyz: [0.1, 0.2, 0.3], frame: world}}
+outcomes: [good]
+success: [good]
+root:
+  machine:
+    initial: look
+    states:
+      look:
+        machine:
+          initial: note
+          userdata: {local: draft}
+          states:
+            note: {state: flow.SetValue, with: {value: "a long note"}, out: {value: local}, transitions: {done: ended}}
+        transitions: {ended: count}
+      count: {state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}, transitions: {done: travel}}
+      travel: {state: test.Travel, transitions: {done: good}}
+"""
+
+
+class TravelState(State, frozen=True, kw_only=True):
+    """Travel with the plant."""
+
+    state_name: ClassVar[str] = "test.Travel"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+    success: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        """Send the goal and wait for its end."""
+        await ctx.perform(Travel(target=Pose(xyz=(0.4, 0.0, 0.3))), to="plant")
+        return Outcome("done")
+
+
+@pytest.fixture
+def plant() -> FakePlant:
+    """The devices on the bus."""
+    return FakePlant()
+
+
+@pytest.fixture
+def shop(tmp_path: Path, loopback: str, plant: FakePlant) -> Generator[Workshop]:
+    """A served session with them and a behavior that travels."""
+    states = {TravelState.state_name: TravelState}
+    with Workshop(host=loopback, project=tmp_path, furnish=plant.furnish, states=states) as opened:
+        (tmp_path / TRIP_ID).write_text(TRIP, encoding="utf-8")
+        yield opened
+
+
+def open_data(page: Page) -> None:
+    """Bring the data in front."""
+    page.get_by_role("tab", name="Data", exact=True).click()
+
+
+def test_every_value_is_shown_with_its_writer_and_time(browser: Browser, shop: Workshop) -> None:
+    """Those of a container that was left stay; what nobody wrote is from the start."""
+    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=LAPTOP) as page:
+        open_data(page)
+        expect(page.get_by_text("No run is shown")).to_be_visible()
+        page.get_by_role("button", name="Start").click()
+        behavior = page.get_by_role("region", name="Behavior")
+        count = behavior.get_by_role("listitem").filter(has_text="count")
+        expect(count).to_contain_text("root/count")
+        expect(count.locator(".data-value")).to_have_text("1")
+        expect(behavior.get_by_role("listitem").filter(has_text="found")).to_contain_text("from the start")
+        left = page.get_by_role("region", name="root/look")
+        expect(left).to_contain_text("over")
+        expect(left).to_contain_text("a long note")
+        expect(behavior).to_contain_text("[0.1, 0.2, 0.3]")
+        page.get_by_label("Find in the data").fill("note local")
+        expect(behavior).to_have_count(0)
+        expect(left).to_be_visible()
+        left.get_by_role("button", name="root/look/note").click()
+        expect(page.locator(".react-flow__node[data-id='root/look/note'] .is-selected")).to_be_visible()
+
+
+def test_what_is_written_while_one_looks_is_lit(browser: Browser, shop: Workshop) -> None:
+    """And told with how often it was written."""
+    run = shop.start(SHIFT_ID)
+    assert run
+    with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=LAPTOP) as page:
+        open_data(page)
+        value = page.get_by_role("region", name="Behavior").get_by_role("listitem").filter(has_text="value")
+        expect(value).to_contain_text("root/set")
+        expect(value.locator("[data-written]")).to_have_text("1")
+
+
+def test_the_progress_of_a_goal_is_on_its_node_and_in_its_card(
+    browser: Browser, shop: Workshop, plant: FakePlant
+) -> None:
+    """While it is under way, as its feedback tells it."""
+    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=LAPTOP) as page:
+        page.get_by_role("button", name="Start").click()
+        node = page.locator(".react-flow__node[data-id='root/travel']")
+        bar = node.get_by_role("progressbar", name="Progress of plant/travel")
+        expect(bar).to_have_attribute("aria-valuenow", "25")
+        shop.on_loop(lambda: plant.goals[0].feedback(TravelProgress(progress=0.8)))
+        expect(bar).to_have_attribute("aria-valuenow", "80")
+        expect(node).to_contain_text("80 %")
+        node.click()
+        card = page.get_by_role("region", name="Node root/travel")
+        expect(card.get_by_role("progressbar")).to_have_attribute("aria-valuenow", "80")
+        shop.on_loop(plant.arrive.set)
+        expect(page.get_by_role("progressbar", name="Progress of plant/travel")).to_have_count(0)
+        expect(node.locator(".step")).to_have_attribute("data-status", "done")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_data_is_accessible(browser: Browser, shop: Workshop, scheme: Scheme) -> None:
+    """With values, and with a node under way."""
+    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=LAPTOP, scheme=scheme) as page:
+        open_data(page)
+        page.get_by_role("button", name="Start").click()
+        expect(page.get_by_role("region", name="Behavior")).to_contain_text("root/count")
+        expect(page.get_by_role("progressbar", name="Progress of plant/travel")).to_be_visible()
+        require_accessible(page, "data", part=".dock")
+        require_accessible(page, "goal", part=".graph")
+
+
+def test_the_data_on_a_phone(browser: Browser, shop: Workshop) -> None:
+    """Writers stand below their values."""
+    shop.start(TRIP_ID)
+    with opened_page(browser, shop.running, f"/behaviors/{TRIP_ID}", size=PHONE) as page:
+        open_data(page)
+        expect(page.get_by_role("region", name="Behavior")).to_contain_text("root/count")

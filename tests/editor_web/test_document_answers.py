@@ -1,0 +1,29 @@
+"""Answers with whole documents are packed without the wire's models, and are what those say all the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from benchmarks.large_document import large_document
+from editor_web.document_wire import DocumentBody, DraftedBody, EditedBody
+from tests.editor_web.editing_client import EditingClient
+
+ID = "behaviors/large.yaml"
+
+
+async def test_answers_of_documents_have_the_fields_of_their_models(tmp_path: Path) -> None:
+    client = EditingClient(tmp_path)
+    made = (await client.post("/documents", {"id": ID, "name": "large"})).json()
+    text = large_document(40)
+    edits = [{"edit": "duplicate", "paths": ["root/area_0"]}, {"edit": "rename_node", "path": "root", "name": "x"}]
+    at = f"/documents/{ID}"
+    for check in (True, False):
+        drawn = await client.post(f"{at}/draft", {"text": text, "check": check})
+        assert DraftedBody.model_validate_json(drawn.content).checked is check
+        for some in (edits[:1], edits):
+            edited = await client.post(f"{at}/edits", {"text": text, "edits": some, "check": check})
+            assert (EditedBody.model_validate_json(edited.content).refused is None) == (len(some) == 1)
+    opened = DocumentBody.model_validate_json((await client.get(at)).content)
+    assert opened.text == made["text"]
+    found = await client.post(f"{at}/findings", {"text": text.replace("flow.Decide", "flow.Nothing", 1)})
+    assert [each["code"] for each in found.json()] == ["unknown-state"]

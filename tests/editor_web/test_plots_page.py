@@ -1,0 +1,168 @@
+"""The tab of curves in a real browser, against a real session: choosing, drawing, holding, reading, exporting."""
+
+from __future__ import annotations
+
+import asyncio
+import csv
+import io
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.fake_plant import FakePlant
+from tests.editor_web.workshop import SHIFT_ID, Workshop
+
+LAPTOP: Size = (1280, 800)
+# How many pixels of the canvas are of a curve and not of text or grid.
+PAINTED = """() => {
+    const canvas = document.querySelector('.plot-canvas canvas')
+    const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data
+    let painted = 0
+    for (let at = 0; at < data.length; at += 4) {
+        const spread = Math.max(data[at], data[at + 1], data[at + 2]) - Math.min(data[at], data[at + 1], data[at + 2])
+        if (data[at + 3] > 128 && spread > 60) painted += 1
+    }
+    return painted
+}"""
+
+
+@pytest.fixture
+def plant() -> FakePlant:
+    """The devices on the bus."""
+    return FakePlant()
+
+
+@pytest.fixture
+def shop(tmp_path: Path, loopback: str, plant: FakePlant) -> Generator[Workshop]:
+    """A served session with them."""
+    with Workshop(host=loopback, project=tmp_path, furnish=plant.furnish) as opened:
+        yield opened
+
+
+@contextmanager
+def at_plots(browser: Browser, shop: Workshop, *, size: Size = LAPTOP, scheme: Scheme = "light") -> Generator[Page]:
+    """The page of a behavior with its curves in front."""
+    path = f"/behaviors/{SHIFT_ID}"
+    with opened_page(browser, shop.running, path, size=size, scheme=scheme) as page:
+        page.get_by_role("tab", name="Plots").click()
+        expect(page.get_by_text("Nothing is chosen")).to_be_visible()
+        yield page
+
+
+def choose_joints(page: Page) -> None:
+    """Both joints' positions."""
+    page.get_by_role("button", name="plant/joint_state").click()
+    page.get_by_label("All of position_rad of plant/joint_state").check()
+
+
+async def sampled(pages: int) -> None:
+    """Wait until this many pages are sampled for."""
+    while sum(task.get_name() == "data-sample" for task in asyncio.all_tasks()) != pages:  # noqa: ASYNC110 - untold
+        await asyncio.sleep(0.02)
+
+
+def test_chosen_numbers_are_drawn_with_their_values_and_units(
+    browser: Browser, shop: Workshop, plant: FakePlant
+) -> None:
+    """Rows at once or one by one; what is taken away is gone."""
+    with at_plots(browser, shop) as page:
+        choose_joints(page)
+        legend = page.get_by_role("list", name="Curves")
+        expect(legend.get_by_role("listitem")).to_have_count(2)
+        expect(legend).to_contain_text("position_rad lift")
+        expect(legend).to_contain_text("0.5 rad")
+        shop.on_loop(lambda: plant.publish(2.0))
+        expect(legend).to_contain_text("0.9093 rad")
+        page.wait_for_function(f"() => ({PAINTED})() > 100")
+        page.get_by_label("Find a number").fill("gripper width")
+        page.get_by_label("width_m of plant/gripper/state").check()
+        expect(legend).to_contain_text("0.04 m")
+        legend.get_by_role("button", name="Take away position_rad turn of plant/joint_state").click()
+        expect(legend.get_by_role("listitem")).to_have_count(2)
+        page.get_by_label("Find a number").fill("")
+        page.get_by_role("button", name="position_rad turn of plant/joint_state").click()
+        expect(legend.get_by_role("listitem")).to_have_count(3)
+
+
+def test_a_held_plot_can_be_read_while_samples_go_on(browser: Browser, shop: Workshop, plant: FakePlant) -> None:
+    """Pointing tells the values at that time, by mouse or keys."""
+    with at_plots(browser, shop) as page:
+        choose_joints(page)
+        legend = page.get_by_role("list", name="Curves")
+        expect(legend).to_contain_text("0.5 rad")
+        page.wait_for_function(f"() => ({PAINTED})() > 3")
+        page.get_by_role("button", name="Hold").click()
+        expect(page.locator(".plot-time")).to_contain_text("paused at")
+        shop.on_loop(lambda: plant.publish(2.0))
+        canvas = page.locator(".plot-canvas")
+        canvas.press("ArrowLeft")
+        expect(page.locator(".plot-time")).not_to_contain_text("paused at")
+        expect(legend).to_contain_text("0.5 rad")
+        canvas.press("+")
+        expect(canvas).to_have_attribute(
+            "aria-label", "2 curves over 24 s; arrows read values, plus and minus zoom, space pauses"
+        )
+        page.get_by_role("button", name="Go on").click()
+        canvas.press("Escape")
+        expect(legend).to_contain_text("0.9093 rad")
+
+
+def test_curves_are_exported_as_csv(browser: Browser, shop: Workshop) -> None:
+    """Times on the server's clock, a heading with the unit."""
+    with at_plots(browser, shop) as page:
+        choose_joints(page)
+        page.wait_for_function(f"() => ({PAINTED})() > 10")
+        with page.expect_download() as downloading:
+            page.get_by_role("button", name="CSV").click()
+        rows = list(csv.reader(io.StringIO(Path(downloading.value.path()).read_text(encoding="utf-8"))))
+    assert rows[0] == [
+        "time_s",
+        "plant/joint_state position_rad lift (rad)",
+        "plant/joint_state position_rad turn (rad)",
+    ]
+    assert rows[1][1:] == ["0", "0.5"]
+    assert float(rows[1][0]) > 1.7e9
+
+
+def test_a_tab_that_is_not_shown_gets_nothing(browser: Browser, shop: Workshop) -> None:
+    """And goes on where it was when it is shown again."""
+    with at_plots(browser, shop) as page:
+        choose_joints(page)
+        expect(page.get_by_role("list", name="Curves")).to_contain_text("0.5 rad")
+        shop.call(sampled(1))
+        page.get_by_role("tab", name="Log").click()
+        shop.call(sampled(0))
+        page.get_by_role("tab", name="Plots").click()
+        shop.call(sampled(1))
+
+
+def test_what_was_chosen_is_kept_over_a_reload(browser: Browser, shop: Workshop) -> None:
+    """In the browser that chose it."""
+    with at_plots(browser, shop) as page:
+        choose_joints(page)
+        expect(page.get_by_role("list", name="Curves")).to_contain_text("0.5 rad")
+        page.reload()
+        page.get_by_role("tab", name="Plots").click()
+        expect(page.get_by_role("list", name="Curves").get_by_role("listitem")).to_have_count(2)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_curves_are_accessible(browser: Browser, shop: Workshop, scheme: Scheme) -> None:
+    """Also the tree of what can be chosen."""
+    with at_plots(browser, shop, scheme=scheme) as page:
+        choose_joints(page)
+        expect(page.get_by_role("list", name="Curves")).to_contain_text("0.5 rad")
+        require_accessible(page, "plots", part=".dock")
+
+
+def test_curves_on_a_phone(browser: Browser, shop: Workshop) -> None:
+    """The tree can be put away."""
+    with at_plots(browser, shop, size=PHONE) as page:
+        choose_joints(page)
+        page.get_by_role("button", name="Choose").click()
+        expect(page.get_by_label("Find a number")).to_have_count(0)
+        page.wait_for_function(f"() => ({PAINTED})() > 10")
