@@ -1,4 +1,4 @@
-"""The transfer of two parts by two arms is built from nothing by mouse and keyboard, checked, run, paused, and looked at.
+"""The transfer by two arms is built from nothing by mouse and keyboard, checked, run, paused, and looked at again.
 
 A real `flexcell serve` with the cell of two Pandas in physics, in real time, and a real browser.
 """
@@ -9,12 +9,12 @@ from pathlib import Path
 from shutil import copy
 
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 
 from engine.document import load_behavior
 from tests.editor_web.browsing import opened_page
 from tests.editor_web.editing import card, idle
-from tests.editor_web.test_restart import dashboard_of
+from tests.editor_web.real_server import dashboard_of
 from tests.engine.cli.process import started
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
@@ -175,33 +175,59 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
 ) -> None:
     """Twenty-six states; the parts then lie where they were to be put."""
     cell = ("--cell", "behaviors/cells/dual_panda.yaml")
-    with started("serve", "--host", loopback, "--port", "0", *cell, cwd=project) as process:
-        with opened_page(browser, dashboard_of(process), "/", size=(1600, 1000)) as page:
-            page.set_default_timeout(60_000)
-            page.get_by_role("button", name="New", exact=True).click()
-            page.get_by_label("Name", exact=True).fill("my_transfer")
-            page.get_by_role("button", name="Make it").click()
-            expect(page.get_by_role("tab", name="Behavior")).to_be_visible()
-            declare(page)
-            page.locator(".edit-canvas").click(position={"x": 30, "y": 500})
-            add(page, "Concurrency", "root/concurrency", "transfer")
-            build_arm(page, "left", "hca_north")
-            build_arm(page, "right", "hca_south")
-            rules(page)
-            page.locator(".edit-canvas").click(position={"x": 8, "y": 120})
-            expect_parts(page)
-            choose(page, "root/transfer")
-            lead(page, "placed", "expect_north_part")
-            lead(page, "failed", "failed")
-            expect(page.locator(".problem-count")).to_have_text("No problems")
-            page.get_by_role("button", name="Run", exact=True).click()
-            behavior = load_behavior(project / MADE)
-            assert len(behavior.root.children) == 3
-            run(page)
+    with (
+        started("serve", "--host", loopback, "--port", "0", *cell, cwd=project) as process,
+        opened_page(browser, dashboard_of(process), "/", size=(1600, 1000)) as page,
+    ):
+        page.set_default_timeout(60_000)
+        page.get_by_role("button", name="New", exact=True).click()
+        page.get_by_label("Name", exact=True).fill("my_transfer")
+        page.get_by_role("button", name="Make it").click()
+        expect(page.get_by_role("tab", name="Behavior")).to_be_visible()
+        declare(page)
+        page.locator(".edit-canvas").click(position={"x": 30, "y": 500})
+        add(page, "Concurrency", "root/concurrency", "transfer")
+        build_arm(page, "left", "hca_north")
+        build_arm(page, "right", "hca_south")
+        rules(page)
+        page.locator(".edit-canvas").click(position={"x": 8, "y": 120})
+        expect_parts(page)
+        choose(page, "root/transfer")
+        lead(page, "placed", "expect_north_part")
+        lead(page, "failed", "failed")
+        expect(page.locator(".problem-count")).to_have_text("No problems", timeout=20_000)
+        page.get_by_role("button", name="Run", exact=True).click()
+        behavior = load_behavior(project / MADE)
+        assert len(behavior.root.children) == 3
+        run(page)
+
+
+def node(page: Page, path: str) -> Locator:
+    """A node of the graph of the run."""
+    return page.locator(f".react-flow__node[data-id='{path}'] .step").first
 
 
 def run(page: Page) -> None:
-    """Start, pause, go on, to the end; then back in time."""
-    node = page.locator(".react-flow__node[data-id='root/transfer'] .step").first
+    """Start, pause, go on, to the end; then back in time; then once more, stopped."""
+    badge = page.locator(".page-head .badge")
     page.get_by_role("button", name="Start", exact=True).click()
-    expect(node).to_have_attribute("data-status", "active")
+    expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
+    page.get_by_role("button", name="Operate", exact=True).click()
+    page.get_by_role("button", name="Pause", exact=True).click()
+    state = page.get_by_role("status", name="State of the run")
+    expect(state).to_contain_text("Paused")
+    page.get_by_role("button", name="Resume", exact=True).click()
+    expect(badge).to_have_text("finished", timeout=120_000)
+    expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
+    page.get_by_role("tab", name="Timeline").click()
+    moment = page.get_by_role("slider", name="Moment of the run")
+    box = moment.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 8)
+    expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
+    page.get_by_role("button", name="Back to live").click()
+    expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
+    page.get_by_role("button", name="Start", exact=True).click()
+    expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
+    page.get_by_role("button", name="Stop", exact=True).click()
+    expect(badge).to_have_text("stopped", timeout=30_000)

@@ -16,23 +16,13 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from editor_web.routes import live as live_route
-from editor_web.server import Dashboard
 from engine.control.control import LossPolicy
 from engine.event import OperatorChanged
 from engine.supervision import Supervision
 from tests.editor_web.browsing import browser_program, opened_page, require_accessible, switch
+from tests.editor_web.real_server import dashboard_of
 from tests.editor_web.workshop import NAP, NAP_ID, Workshop
 from tests.engine.cli.process import entered, started, until
-
-
-def dashboard_of(process: subprocess.Popen[str]) -> Dashboard:
-    """Where a `flexcell serve` says that its page is."""
-    assert process.stdout is not None
-    line = process.stdout.readline()
-    login = line.removeprefix("Dashboard: ").strip()
-    assert "/login?t=" in login, (line, process.poll())
-    url, token = login.split("login?t=")
-    return Dashboard(url=url, login_url=login, token=token, port=int(url.rstrip("/").rsplit(":", 1)[1]))
 
 
 def node(page: Page, path: str) -> Locator:
