@@ -3,8 +3,9 @@
     python docs/make_screenshots.py [NAME …]
 
 `dashboard` is the two-arm transfer in mid-motion, `cell` and `phone` the cell at rest, `confirm` and `confirm-phone` a
-planned way that waits for its operator, `shared` an arm that waits because a person reaches into its way. Needs the
-extras `all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
+planned way that waits for its operator, `shared` an arm that waits because a person reaches into its way, `editor` a
+behavior in the editor, `timeline` a moment of a run that is over, `teach` the page that teaches. Needs the extras
+`all` and `test` and a Chromium. Without a graphics card the 3D view takes seconds a picture.
 """
 
 from __future__ import annotations
@@ -109,8 +110,36 @@ def waiting(page: Page) -> None:
     expect(page.get_by_role("list", name="Arms whose way is blocked")).to_be_visible(timeout=LIMIT_MS)
 
 
+def edited(page: Page) -> None:
+    """All of it on the canvas, with one state chosen by the address."""
+    expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=LIMIT_MS)
+    expect(page.locator(".card.is-selected").first).to_be_visible(timeout=LIMIT_MS)
+
+
+def looked_back(page: Page) -> None:
+    """Let the transfer end, and go back to where both arms carry their parts."""
+    drawn(page)
+    start(page)
+    expect(page.locator(".page-head .badge")).to_have_text("finished", timeout=LIMIT_MS)
+    page.get_by_role("tab", name="Timeline").click()
+    ruler = page.get_by_role("slider", name="Moment of the run")
+    expect(ruler).to_be_visible(timeout=LIMIT_MS)
+    box = ruler.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.45 * box["width"], box["y"] + 8)
+    expect(page.get_by_role("button", name="Back to live")).to_be_visible(timeout=LIMIT_MS)
+    # The meshes of the past are sent once, which takes a moment without a graphics card.
+    page.wait_for_timeout(8000)
+
+
+def taught(page: Page) -> None:
+    """Beside the arm."""
+    drawn(page)
+
+
 CONFIRM = "/behaviors/behaviors/pick_and_place/confirmed_move.yaml"
 TRANSFER = "/behaviors/behaviors/reconcycle/two_arm_transfer.yaml"
+EDITOR = "/edit/behaviors/reconcycle/two_arm_transfer.yaml#root/transfer/left/grasp"
 SHARED = "/behaviors/behaviors/plate_transfer_shared/plate_transfer_shared.yaml"
 PICTURES = (
     Picture(name="dashboard", cell="dual_panda", address=TRANSFER, size=DESK, prepare=in_motion),
@@ -118,6 +147,9 @@ PICTURES = (
     Picture(name="phone", cell="dual_panda", address="/", size=PHONE, prepare=drawn),
     Picture(name="confirm", cell="ur10", address=CONFIRM, size=DESK, prepare=asked),
     Picture(name="confirm-phone", cell="ur10", address=CONFIRM, size=PHONE, prepare=asked),
+    Picture(name="editor", cell="dual_panda", address=EDITOR, size=LARGE, prepare=edited),
+    Picture(name="timeline", cell="dual_panda", address=TRANSFER, size=DESK, prepare=looked_back),
+    Picture(name="teach", cell="dual_panda", address="/teach", size=DESK, prepare=taught),
     Picture(name="shared", cell="irb4600_shared", address=SHARED, size=DESK, prepare=waiting),
 )
 

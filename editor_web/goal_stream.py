@@ -29,7 +29,7 @@ class GoalStream(StreamingResponse):
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Send until the goal ends or the client goes."""
         ending = asyncio.create_task(self._desk.ended(self._handle), name=f"goal {self._handle.id}")
-        gone = asyncio.create_task(_until_gone(receive), name="goal-client")
+        gone = asyncio.create_task(until_gone(receive), name="goal-client")
         try:
             await send({"type": "http.response.start", "status": 200, "headers": self.raw_headers})
             await self._tell(send, GoalLineSent(goal=self._handle.id))
@@ -47,7 +47,8 @@ class GoalStream(StreamingResponse):
                 await send({"type": "http.response.body", "body": b"", "more_body": False})
         finally:
             gone.cancel()
-            ending.cancel()
+            # Not through the task that waits for it, which may not have begun.
+            self._handle.cancel()
             # The goal has ended only when its device is at rest.
             await asyncio.wait({ending, gone})
 
@@ -60,6 +61,7 @@ async def _nothing() -> AsyncGenerator[bytes]:
     yield b""
 
 
-async def _until_gone(receive: Receive) -> None:
+async def until_gone(receive: Receive) -> None:
+    """Wait until the client of a request has gone."""
     while (await receive())["type"] != "http.disconnect":
         pass

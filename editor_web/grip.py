@@ -76,6 +76,7 @@ class Grip:
         self._jogger = Jogger(backend.bus, taken=joggers, tell=self._on_jog)
         self._loop = asyncio.get_running_loop()
         self._take = Take()
+        self._handle: Handle | None = None
         self._target: Placed | None = None
         self._held_s = -math.inf
         self._is_refused = False
@@ -83,16 +84,15 @@ class Grip:
 
     async def take(self, take: Take) -> None:
         """Show the handle of an arm, or none."""
-        await self.let_go()
+        await self._let_go()
         self._take = take
         description = self._backend.latest(f"{take.arm}/description") if take.arm else None
         if isinstance(description, RobotDescription):
             turns = take.way == "move"
-            self._view.give_handle(
-                self._page, Handle(frame=description.tool_frame, turns=turns, pulled=self._on_pull(take))
-            )
+            self._handle = Handle(frame=description.tool_frame, turns=turns, pulled=self._on_pull(take))
+            self._view.give_handle(self._page, self._handle)
         else:
-            self._view.give_handle(self._page, None)
+            self._take_away()
             if take.arm:
                 self._refuse("there is no such arm", "choose one of the cell's")
             self._take = Take()
@@ -102,19 +102,26 @@ class Grip:
         """The page says that the mouse is down."""
         self._held_s = self._loop.time()
 
-    async def let_go(self) -> None:
-        """Bring the arm to rest; the handle stays."""
+    async def close(self) -> None:
+        """Bring the arm to rest and take the handle away."""
+        await self._let_go()
+        self._take_away()
+
+    def _take_away(self) -> None:
+        # By now the page may have a connection anew, with a handle of its own.
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            self._view.take_handle(self._page, handle)
+
+    async def _let_go(self) -> None:
+        # Nobody listens any more to the handle, which can be pulled at until it has gone from the page.
+        self._take = Take()
         self._target = None
         task, self._task = self._task, None
         if task is not None:
             task.cancel()
             await asyncio.wait({task})
         await self._jogger.rest()
-
-    async def close(self) -> None:
-        """Bring the arm to rest and take the handle away."""
-        await self.let_go()
-        self._view.give_handle(self._page, None)
 
     def _on_pull(self, take: Take) -> Callable[[Pull], None]:
         def pulled(pull: Pull) -> None:

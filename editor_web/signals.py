@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import cast
 
@@ -32,6 +33,7 @@ _UNITS = {
     "v": "V",
     "a": "A",
 }
+_INDEX = re.compile(r"[0-9]{1,4}")
 _OWN_TIME = "time_s"
 """When a message was made; curves have the server's time instead."""
 _BY_NAME = {"xyz": "m"}
@@ -60,7 +62,7 @@ def signal_fields(message: object) -> tuple[SignalField, ...]:
 
 def path_of(text: str) -> Path:
     """Return the path that `position_rad.0` writes."""
-    return tuple(int(part) if part.isascii() and part.isdigit() else part for part in text.split("."))
+    return tuple(int(part) if _INDEX.fullmatch(part) else part for part in text.split("."))
 
 
 def number_at(message: object, path: Path) -> float | None:

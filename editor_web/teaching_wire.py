@@ -51,10 +51,11 @@ class ArmNow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ArmCards(msgspec.Struct, frozen=True, kw_only=True, tag="arms", tag_field="k"):
-    """First frame: the arms of the cell; `can_push` where somebody can push at bodies, as in a simulation."""
+    """First frame: the arms and frames of the cell; `can_push` where bodies can be pushed at, as in a simulation."""
 
     arms: tuple[ArmCard, ...]
     can_push: bool
+    frames: tuple[str, ...] = ()
 
 
 class ArmsNow(msgspec.Struct, frozen=True, kw_only=True, tag="now", tag_field="k"):
@@ -115,12 +116,18 @@ class Button(msgspec.Struct, frozen=True, kw_only=True, tag="button", tag_field=
 
 
 class LookAt(msgspec.Struct, frozen=True, kw_only=True, tag="look", tag_field="k"):
-    """From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm."""
+    """From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm.
+
+    `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of
+    all that is shown; 1 to 4 are beside that, each in its colour.
+    """
 
     arm: Name = ""
     kind: Name = ""
     name: Name = ""
     capture: int = 0
+    revision: int = 0
+    place: Annotated[int, msgspec.Meta(ge=0, le=4)] = 0
 
 
 class Fits(msgspec.Struct, frozen=True, kw_only=True):
@@ -151,6 +158,15 @@ class EntryPage(msgspec.Struct, frozen=True, kw_only=True):
     total: int
 
 
+class TagsBody(Wire):
+    """The tags that an entry is to have; `revision` is the one that they were seen on."""
+
+    kind: str = Field(max_length=200)
+    name: str = Field(max_length=200)
+    tags: tuple[Annotated[str, Field(max_length=64)], ...] = Field(max_length=32)
+    revision: int = Field(ge=1, le=2**53)
+
+
 class PlayBody(Wire):
     """Carry out an entry (`kind`, `name`) or a capture with an arm, at `speed`: a share of its own, a half at most."""
 
@@ -159,6 +175,7 @@ class PlayBody(Wire):
     kind: str = Field(default="", max_length=200)
     name: str = Field(default="", max_length=200)
     capture: int = Field(default=0, ge=0, le=2**53)
+    revision: int = Field(default=0, ge=0, le=2**53)
 
 
 class Played(msgspec.Struct, frozen=True, kw_only=True):

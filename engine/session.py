@@ -207,6 +207,8 @@ class Session:
             raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
         catalogue = self._library.catalogue
         behavior = self._library.behavior(behavior_id)
+        # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
+        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
             found,
@@ -217,7 +219,6 @@ class Session:
             restore=alone and found.origin.seed == self.cell.seed,
         )
         watched = Supervision(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator)
-        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         run = await resume_run(
             resumption,
             cell=self.cell,

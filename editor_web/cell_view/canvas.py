@@ -7,5 +7,7 @@ import viser
 Canvas = viser.ViserServer | viser.ClientHandle
 CELL = "/cell"
 """The node that the bodies of the cell are below."""
+TAUGHT = "/taught"
+"""The node that what somebody looks at is below, whatever else is shown or hidden."""
 PAST = "/past"
 """The node that everything of a past moment is below, beside the live nodes."""

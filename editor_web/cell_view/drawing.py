@@ -11,7 +11,7 @@ from editor_web.cell_view.groups import Group
 from editor_web.cell_view.newest import Newest
 from editor_web.cell_view.obstacles import Obstacles
 from editor_web.cell_view.occupancy import Voxels
-from editor_web.cell_view.ways import Ways
+from editor_web.cell_view.ways import Ghosts, Ways
 
 
 class Drawing:
@@ -20,7 +20,7 @@ class Drawing:
     def __init__(self, canvas: Canvas, *, under: str = "") -> None:
         self._bodies = Bodies(canvas, under=under)
         self._ways = Ways(canvas, under=under)
-        self._ghosts = Ways(canvas, ghosts=True, under=under)
+        self._ghosts = Ghosts(canvas, under=under)
         self._obstacles = Obstacles(canvas, under=under)
         self._voxels = Voxels(canvas, under=under)
         self._cameras = Cameras(canvas, under=under)
@@ -32,7 +32,7 @@ class Drawing:
         self._obstacles.draw(newest)
         due = (
             self._ways.draw(newest, now_s, is_shown="ways" in shown),
-            self._ghosts.draw(newest, now_s, is_shown="ways" in shown),
+            self._ghosts.draw(newest, now_s),
             self._voxels.draw(newest, now_s),
             self._cameras.draw(newest, now_s),
         )

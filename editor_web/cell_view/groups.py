@@ -12,7 +12,7 @@ from typing import Literal
 
 import viser
 
-from editor_web.cell_view.canvas import CELL, PAST
+from editor_web.cell_view.canvas import CELL, PAST, TAUGHT
 from editor_web.cell_view.lock import PAGE
 
 Group = Literal["voxels", "ways", "obstacles", "cameras", "people", "frames"]
@@ -110,7 +110,7 @@ class _Roots:
 
     def __init__(self, client: viser.ClientHandle, page: str) -> None:
         self.page = page
-        self._live = client.scene.add_frame(CELL, show_axes=False)
+        self._live = tuple(client.scene.add_frame(node, show_axes=False) for node in (CELL, TAUGHT))
         self._groups = {group: client.scene.add_frame(root_of(group), show_axes=False) for group in GROUPS}
         self._scene = client.scene
         self._past, self._past_groups = _past_roots(client.scene)
@@ -121,8 +121,9 @@ class _Roots:
         self._past, self._past_groups = _past_roots(self._scene)
 
     def show(self, groups: frozenset[Group], *, is_past: bool) -> None:
-        """Show these groups, and the bodies of the cell."""
-        _set_visible(self._live, not is_past)
+        """Show these groups, and the bodies of the cell with what somebody looks at."""
+        for node in self._live:
+            _set_visible(node, not is_past)
         _set_visible(self._past, is_past)
         for group in GROUPS:
             _set_visible(self._groups[group], group in groups and not is_past)

@@ -70,13 +70,19 @@ class Handles:
         server.on_client_connect(self._connected)
         server.on_client_disconnect(self._disconnected)
 
-    def give(self, page: str, handle: Handle | None) -> None:
-        """Give a page this handle, instead of the one that it has; None takes it away."""
+    def give(self, page: str, handle: Handle) -> None:
+        """Give a page this handle, instead of the one that it has."""
         with self._lock:
-            if handle is None:
-                self._given.pop(page, None)
-            else:
-                self._given[page] = handle
+            self._given[page] = handle
+            self._frames = None
+        self._changed()
+
+    def take(self, page: str, handle: Handle) -> None:
+        """Take this handle away from a page, which may have got another one since."""
+        with self._lock:
+            if self._given.get(page) is not handle:
+                return
+            del self._given[page]
             self._frames = None
         self._changed()
 

@@ -13,8 +13,8 @@ from engine.skills.planning_scene import PlanningSceneState
 class Newest:
     """One reference for each, the newest wins; `arrived` is set with every message.
 
-    `descriptions`, `ways`, `ghosts`, `cameras` and `depths` are by the name of the arm or camera. Messages are
-    frozen: whoever reads one sees it whole.
+    `descriptions`, `ways`, `cameras` and `depths` are by the name of the arm or camera, `ghosts` by that and a place
+    beside others. Messages are frozen: whoever reads one sees it whole.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class Newest:
         self.occupancy: OccupancyGrid | None = None
         self.descriptions: dict[str, RobotDescription] = {}
         self.ways: dict[str, PathPreview] = {}
-        self.ghosts: dict[str, PathPreview] = {}
+        self.ghosts: dict[tuple[str, int], PathPreview] = {}
         self.occupancy_state: OccupancyState | None = None
         self.cameras: dict[str, CameraInfo] = {}
         self.depths: dict[str, DepthImage] = {}
@@ -55,7 +55,7 @@ class Newest:
                 return
         self.arrived.set()
 
-    def put_ghost(self, preview: PathPreview) -> None:
-        """Keep what somebody looks at, which nobody goes."""
-        self.ghosts = {**self.ghosts, preview.robot: preview}
+    def put_ghost(self, preview: PathPreview, *, place: int = 0) -> None:
+        """Keep what somebody looks at, which nobody goes; several of an arm each have their place."""
+        self.ghosts = {**self.ghosts, (preview.robot, place): preview}
         self.arrived.set()

@@ -92,19 +92,24 @@ class CellView:
         if self._past is not None:
             self._past.leave(page)
 
-    def give_handle(self, page: str, handle: Handle | None) -> None:
-        """Give a page, where an operator looks at it, this handle to pull at; None takes it away."""
+    def give_handle(self, page: str, handle: Handle) -> None:
+        """Give a page, where an operator looks at it, this handle to pull at."""
         if self._handles is not None:
             self._handles.give(page, handle)
+
+    def take_handle(self, page: str, handle: Handle) -> None:
+        """Take this handle away from a page, which may have got another one since."""
+        if self._handles is not None:
+            self._handles.take(page, handle)
 
     async def subscribe(self) -> None:
         """Follow the cell's topics, on the event loop's thread."""
         self._loop = asyncio.get_running_loop()
         await self._follower.open()
 
-    def show_ghost(self, preview: PathPreview) -> None:
-        """Show where an arm would be, until another is shown for it; one in the state `none` shows nothing."""
-        self._newest.put_ghost(preview)
+    def show_ghost(self, preview: PathPreview, *, place: int = 0) -> None:
+        """Show where an arm would be, until another is shown in its place; one in the state `none` shows nothing."""
+        self._newest.put_ghost(preview, place=place)
 
     async def unsubscribe(self) -> None:
         """Stop following, on the event loop's thread."""

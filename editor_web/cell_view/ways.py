@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from editor_web.cell_view.canvas import Canvas
+from editor_web.cell_view.canvas import TAUGHT, Canvas
 from editor_web.cell_view.geometry import Rgb, Shown, add_geometry
 from editor_web.cell_view.groups import root_of
 from editor_web.cell_view.linkage import Linkage
@@ -22,6 +22,8 @@ from engine.skills.planning import PathPreview
 
 _log = logging.getLogger("flexcell.cell_view")
 _COLOURS: Mapping[str, Rgb] = {"proposed": (37, 99, 235), "moving": (22, 163, 74), "blocked": (220, 70, 38)}
+# As the page's curves of what is beside each other.
+_PLACE_COLOURS: tuple[Rgb, ...] = ((37, 99, 235), (220, 70, 38), (22, 163, 74), (217, 119, 6), (107, 114, 128))
 _OPACITY = 0.4
 _LINE_PX = 4.0
 _GOAL_M = 0.012
@@ -31,28 +33,51 @@ PERIOD_S = 1.0 / 15.0
 
 
 class Ways:
-    """Draws the previews of all arms: those of plans, or, for `ghosts`, what somebody looks at."""
+    """Draws the previews of all arms that plan."""
 
-    def __init__(self, server: Canvas, *, ghosts: bool = False, under: str = "") -> None:
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
         self._server = server
         self._root = root_of("ways", under=under)
-        self._are_ghosts = ghosts
         self._arms: dict[str, _ArmWay] = {}
 
     def draw(self, newest: Newest, now_s: float, *, is_shown: bool) -> float | None:
         """Draw what has changed; returns when to call again where a ghost moves and somebody looks."""
         due: list[float] = []
-        for name, preview in (newest.ghosts if self._are_ghosts else newest.ways).items():
-            node = f"{self._root}/{'taught/' if self._are_ghosts else ''}{name}"
-            way = self._arms.setdefault(name, _ArmWay(self._server, name, node=node))
+        for name, preview in newest.ways.items():
+            if name not in self._arms:
+                self._arms[name] = _ArmWay(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
+            way = self._arms[name]
             way.draw(preview, newest, now_s)
             if is_shown and (next_s := way.animate(now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
 
 
+class Ghosts:
+    """Draws what somebody looks at, each place in its colour, also where planned ways are hidden."""
+
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
+        self._server = server
+        self._root = f"{under}{TAUGHT}"
+        self._arms: dict[tuple[str, int], _ArmWay] = {}
+
+    def draw(self, newest: Newest, now_s: float) -> float | None:
+        """Draw what has changed; returns when to call again where a ghost moves."""
+        due: list[float] = []
+        for key, preview in newest.ghosts.items():
+            if key not in self._arms:
+                name, place = key
+                colours = {"proposed": _PLACE_COLOURS[place % len(_PLACE_COLOURS)]}
+                self._arms[key] = _ArmWay(self._server, name, node=f"{self._root}/{name}.{place}", colours=colours)
+            self._arms[key].draw(preview, newest, now_s)
+            if (next_s := self._arms[key].animate(now_s)) is not None:
+                due.append(next_s)
+        return min(due, default=None)
+
+
 class _ArmWay:
-    def __init__(self, server: Canvas, name: str, *, node: str) -> None:
+    def __init__(self, server: Canvas, name: str, *, node: str, colours: Mapping[str, Rgb]) -> None:
+        self._colours = colours
         self._server = server
         self._node = node
         self._name = name
@@ -96,7 +121,7 @@ class _ArmWay:
             for handle in self._line:
                 handle.remove()
             self._line = None
-        colour = _COLOURS.get(preview.state)
+        colour = self._colours.get(preview.state)
         points = np.asarray(preview.tool_path, dtype=np.float32).reshape(-1, 3)
         if colour is None or len(points) < 2 or not np.isfinite(points).all():
             return
@@ -115,7 +140,7 @@ class _ArmWay:
         )
 
     def _draw_ghost(self, preview: PathPreview, newest: Newest) -> None:
-        colour = _COLOURS.get(preview.state)
+        colour = self._colours.get(preview.state)
         if colour is None or not preview.joints:
             if self._ghost is not None:
                 self._ghost.root.visible = False

@@ -128,9 +128,11 @@ class Pasts:
     def _with(self, key: str, archived: ArchivedRun) -> OpenedRun:
         plan = archived.plan
         book = UserdataBook(lambda: plan) if plan is not None else None
-        opened = self._entry(key, archived.summary.id, book)
-        opened.archived = archived
+        opened = OpenedRun(course=Course(archived.summary.id), books=Books(book), archived=archived)
+        # Before others can find it, so that nobody sees a part of it.
         opened.follow(archived.events)
+        with self._lock:
+            self._keep(key, opened)
         return opened
 
     def _known(self, key: str) -> OpenedRun | None:
@@ -148,8 +150,12 @@ class Pasts:
 
     def _entry(self, key: str, run_id: str, book: UserdataBook | None) -> OpenedRun:
         with self._lock:
-            opened = self._opened.setdefault(key, OpenedRun(course=Course(run_id), books=Books(book)))
-            self._opened.move_to_end(key)
-            while len(self._opened) > KEPT:
-                self._opened.popitem(last=False)
+            opened = self._opened.get(key) or OpenedRun(course=Course(run_id), books=Books(book))
+            self._keep(key, opened)
             return opened
+
+    def _keep(self, key: str, opened: OpenedRun) -> None:
+        self._opened[key] = opened
+        self._opened.move_to_end(key)
+        while len(self._opened) > KEPT:
+            self._opened.popitem(last=False)

@@ -12,7 +12,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 
 from editor_web.bus_wire import BusBoard, BusFields, BusForm, BusParameterBody, TopicFields
-from editor_web.goal_stream import GoalStream
+from editor_web.goal_stream import GoalStream, until_gone
 from editor_web.pruned import pruned
 from editor_web.routes.services import ServicesOf
 from editor_web.signals import signal_fields
@@ -127,7 +127,7 @@ async def cancel_goal(goal: str, services: ServicesOf) -> None:
 async def while_there(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:
     """Return what `work` returns; it is cancelled, and None returned, when the client goes before."""
     goal = asyncio.create_task(work, name=name)
-    gone = asyncio.create_task(_until_gone(request), name="goal-client")
+    gone = asyncio.create_task(until_gone(request.receive), name="goal-client")
     try:
         await asyncio.wait({goal, gone}, return_when=asyncio.FIRST_COMPLETED)
         return goal.result() if goal.done() else None
@@ -136,8 +136,3 @@ async def while_there(work: Coroutine[Any, Any, R], request: Request, *, name: s
             task.cancel()
         # The goal has ended only when its device is at rest.
         await asyncio.wait({goal, gone})
-
-
-async def _until_gone(request: Request) -> None:
-    while (await request.receive())["type"] != "http.disconnect":
-        pass

@@ -12,24 +12,17 @@ from typing import cast
 
 import msgspec
 from fastapi import APIRouter, WebSocket
-from starlette.websockets import WebSocketDisconnect
 
 from editor_web.access import OPERATOR
 from editor_web.grip import Grip, Gripped, Held, Take
 from editor_web.routes.services import role_of, services_of
+from editor_web.routes.sockets import REFUSED, UNAVAILABLE, Gone, read, send
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching_wire import Refused
 
 router = APIRouter()
-_UNAVAILABLE = 1013
-_REFUSED = 1008
-_SEND_LIMIT_S = 5.0
 _MOST_WAITING = 100
 _decoder: msgspec.json.Decoder[Take | Held] = msgspec.json.Decoder(Take | Held)
-
-
-class _Closed(Exception):
-    """The page has gone, or has been sent away."""
 
 
 class _News:
@@ -50,10 +43,10 @@ async def cell_grip(socket: WebSocket, page: str) -> None:
     services = services_of(socket)
     view = services.cell_view
     if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
-        await socket.close(_UNAVAILABLE, "this server has no such cell view")
+        await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     if role_of(socket) != OPERATOR:
-        await socket.close(_REFUSED, "a viewer may look only")
+        await socket.close(REFUSED, "a viewer may look only")
         return
     await socket.accept()
     news = _News()
@@ -63,7 +56,7 @@ async def cell_grip(socket: WebSocket, page: str) -> None:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, grip), name="grip-receive")
             tasks.create_task(_answer(socket, news), name="grip-answer")
-    except* _Closed:
+    except* Gone:
         pass
     finally:
         await grip.close()
@@ -71,13 +64,7 @@ async def cell_grip(socket: WebSocket, page: str) -> None:
 
 async def _receive(socket: WebSocket, grip: Grip) -> None:
     while True:
-        try:
-            request = _decoder.decode(await socket.receive_text())
-        except WebSocketDisconnect as error:
-            raise _Closed from error
-        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
-            await socket.close(_REFUSED, "expected to take or to hold a handle")
-            raise _Closed from error
+        request = await read(socket, _decoder, expected="to take or to hold a handle")
         if isinstance(request, Take):
             await grip.take(request)
         else:
@@ -89,9 +76,4 @@ async def _answer(socket: WebSocket, news: _News) -> None:
         await news.arrived.wait()
         news.arrived.clear()
         while news.waiting:
-            try:
-                async with asyncio.timeout(_SEND_LIMIT_S):
-                    await socket.send_text(msgspec.json.encode(news.waiting.popleft()).decode())
-            except (WebSocketDisconnect, RuntimeError, TimeoutError) as error:
-                # Starlette raises RuntimeError for a send after the close.
-                raise _Closed from error
+            await send(socket, news.waiting.popleft())

@@ -11,15 +11,12 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, WebSocket
-from starlette.websockets import WebSocketDisconnect
 
 from editor_web.cell_view import CellView, PastState
 from editor_web.routes.services import services_of
+from editor_web.routes.sockets import UNAVAILABLE, Gone, read, send
 
 router = APIRouter()
-_UNAVAILABLE = 1013
-_MALFORMED = 1008
-_SEND_LIMIT_S = 5.0
 
 
 class PastOrder(msgspec.Struct, frozen=True, kw_only=True):
@@ -27,10 +24,6 @@ class PastOrder(msgspec.Struct, frozen=True, kw_only=True):
 
     run: Annotated[str, msgspec.Meta(min_length=1, max_length=500)]
     time_s: float | None
-
-
-class _Closed(Exception):
-    """The page has gone, or has been sent away."""
 
 
 _decoder = msgspec.json.Decoder(PastOrder)
@@ -41,7 +34,7 @@ async def cell_past(socket: WebSocket, page: str) -> None:
     """Show past moments to one page until it goes; it then sees the present again."""
     view = services_of(socket).cell_view
     if view is None or not re.fullmatch(r"[0-9a-z]{1,40}", page):
-        await socket.close(_UNAVAILABLE, "this server has no such cell view")
+        await socket.close(UNAVAILABLE, "this server has no such cell view")
         return
     await socket.accept()
     told = _Told(asyncio.get_running_loop())
@@ -49,7 +42,7 @@ async def cell_past(socket: WebSocket, page: str) -> None:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, view, page, told), name="past-receive")
             tasks.create_task(_answer(socket, told), name="past-answer")
-    except* _Closed:
+    except* Gone:
         pass
     finally:
         view.show_present(page)
@@ -85,13 +78,7 @@ class _Told:
 
 async def _receive(socket: WebSocket, view: CellView, page: str, told: _Told) -> None:
     while True:
-        try:
-            order = _decoder.decode(await socket.receive_text())
-        except WebSocketDisconnect as error:
-            raise _Closed from error
-        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
-            await socket.close(_MALFORMED, "expected a run and a time")
-            raise _Closed from error
+        order = await read(socket, _decoder, expected="a run and a time")
         if order.time_s is None:
             view.show_present(page)
         else:
@@ -100,10 +87,4 @@ async def _receive(socket: WebSocket, view: CellView, page: str, told: _Told) ->
 
 async def _answer(socket: WebSocket, told: _Told) -> None:
     while True:
-        state = await told.next()
-        try:
-            async with asyncio.timeout(_SEND_LIMIT_S):
-                await socket.send_text(msgspec.json.encode(state).decode())
-        except (WebSocketDisconnect, RuntimeError, TimeoutError) as error:
-            # Starlette raises RuntimeError for a send after the close.
-            raise _Closed from error
+        await send(socket, await told.next())

@@ -8,14 +8,14 @@ import time
 
 import msgspec
 from fastapi import APIRouter, WebSocket
-from starlette.websockets import WebSocketDisconnect
 
 from editor_web.access import OPERATOR
 from editor_web.cell_view import CellView
 from editor_web.live import LiveClient
-from editor_web.live_frames import PROTOCOL_VERSION, Frame, Hello, Operate, Ping, Request, Show, Watch
+from editor_web.live_frames import PROTOCOL_VERSION, Hello, Operate, Ping, Request, Show, Watch
 from editor_web.operation import Attached, Operation
 from editor_web.routes.services import role_of, services_of
+from editor_web.routes.sockets import Gone, read, send, send_away
 from engine.errors import FlexcellError
 
 router = APIRouter()
@@ -23,19 +23,13 @@ PERIOD_S = 0.05
 PING_S = 5.0
 SILENCE_S = 12.0
 """A page answers each ping; one that is silent for longer is out of reach, whatever its socket says."""
-SEND_LIMIT_S = 5.0
-TRY_AGAIN_LATER = 1013
 _decoder: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
 _log = logging.getLogger("flexcell.live")
 
 
-class _Closed(Exception):
-    """The page has gone, or has been sent away."""
-
-
 @router.websocket("/api/v1/live")
 async def live(socket: WebSocket) -> None:
-    """Serve one page until it goes, falls behind by more than `SEND_LIMIT_S`, or is silent for `SILENCE_S`."""
+    """Serve one page until it goes, falls behind, or is silent for `SILENCE_S`."""
     services = services_of(socket)
     await socket.accept()
     client = services.hub.join()
@@ -43,11 +37,11 @@ async def live(socket: WebSocket) -> None:
     operator = _Operator(services.backend, allowed=role == OPERATOR)
     hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role, server_time_s=time.time())
     try:
-        await _send(socket, hello)
+        await send(socket, hello)
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, client, operator, services.cell_view), name="live-receive")
             tasks.create_task(_stream(socket, client), name="live-stream")
-    except* _Closed:
+    except* Gone:
         pass
     finally:
         operator.lose()
@@ -86,16 +80,11 @@ async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, v
     while True:
         try:
             async with asyncio.timeout(SILENCE_S):
-                request = _decoder.decode(await socket.receive_text())
-        except WebSocketDisconnect as error:
-            raise _Closed from error
+                request = await read(socket, _decoder, expected="a watch or pong message")
         except TimeoutError as error:
             _log.warning("a page was silent for %.0f s; it counts as gone", SILENCE_S)
-            await _close(socket, "silent")
-            raise _Closed from error
-        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
-            await socket.close(1008, "expected a watch or pong message")
-            raise _Closed from error
+            await send_away(socket, "silent")
+            raise Gone from error
         match request:
             case Watch():
                 client.watch(request.run)
@@ -113,7 +102,7 @@ async def _stream(socket: WebSocket, client: LiveClient) -> None:
     ping_s = clock.time() + PING_S
     while True:
         if clock.time() >= ping_s:
-            await _send(socket, Ping(server_time_s=time.time()))
+            await send(socket, Ping(server_time_s=time.time()))
             ping_s = clock.time() + PING_S
         try:
             async with asyncio.timeout_at(ping_s):
@@ -122,28 +111,6 @@ async def _stream(socket: WebSocket, client: LiveClient) -> None:
             continue
         frame = client.frame()
         if frame is not None:
-            await _send(socket, frame)
+            await send(socket, frame)
         # The frame rate's limit; what happens meanwhile is coalesced.
         await asyncio.sleep(PERIOD_S)
-
-
-async def _send(socket: WebSocket, frame: Frame) -> None:
-    try:
-        async with asyncio.timeout(SEND_LIMIT_S):
-            await socket.send_text(msgspec.json.encode(frame).decode())
-    except TimeoutError as error:
-        _log.warning("a page that is %.0f s behind was sent away; it will come back for a snapshot", SEND_LIMIT_S)
-        await _close(socket, "too slow")
-        raise _Closed from error
-    except (WebSocketDisconnect, RuntimeError) as error:
-        # Starlette raises RuntimeError for a send after the close.
-        raise _Closed from error
-
-
-async def _close(socket: WebSocket, reason: str) -> None:
-    try:
-        async with asyncio.timeout(1.0):
-            await socket.close(TRY_AGAIN_LATER, reason)
-    except (TimeoutError, WebSocketDisconnect, RuntimeError):
-        # Nobody takes the close frame either; the socket ends with this task.
-        _log.debug("the close frame could not be delivered")

@@ -35,7 +35,9 @@ def icon(services: ServicesOf) -> Response:
 
 @router.get("/")
 @router.get("/behaviors/{rest:path}")
+@router.get("/runs")
 @router.get("/runs/{rest:path}")
+@router.get("/beside/{rest:path}")
 @router.get("/past")
 @router.get("/recordings/{rest:path}")
 @router.get("/edit/{rest:path}")

@@ -9,19 +9,19 @@ from typing import Annotated, cast
 
 import msgspec
 from fastapi import APIRouter, Query, Request, Response, WebSocket
-from starlette.websockets import WebSocketDisconnect
 
 from editor_web.access import OPERATOR
 from editor_web.backend import Backend, Unsubscribe
 from editor_web.cell_view import CellView
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, while_there
 from editor_web.routes.services import ServicesOf, role_of, services_of
+from editor_web.routes.sockets import Gone, read, send
 from editor_web.teaching.arms import ArmBoard
 from editor_web.teaching.buttons import Buttons
 from editor_web.teaching.jogging import Jogger
 from editor_web.teaching.playing import play
 from editor_web.teaching.pushing import push
-from editor_web.teaching.taught import entries, fits, read_taught, trace
+from editor_web.teaching.taught import entries, fits, read_taught, tag, trace
 from editor_web.teaching_wire import (
     ArmsNow,
     Button,
@@ -36,6 +36,7 @@ from editor_web.teaching_wire import (
     PushBody,
     Refused,
     Rest,
+    TagsBody,
     ToPage,
 )
 from engine.errors import FlexcellError
@@ -44,7 +45,6 @@ from engine.skills.teaching import TeachStatus
 
 router = APIRouter(prefix="/api/v1/teach", tags=["teaching"])
 PERIOD_S = 0.1
-SEND_LIMIT_S = 5.0
 MOST_WAITING = 200
 MOST_ENTRIES = 200
 _decoder: msgspec.json.Decoder[FromPage] = msgspec.json.Decoder(FromPage)
@@ -68,9 +68,17 @@ async def get_fits(
     kind: Annotated[str, Query(max_length=40)] = "",
     name: Annotated[str, Query(max_length=200)] = "",
     capture: Annotated[int, Query(ge=0)] = 0,
+    revision: Annotated[int, Query(ge=0)] = 0,
 ) -> Response:
     """Return how an arm would go along an entry or a capture, beside the recording that it was learned from."""
-    return _json(await fits(services.backend.bus, arm, LookAt(arm=arm, kind=kind, name=name, capture=capture)))
+    look = LookAt(arm=arm, kind=kind, name=name, capture=capture, revision=revision)
+    return _json(await fits(services.backend.bus, arm, look))
+
+
+@router.post("/tags", status_code=204)
+async def set_tags(body: TagsBody, services: ServicesOf) -> None:
+    """Give an entry other tags."""
+    await tag(services.backend.bus, body)
 
 
 @router.post("/play")
@@ -98,8 +106,7 @@ async def teach_live(socket: WebSocket) -> None:
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(_receive(socket, page), name="teach-receive")
             tasks.create_task(_stream(socket, page), name="teach-stream")
-    except* (WebSocketDisconnect, RuntimeError, TimeoutError):
-        # The page has gone, or is too slow to be told anything; Starlette raises RuntimeError for a send after a close.
+    except* Gone:
         pass
     finally:
         await page.close()
@@ -123,8 +130,8 @@ class _Page:
         self._is_hand_news = True
         self._are_entries_news = False
         self._held_by = ""
-        self._looked_at = ""
-        self._looking: asyncio.Task[None] | None = None
+        self._looked_at: set[tuple[str, int]] = set()
+        self._looking: dict[int, asyncio.Task[None]] = {}
 
     async def open(self) -> None:
         """Follow what the page is told of."""
@@ -144,9 +151,9 @@ class _Page:
         """Do what the page says; a viewer's page may only look."""
         match request:
             case LookAt():
-                await self._look_away()
+                await self._look_away(request.place)
                 if request.arm:
-                    self._looking = asyncio.create_task(self._look(request), name="teach-look")
+                    self._looking[request.place] = asyncio.create_task(self._look(request), name="teach-look")
             case _ if not self._may_operate:
                 self._waiting.append(
                     Refused(what="jog", message="you may look only", hint="log in with the operator token")
@@ -209,7 +216,7 @@ class _Page:
         if course.remark:
             self._waiting.append(Refused(what="look", message=course.remark, hint=""))
         if self._view is not None:
-            self._looked_at = look.arm
+            self._looked_at.add((look.arm, look.place))
             self._view.show_ghost(
                 PathPreview(
                     robot=look.arm,
@@ -217,34 +224,33 @@ class _Page:
                     joint_names=course.joint_names,
                     joints=course.joints,
                     tool_path=tuple((pose[0], pose[1], pose[2]) for pose in course.poses),
-                )
+                ),
+                place=look.place,
             )
 
-    async def _look_away(self) -> None:
-        if self._looking is not None:
-            self._looking.cancel()
-            await asyncio.wait({self._looking})
-            self._looking = None
-        if self._looked_at and self._view is not None:
-            self._view.show_ghost(PathPreview(robot=self._looked_at, state="none"))
-        self._looked_at = ""
+    async def _look_away(self, place: int = 0) -> None:
+        """Show nothing there any more; with `place` 0 nowhere."""
+        tasks = [self._looking.pop(each) for each in tuple(self._looking) if place in (0, each)]
+        for task in tasks:
+            task.cancel()
+        if tasks:
+            await asyncio.wait(tasks)
+        gone = {each for each in self._looked_at if place in (0, each[1])}
+        self._looked_at -= gone
+        for arm, at in gone:
+            if self._view is not None:
+                self._view.show_ghost(PathPreview(robot=arm, state="none"), place=at)
 
 
 async def _receive(socket: WebSocket, page: _Page) -> None:
     while True:
-        try:
-            request = _decoder.decode(await socket.receive_text())
-        except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
-            await socket.close(1008, "expected a message of the page for teaching")
-            raise WebSocketDisconnect(1008) from error
-        await page.take(request)
+        await page.take(await read(socket, _decoder, expected="a message of the page for teaching"))
 
 
 async def _stream(socket: WebSocket, page: _Page) -> None:
     while True:
         for message in await page.news():
-            async with asyncio.timeout(SEND_LIMIT_S):
-                await socket.send_text(msgspec.json.encode(message).decode())
+            await send(socket, message)
         # The frame rate's limit; what happens meanwhile is coalesced.
         await asyncio.sleep(PERIOD_S)
 

@@ -7,7 +7,7 @@ import json
 from editor_web.backend import Backend
 from editor_web.teaching_wire import ArmCard, ArmCards, ArmNow, ToolNow
 from engine.errors import FlexcellError
-from engine.messages import GripperState, HandState, JointState, MagnetState, RobotDescription
+from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
 from engine.skills.arm_control import ArmStatus
 
 _TOOLS = (GripperState, HandState, MagnetState)
@@ -52,7 +52,12 @@ class ArmBoard:
                 )
             )
         self._names = tuple(card.name for card in cards)
-        return ArmCards(arms=tuple(cards), can_push="cell/push_body" in skills)
+        frames = self._backend.latest("cell/frames")
+        return ArmCards(
+            arms=tuple(cards),
+            can_push="cell/push_body" in skills,
+            frames=tuple(sorted(frames.names)) if isinstance(frames, FramePoses) else (),
+        )
 
     async def changed(self) -> dict[str, ArmNow]:
         """Return the arms that are another than when asked last."""

@@ -70,11 +70,16 @@ class Jogger:
             await self.rest()
 
     async def rest(self) -> None:
-        """Bring the arm to rest; returns when it is."""
-        task, self._task = self._task, None
-        if task is not None:
+        """Bring the arm to rest; returns when it is, also where that was asked for before."""
+        task = self._task
+        if task is None:
+            return
+        if not task.cancelling():
+            # Once only: a second one would not let it wait until the arm rests.
             task.cancel()
-            await asyncio.wait({task})
+        await asyncio.wait({task})
+        if self._task is task:
+            self._task = None
             # One that was cancelled before it began has let go of nothing.
             self._let_go()
 

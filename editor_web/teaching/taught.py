@@ -8,7 +8,7 @@ from typing import Protocol, cast, get_args
 
 import msgspec
 
-from editor_web.teaching_wire import EntryPage, EntryRow, Fits
+from editor_web.teaching_wire import EntryPage, EntryRow, Fits, TagsBody
 from engine.bus.access import BusAccess
 from engine.errors import FlexcellError
 from engine.messages import Message
@@ -37,6 +37,11 @@ class Reference(Protocol):
         """Number of the capture, 0 for an entry."""
         ...
 
+    @property
+    def revision(self) -> int:
+        """Which of its revisions, 0 for the entry as it is now."""
+        ...
+
 
 @dataclass(frozen=True, kw_only=True)
 class Taught:
@@ -52,7 +57,11 @@ async def read_taught(bus: BusAccess, reference: Reference) -> Taught:
         capture = await read_capture(bus, reference.capture)
         kind = capture.summary.form
         return Taught(kind=kind, value=msgspec.to_builtins(_value(capture)))
-    answer = await bus.call("store/read_entry", {"kind": reference.kind, "name": reference.name})
+    request: dict[str, object] = {"kind": reference.kind, "name": reference.name}
+    if reference.revision:
+        answer = await bus.call("store/read_revision", {**request, "revision": reference.revision})
+    else:
+        answer = await bus.call("store/read_entry", request)
     return Taught(kind=reference.kind, value=msgspec.json.decode(answer, type=EntryRecord).value)
 
 
@@ -118,6 +127,25 @@ async def fits(bus: BusAccess, arm: str, reference: Reference) -> Fits:
             later = tuple(time_s + fit.cut.start_s for time_s in primitive.times_s)
             primitive = msgspec.structs.replace(primitive, times_s=later)
     return Fits(demonstration=recorded, primitive=primitive, joint_fit=capture.joint_fit, cart_fit=capture.cart_fit)
+
+
+async def tag(bus: BusAccess, body: TagsBody) -> None:
+    """Give an entry other tags; its value stays.
+
+    Raises:
+        FlexcellError: there is none such, or somebody has changed it meanwhile.
+    """
+    named: dict[str, object] = {"kind": body.kind, "name": body.name}
+    answer = await bus.call("store/read_entry", named)
+    written = {
+        **named,
+        "value": msgspec.json.decode(answer, type=EntryRecord).value,
+        "tags": body.tags,
+        "expected_revision": body.revision,
+        "by": "the dashboard",
+        "reason": "other tags",
+    }
+    await bus.call("store/write_entry", written)
 
 
 async def entries(bus: BusAccess, *, kind: str, text: str, limit: int) -> EntryPage:

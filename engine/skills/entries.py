@@ -89,6 +89,14 @@ class ReadHistory(Service[EntryHistory], frozen=True, kw_only=True):
     name: str
 
 
+class ReadRevision(Service[EntryRecord], frozen=True, kw_only=True):
+    """Return what an entry was after one of its changes; fails where it was deleted by it, or never was."""
+
+    kind: str
+    name: str
+    revision: int
+
+
 class EntryList(Message, frozen=True, kw_only=True):
     """The entries that matched, without their values."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from engine.bus import SkillBus
+from engine.errors import EntryNotFound
 from engine.skills.entries import (
     DeleteEntry,
     EntryChanged,
@@ -14,6 +15,7 @@ from engine.skills.entries import (
     ListEntries,
     ReadEntry,
     ReadHistory,
+    ReadRevision,
     UndoEntry,
     WriteEntry,
 )
@@ -25,7 +27,7 @@ CHANGES = f"{NAMESPACE}/changes"
 
 
 def register_store(bus: SkillBus, store: Store) -> None:
-    """Advertise reading, writing, deleting, undoing and listing of entries under `store`."""
+    """Advertise reading, writing, deleting, undoing and listing of entries, and of their past, under `store`."""
 
     async def read(request: ReadEntry) -> EntryRecord:
         return await store.get(request.kind, request.name)
@@ -70,12 +72,27 @@ def register_store(bus: SkillBus, store: Store) -> None:
         changes = await store.history(request.kind, request.name)
         return EntryHistory(changes=tuple(_changed(change) for change in changes))
 
+    async def revision(request: ReadRevision) -> EntryRecord:
+        changes = await store.history(request.kind, request.name)
+        found = next((each for each in changes if each.revision == request.revision), None)
+        if found is None or found.value is None:
+            why = "was deleted by" if found else "has no"
+            raise EntryNotFound(
+                f"{request.kind} {request.name} {why} revision {request.revision}",
+                where=NAMESPACE,
+                hint="its history has the others",
+            )
+        return EntryRecord(
+            kind=found.kind, name=found.name, value=found.value, revision=found.revision, tags=found.tags
+        )
+
     bus.advertise_service(ReadEntry, read, namespace=NAMESPACE)
     bus.advertise_service(WriteEntry, write, namespace=NAMESPACE)
     bus.advertise_service(DeleteEntry, delete, namespace=NAMESPACE)
     bus.advertise_service(UndoEntry, undo, namespace=NAMESPACE)
     bus.advertise_service(ListEntries, list_entries, namespace=NAMESPACE)
     bus.advertise_service(ReadHistory, history, namespace=NAMESPACE)
+    bus.advertise_service(ReadRevision, revision, namespace=NAMESPACE)
 
 
 async def publish_changes(bus: SkillBus, store: Store) -> Callable[[], None]:

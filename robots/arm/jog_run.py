@@ -124,12 +124,14 @@ class JogRun:
     def _pass_on(self) -> None:
         if self._stream is not None:
             told = self._mean(self._told)
-            self._stream.send(told if self._guard is None else self._guard.bounded(told))
+            age_s = self._clock.now_s() - self._told_s
+            self._stream.send(told if self._guard is None else self._guard.bounded(told), age_s=age_s)
 
     def _looked(self) -> None:
         """The way ahead is another: the arm may go faster, or must go slower; but for a silence it comes to rest.
 
-        What is passed on anew would be no silence for the watchdog of the stream, so that is counted here too.
+        What is passed on anew keeps its age, so the watchdog of the stream bites in its time whatever happens here;
+        the silence is counted here too, so that nobody looks ahead of an arm that nobody leads.
         """
         left_s = self._told_s + self.watchdog_s - self._clock.now_s()
         if left_s <= 0.0 or self._stream is None:

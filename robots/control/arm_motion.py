@@ -86,11 +86,11 @@ class ArmMotion:
         if following and following.ending is not MotionEnd.FAILED:
             following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
 
-    def tell(self, number: int, values: Array) -> None:
-        """Pass on what a stream is told; ignored where there is no such stream."""
+    def tell(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
+        """Pass on what a stream was told `age_s` ago; ignored where there is no such stream."""
         following = self._following
         if following and following.number == number and isinstance(following.generator, StreamGenerator):
-            following.generator.receive(values)
+            following.generator.receive(values, age_s=age_s)
 
     def finish(self, number: int) -> None:
         """Bring a stream to rest and end it as reached, also one that is held: it need not be resumed for that."""

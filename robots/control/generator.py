@@ -73,8 +73,8 @@ class Generator(Protocol):
 class StreamGenerator(Generator, Protocol):
     """A generator that does what it is told at every instant, see `robots.port.Stream`."""
 
-    def receive(self, values: Array) -> None:
-        """Take where to, or how fast, to go from now on; resets the watchdog."""
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
+        """Take where to, or how fast, to go from now on; the watchdog counts from when it was said, `age_s` ago."""
         ...
 
     def finish(self) -> None:

@@ -42,7 +42,7 @@ class Guiding(Listening):
         """True when it does not float and the set point stands still."""
         return not self._floating and super().stopped
 
-    def receive(self, values: Array) -> None:
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
         """Nothing is told to it."""
 
     def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:

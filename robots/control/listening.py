@@ -73,10 +73,10 @@ class Listening:
         """Empty: it can always come to rest."""
         return ""
 
-    def receive(self, values: Array) -> None:
-        """Take what to do from now on; resets the watchdog."""
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
+        """Take what to do from now on; the watchdog counts from when it was said, `age_s` ago."""
         self._told[:] = values
-        self._silence_s = 0.0
+        self._silence_s = age_s
 
     def finish(self) -> None:
         """Come to rest, and be complete then."""

@@ -46,11 +46,11 @@ class Streaming(Listening):
         self._since_s = 0.0
         self.warning = ""
 
-    def receive(self, values: Array) -> None:
-        """Take where to go from now on; resets the watchdog."""
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
+        """Take where to go from now on; the watchdog counts from when it was said, `age_s` ago."""
         gap_s = self._silence_s
         self._remember_clipping(values)
-        super().receive(np.clip(values, self._shaper.lower_rad, self._shaper.upper_rad))
+        super().receive(np.clip(values, self._shaper.lower_rad, self._shaper.upper_rad), age_s=age_s)
         if gap_s > min(_LONGEST_PERIOD_S, self._watchdog_s):
             self._period_s = 0.0
         elif self._period_s == 0.0:

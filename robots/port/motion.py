@@ -62,8 +62,10 @@ class Stream(Motion, Protocol):
     until it is told something again.
     """
 
-    def send(self, values: tuple[float, ...]) -> None:
+    def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
         """Say where to (or how fast to) go from now on; the kind of stream gives the meaning.
+
+        `age_s` is how long ago it was said where that is passed on anew: the silence counts from then.
 
         Raises:
             RobotError: wrong number of values, one that is not finite, or the device is gone.

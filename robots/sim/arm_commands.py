@@ -158,10 +158,11 @@ class Float(CommandToArm, frozen=True, kw_only=True, tag="float"):
 
 
 class Tell(CommandToArm, frozen=True, kw_only=True, tag="tell"):
-    """Say where, or how fast, a stream goes from now on."""
+    """Say where, or how fast, a stream goes from now on; it was said `age_s` ago."""
 
     motion: int
     values: tuple[float, ...]
+    age_s: float = 0.0
 
 
 class Finish(CommandToArm, frozen=True, kw_only=True, tag="finish"):

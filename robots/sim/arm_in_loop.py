@@ -70,7 +70,7 @@ class ArmInLoop:
                 start = self._physics.positions[self.indices.qpos]
                 control.start(command.motion, Guiding(limits=self.indices.model.limits, start=start), Tolerance())
             case Tell():
-                control.motion.tell(command.motion, np.array(command.values))
+                control.motion.tell(command.motion, np.array(command.values), age_s=command.age_s)
             case Finish():
                 control.motion.finish(command.motion)
             case Configure():

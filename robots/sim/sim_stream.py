@@ -36,8 +36,8 @@ class SimStream(SimMotion):
         self._width = width
         self._tell = send
 
-    def send(self, values: tuple[float, ...]) -> None:
-        """Say where to, or how fast, to go from now on; says nothing once it has ended.
+    def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
+        """Say where to, or how fast, to go from now on, as told `age_s` ago; says nothing once it has ended.
 
         Raises:
             RobotError: wrong number of values, one that is not finite, or the world is gone.
@@ -49,7 +49,8 @@ class SimStream(SimMotion):
                 hint=f"send {self._width} finite numbers" if self._width else "this stream takes none",
             )
         if not self.ended:
-            self._tell(Tell(arm=self._arm, motion=self.number, values=tuple(map(float, values))))
+            told = tuple(map(float, values))
+            self._tell(Tell(arm=self._arm, motion=self.number, values=told, age_s=age_s))
 
     def finish(self) -> None:
         """Ask to come to rest and end as REACHED."""

@@ -19,6 +19,7 @@ from websockets.exceptions import ConnectionClosed
 from editor_web import bodies, connection
 from editor_web.bodies import MAX_BODY_BYTES
 from editor_web.routes import live as live_route
+from editor_web.routes.sockets import REFUSED, UNAVAILABLE
 from editor_web.security import SAFE_METHODS
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fuzzing import Operation, Target, opened_target, operations
@@ -174,6 +175,28 @@ async def test_no_frame_hurts_a_websocket(
     assert [record for record in caplog.records if record.exc_info or record.levelname == "ERROR"] == []
 
 
+@pytest.mark.parametrize("path", ["data", "teach/live", "cell/past/p1", "cell/grip/p1"])
+@pytest.mark.parametrize(
+    "message", [b"\xff\xfe\x00garbage", "[[[[", '{"k":"none"}'], ids=["bytes", "no JSON", "no word"]
+)
+async def test_what_a_websocket_does_not_know_ends_it(
+    serve: Serve, path: str, message: str | bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    """With the code for a page that is at fault, so that it does not come back again and again."""
+    async with serve(cell_view=True) as served:
+        async with websockets.asyncio.client.connect(
+            f"{served.origin.replace('http', 'ws', 1)}/api/v1/{path}",
+            additional_headers=served.cookie,
+            origin=websockets.Origin(served.origin),
+            proxy=None,
+        ) as wire:
+            await wire.send(message)
+            async with asyncio.timeout(5):
+                await wire.wait_closed()
+        assert wire.close_code == REFUSED
+    assert [record for record in caplog.records if record.exc_info or record.levelname == "ERROR"] == []
+
+
 async def test_a_page_that_answers_no_ping_counts_as_gone(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its socket is open, yet nobody is there: a cable was pulled, a laptop sleeps."""
     monkeypatch.setattr(live_route, "PING_S", 0.1)
@@ -183,7 +206,7 @@ async def test_a_page_that_answers_no_ping_counts_as_gone(serve: Serve, monkeypa
             while silent.socket.close_code is None:
                 await alive.until("ping")
                 await alive.send({"k": "pong"})
-        assert silent.socket.close_code == live_route.TRY_AGAIN_LATER
+        assert silent.socket.close_code == UNAVAILABLE
         await alive.until("ping")
 
 

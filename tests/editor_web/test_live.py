@@ -11,7 +11,7 @@ from websockets.exceptions import ConnectionClosedError
 from editor_web.live import LiveClient, LiveHub
 from editor_web.live_frames import Delta, Snapshot
 from editor_web.live_run import LOG_LINES
-from editor_web.routes import live as live_route
+from editor_web.routes import sockets
 from engine.event import Entered, Exited, Logged, RunEnded, RunStarted
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
@@ -159,7 +159,7 @@ async def test_a_client_that_never_reads_is_sent_away_and_disturbs_nobody(
     serve: Serve, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its buffers fill, it is closed, the hub forgets it; another client gets everything."""
-    monkeypatch.setattr(live_route, "SEND_LIMIT_S", 0.2)
+    monkeypatch.setattr(sockets, "SEND_LIMIT_S", 0.2)
     backend = FakeBackend()
     backend.emit("r", RunStarted, **STARTED)
     async with serve(backend) as served, served.live("r") as reader:

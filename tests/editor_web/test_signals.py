@@ -59,6 +59,12 @@ def test_every_number_that_is_offered_can_be_read(value: Any) -> None:
         assert number is None or isinstance(number, float)
 
 
+def test_a_path_that_no_message_has_reads_nothing() -> None:
+    """However long its numbers are: pages write paths too."""
+    for text in ("9" * 5000, "²", "-1", ".", "a." * 1000):
+        assert number_at({"a": [1.0]}, path_of(text)) is None
+
+
 @given(value=JSON)
 def test_whatever_is_pruned_is_json(value: Any) -> None:
     """Also numbers that JSON does not know."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Generator
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -16,9 +15,9 @@ from engine.skills.jogging import JogCommand
 from engine.skills.teaching import Callback, Trigger, TriggerType
 from engine.store.kinds import Joints, read_as
 from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, switch
+from tests.editor_web.teach_page import LAPTOP, tab, teaching
 from tests.editor_web.teach_site import RESTS_RAD_S, TeachSite, fastest
 
-LAPTOP = (1280, 800)
 TABS = ("Move", "Captures", "Entries", "Triggers", "Buttons")
 BEHAVIOR = "behaviors/go_round.yaml"
 GO_ROUND = """
@@ -67,21 +66,6 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
     (project / BEHAVIOR).write_text(GO_ROUND, encoding="utf-8")
     with TeachSite(host=loopback, project=project, triggers=TRIGGERS) as opened:
         yield opened
-
-
-@contextmanager
-def teaching(
-    browser: Browser, site: TeachSite, *, scheme: Scheme = "light", size: tuple[int, int] = LAPTOP, quiet: bool = True
-) -> Generator[Page]:
-    with opened_page(browser, site.running, "/teach", scheme=scheme, size=size, quiet=quiet) as page:
-        expect(page.get_by_role("status", name="State of left").first).to_have_text("idle")
-        yield page
-
-
-def tab(page: Page, name: str) -> Locator:
-    """Open a tab."""
-    page.get_by_role("tab", name=name, exact=True).click()
-    return page.get_by_role("tabpanel", name=name, exact=True)
 
 
 def entry_joints(site: TeachSite, name: str) -> tuple[float, ...]:

@@ -112,12 +112,13 @@ class FakeMotion:
 
 
 class FakeStream(FakeMotion):
-    """Implements `Stream`: it lasts until it is finished or cancelled, and keeps what it was sent in `sent`."""
+    """Implements `Stream`: it lasts until it is finished or cancelled; keeps what it was `sent`, and how old it was."""
 
     def __init__(self, width: int, *, take: Callable[[tuple[float, ...]], None]) -> None:
         self._width = width
         self._take = take
         self.sent: list[tuple[float, ...]] = []
+        self.ages_s: list[float] = []
         super().__init__(math.inf)
 
     @property
@@ -125,11 +126,12 @@ class FakeStream(FakeMotion):
         """There is no way to speak of."""
         return 0.0
 
-    def send(self, values: tuple[float, ...]) -> None:
-        """Keep what was said; raises RobotError for a wrong number of values or one that is not finite."""
+    def send(self, values: tuple[float, ...], *, age_s: float = 0.0) -> None:
+        """Keep what was said, and its age; raises RobotError for a wrong number of values or one that is not finite."""
         if len(values) != self._width or not np.isfinite(values).all():
             raise RobotError(f"{values} cannot be sent", where="fake arm", hint=f"send {self._width} finite numbers")
         self.sent.append(values)
+        self.ages_s.append(age_s)
         self._take(values)
 
     def finish(self) -> None:

@@ -115,3 +115,30 @@ def test_a_viewer_moves_nothing(site: TeachSite) -> None:
     body = {"arm": "left", "kind": "dmp", "name": "turn", "speed": 0.1}
     answer = httpx.post(f"{site.running.url}api/v1/teach/play", json=body, headers=headers, trust_env=False)
     assert answer.status_code == 403
+
+
+def test_an_entry_gets_other_tags_unless_somebody_has_changed_it_meanwhile(http: httpx.Client) -> None:
+    """Of its revision that the page has seen; the value stays."""
+    body = {"kind": "record", "name": "note", "tags": ["b", "a"], "revision": 1}
+    assert http.post("/tags", json=body).status_code == 204
+    (entry,) = http.get("/entries", params={"kind": "record"}).json()["entries"]
+    assert (entry["tags"], entry["revision"], entry["by"]) == (["a", "b"], 2, "the dashboard")
+    late = http.post("/tags", json={**body, "tags": ["c"]})
+    assert late.status_code in (409, 422)
+    assert "revision" in late.json()["message"]
+    for wrong in ({**body, "tags": ["A b"], "revision": 2}, {**body, "name": "nobody"}, {**body, "tags": ["x" * 65]}):
+        assert http.post("/tags", json=wrong).status_code == 422
+
+
+def test_what_an_entry_was_is_followed_by_its_revision(http: httpx.Client, site: TeachSite) -> None:
+    """And one that never was is refused."""
+    for turned in (0.1, 0.4):
+        site.call(site.write_joints("aside", (turned, *home().tolist()[1:])))
+    query = {"arm": "left", "kind": "joints", "name": "aside"}
+    first, now = (
+        http.get("/fits", params={**query, **more}).json()["demonstration"]["joints"][0][0]
+        for more in ({"revision": "1"}, {})
+    )
+    assert (first, now) == (0.1, 0.4)
+    gone = http.get("/fits", params={**query, "revision": "9"})
+    assert (gone.status_code, "has no revision 9" in gone.json()["message"]) == (422, True)

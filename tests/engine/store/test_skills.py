@@ -18,6 +18,7 @@ from engine.skills.entries import (
     ListEntries,
     ReadEntry,
     ReadHistory,
+    ReadRevision,
     UndoEntry,
     WriteEntry,
 )
@@ -63,3 +64,17 @@ async def test_changes_are_undone_told_and_published_over_the_bus(tmp_path: Path
         assert (await bus.call(ReadHistory(kind="record", name="a"), to="store")).changes == tuple(told[:2])
         deleted = await bus.call(DeleteEntry(kind="record", name="b", by="eva", expected_revision=1), to="store")
         assert (deleted.deleted, deleted.by, deleted.revision) == (True, "eva", 2)
+
+
+async def test_what_an_entry_was_is_read_over_the_bus(tmp_path: Path) -> None:
+    """After each of its changes but a deletion, which left nothing."""
+    async with SqliteStore.open(tmp_path / "s.db") as store, SkillBus(LoopClock()) as bus:
+        register_store(bus, store)
+        for n in (1, 2):
+            await bus.call(WriteEntry(kind="record", name="a", value={"n": n}, tags=(f"t{n}",)), to="store")
+        await bus.call(DeleteEntry(kind="record", name="a"), to="store")
+        was = await bus.call(ReadRevision(kind="record", name="a", revision=1), to="store")
+        assert (was.value, was.revision, was.tags) == ({"n": 1}, 1, ("t1",))
+        for revision, why in ((3, "was deleted by"), (7, "has no")):
+            with pytest.raises(EntryNotFound, match=f"record a {why} revision {revision}"):
+                await bus.call(ReadRevision(kind="record", name="a", revision=revision), to="store")

@@ -162,8 +162,13 @@ async def told(cell: FakeCell, goal: JogJoints) -> tuple[GoalStatus, list[str], 
 
 def sent(cell: FakeCell) -> list[tuple[float, ...]]:
     """What the jog under way was sent."""
+    return stream(cell).sent
+
+
+def stream(cell: FakeCell) -> FakeStream:
+    """The jog under way."""
     assert isinstance(cell.port.motion, FakeStream)
-    return cell.port.motion.sent
+    return cell.port.motion
 
 
 @pytest.mark.virtual
@@ -193,6 +198,25 @@ async def test_an_arm_that_nobody_looks_ahead_of_stands() -> None:
             assert held[-1] == ""
         await handle.result()
         assert cell.cameras.required == 0
+
+
+@pytest.mark.virtual
+async def test_what_is_passed_on_anew_is_as_old_as_the_word_itself() -> None:
+    """So the arm brakes in its time though nobody here is awake to stop it."""
+    async with fake_cell() as cell:
+        handle = cell.bus.send_goal(JogJoints(watchdog_s=0.2, idle_s=1.0), to="left")
+        await handle.accepted()
+        began_s = cell.bus.clock.now_s()
+        cell.bus.topic("left/jog", JogCommand).publish(JogCommand(velocity=(0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)))
+        ages_s: list[float] = []
+        while cell.bus.clock.now_s() < began_s + 0.19:
+            await cell.bus.clock.sleep(0.01)
+            ages_s = stream(cell).ages_s
+            assert ages_s[-1] <= cell.bus.clock.now_s() - began_s
+        await handle.result()
+    assert len(ages_s) > 3
+    assert ages_s == sorted(ages_s)
+    assert ages_s[-1] > 0.1
 
 
 @pytest.mark.virtual

@@ -75,3 +75,20 @@ def test_whatever_is_sent_it_never_passes_a_limit(sent: list[tuple[float, float,
     jogging, watch = new_jogging(jerk)
     for shoulder, elbow, periods in sent:
         run(jogging, watch, (shoulder, elbow), periods)
+
+
+def test_what_is_passed_on_anew_is_no_sign_of_life() -> None:
+    """Said once and passed on again and again: the joint brakes when the word itself is older than the watchdog."""
+    jogging, watch = new_jogging()
+    run(jogging, watch, (0.7, 0.0), 400)
+    brakes_after_s = 0.0
+    for k in range(1, 400):
+        age_s = k * STEP_S
+        if age_s < 0.095:
+            jogging.receive(np.array([0.7, 0.0]), age_s=age_s)
+        jogging.step(STEP_S, target_pace=1.0, state=STATE)
+        watch.look()
+        if jogging.velocity[0] < 0.69:
+            brakes_after_s = age_s
+            break
+    assert 0.1 < brakes_after_s < 0.11

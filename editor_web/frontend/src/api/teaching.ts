@@ -21,6 +21,7 @@ import type {
   PushBody,
   Refused,
   Rest,
+  TagsBody,
   TeachStatus,
   Trigger,
 } from './types'
@@ -33,9 +34,13 @@ export interface TeachStore {
   /** Undefined until the server has told. */
   readonly arms: readonly ArmCard[] | undefined
   readonly canPush: boolean
+  /** The names of all frames of the cell. */
+  readonly frames: readonly string[]
   readonly now: Readonly<Record<string, ArmNow>>
   /** Null where there is no Helping Hand, undefined until told. */
   readonly hand: TeachStatus | null | undefined
+  /** Whether something is shown in the cell. */
+  readonly isLooking: boolean
   /** Counts changes of the store. */
   readonly entries: number
   /** The arm that this page jogs. */
@@ -48,8 +53,10 @@ const NOTHING: TeachStore = {
   isOpen: false,
   arms: undefined,
   canPush: false,
+  frames: [],
   now: {},
   hand: undefined,
+  isLooking: false,
   entries: 0,
   jogging: '',
   heldBy: '',
@@ -84,7 +91,7 @@ export function connectTeach(): () => void {
     opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as FromServer)
     opened.onclose = () => {
       if (socket !== opened) return
-      useTeach.setState({ isOpen: false, jogging: '', heldBy: '' })
+      useTeach.setState({ isOpen: false, jogging: '', heldBy: '', isLooking: false })
       if (!ended) retry = setTimeout(open, RETRY_MS)
     }
   }
@@ -103,7 +110,7 @@ function take(message: FromServer): void {
   const before = useTeach.getState()
   switch (message.k) {
     case 'arms':
-      useTeach.setState({ arms: message.arms, canPush: message.can_push })
+      useTeach.setState({ arms: message.arms, canPush: message.can_push, frames: message.frames })
       break
     case 'now':
       useTeach.setState({ now: { ...before.now, ...message.arms } })
@@ -135,6 +142,20 @@ export interface Reference {
   readonly kind: string
   readonly name: string
   readonly capture: number
+  /** What the entry was after that change; not given for what it is now. */
+  readonly revision?: number
+}
+
+/** Show in the cell where an arm is along something; beside what is shown there already, where the place is not 0. */
+export function lookAt(arm: string, what: Reference, place = 0): void {
+  forgiveTeach('look')
+  useTeach.setState({ isLooking: arm !== '' })
+  tellServer({ k: 'look', arm, revision: 0, ...what, place })
+}
+
+/** Show nothing any more. */
+export function lookAway(): void {
+  lookAt('', { kind: '', name: '', capture: 0 })
 }
 
 /** One change of an entry. */
@@ -145,6 +166,17 @@ export interface EntryChange {
   readonly by: string
   readonly reason: string
   readonly changed_unix_ms: number
+}
+
+/** What an entry was, or is. */
+export interface EntryValue {
+  readonly value: Readonly<Record<string, unknown>>
+  readonly tags: readonly string[] | null
+}
+
+/** What a capture of a place says by itself, whichever arm gets there. */
+export interface CapturedPlace {
+  readonly pose?: { readonly xyz: readonly number[]; readonly xyzw?: readonly number[]; readonly frame?: string } | null
 }
 
 export interface TriggerDocument {
@@ -185,12 +217,17 @@ export const teach = {
   fits: (arm: string, what: Reference) => call<Fits>(`/teach/fits?${query({ arm, ...what })}`),
   now: (robot: string, callback: Trigger['trig_callback'], pressed = true) =>
     ask<TeachStatus>('teach/teach_now', { robot, callback, pressed }),
+  frame: (robot: string, source_frame: string, target_frame: string) =>
+    ask<TeachStatus>('teach/teach_now', { robot, callback: 'tf_save', pressed: true, source_frame, target_frame }),
+  capture: (id: number) => ask<CapturedPlace>('teach/read_capture', { id }),
   save: (body: SaveRequest) => ask<unknown>('teach/save_capture', body),
   discard: (id: number) => ask<TeachStatus>('teach/discard_capture', { id }),
   setTriggers: (triggers: readonly Trigger[]) => ask<TeachStatus>('teach/set_triggers', { triggers }),
   document: () => ask<TriggerDocument>('teach/read_trigger_document', {}),
   writeDocument: (text: string) => ask<TeachStatus>('teach/write_trigger_document', { text }),
   history: (kind: string, name: string) => ask<{ readonly changes: readonly EntryChange[] }>('store/read_history', { kind, name }),
+  revision: (kind: string, name: string, revision: number) => ask<EntryValue>('store/read_revision', { kind, name, revision }),
+  tag: (body: TagsBody) => post<void>('/teach/tags', body),
   undo: (kind: string, name: string) => ask<unknown>('store/undo_entry', { kind, name, by: 'the dashboard', reason: 'undone' }),
   remove: (kind: string, name: string) => ask<unknown>('store/delete_entry', { kind, name, by: 'the dashboard', reason: 'deleted' }),
   /** Ends when the arm rests, also when it is aborted. */

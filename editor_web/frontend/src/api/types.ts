@@ -27,11 +27,12 @@ export interface ArmCard {
   readonly skills: readonly string[]
 }
 
-/** First frame: the arms of the cell; `can_push` where somebody can push at bodies, as in a simulation. */
+/** First frame: the arms and frames of the cell; `can_push` where bodies can be pushed at, as in a simulation. */
 export interface ArmCards {
   readonly k: "arms"
   readonly arms: readonly ArmCard[]
   readonly can_push: boolean
+  readonly frames: readonly string[]
 }
 
 /** What an arm does and where it is: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world. */
@@ -680,13 +681,15 @@ export interface LogLine {
   readonly causes: readonly CauseLine[]
 }
 
-/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. */
+/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of all that is shown; 1 to 4 are beside that, each in its colour. */
 export interface LookAt {
   readonly k: "look"
   readonly arm: string
   readonly kind: string
   readonly name: string
   readonly capture: number
+  readonly revision: number
+  readonly place: number
 }
 
 /** Lines that both sides changed differently; `line` is where they stand in the text that was to be saved. */
@@ -844,6 +847,7 @@ export interface PlayBody {
   readonly kind: string
   readonly name: string
   readonly capture: number
+  readonly revision: number
 }
 
 /** How it ended: `succeeded`, `preempted`, `rejected` or `failed`, and why. */
@@ -1136,6 +1140,14 @@ export interface SupervisionBody {
   readonly start_paused?: boolean
   readonly loss_policy?: "hold" | "continue" | "stop"
   readonly loss_timeout_s?: number
+}
+
+/** The tags that an entry is to have; `revision` is the one that they were seen on. */
+export interface TagsBody {
+  readonly kind: string
+  readonly name: string
+  readonly tags: readonly string[]
+  readonly revision: number
 }
 
 /** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */

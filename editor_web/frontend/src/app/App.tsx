@@ -1,12 +1,13 @@
 /** The whole page: connection, session, navigation, and the page of the address. */
 import { AppShell, Burger } from '@mantine/core'
 import { useDisclosure, useMediaQuery } from '@mantine/hooks'
-import { IconHistory } from '@tabler/icons-react'
+import { IconHistory, IconLayoutGrid } from '@tabler/icons-react'
 import { lazy, Suspense, useEffect } from 'react'
 import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
 import { useTour } from '../api/tour'
 import type { RunLine } from '../api/types'
+import { PageLink } from '../components/PageLink'
 import { isActive } from '../document/live'
 import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { FromDemonstration } from '../features/demonstration/FromDemonstration'
@@ -14,7 +15,7 @@ import { RunList } from '../features/runs/RunList'
 import { Header } from './Header'
 import { HomePage } from './HomePage'
 import { Interruption } from './Interruption'
-import { behaviorHref, editHref, goTo, PAST_HREF, runHref, TEACH_HREF, useRoute, type Route } from './route'
+import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, TEACH_HREF, useRoute, type Route } from './route'
 import { useFetched } from './useFetched'
 
 /** Brings the canvas with it, which the first page does not need. */
@@ -22,6 +23,8 @@ const BehaviorPage = lazy(async () => ({ default: (await import('./BehaviorPage'
 const TeachPage = lazy(async () => ({ default: (await import('./TeachPage')).TeachPage }))
 const PastPage = lazy(async () => ({ default: (await import('./PastPage')).PastPage }))
 const PastRunsPage = lazy(async () => ({ default: (await import('./PastRunsPage')).PastRunsPage }))
+const RunsPage = lazy(async () => ({ default: (await import('./RunsPage')).RunsPage }))
+const BesidePage = lazy(async () => ({ default: (await import('./BesidePage')).BesidePage }))
 const EditorPage = lazy(async () => ({ default: (await import('../features/editor/EditorPage')).EditorPage }))
 const Tour = lazy(async () => ({ default: (await import('../features/tour/Tour')).Tour }))
 
@@ -37,6 +40,7 @@ export function App() {
   const shown = shownRun(route, runs)
   const isEditing = route.page === 'edit'
   const isTeaching = route.page === 'teach'
+  const isOfRuns = route.page === 'runs' || route.page === 'beside'
   const isTouring = useTour((s) => s.isOn)
   // A run that this server has not started may be in its journal.
   const knowsRuns = useLive((s) => s.knowsRuns)
@@ -68,12 +72,13 @@ export function App() {
         <Header
           cellName={session.value?.cell_name ?? ''}
           mayOperate={session.value?.role === 'operator'}
-          active={shown && isActive(shown) ? shown : runs.find(isActive)}
-          others={runs.filter(isActive).length - 1}
+          shown={shown}
+          active={runs.filter(isActive)}
           onHome={() => open('/')}
           isTeaching={isTeaching}
           onTeach={() => open(TEACH_HREF)}
           onRun={(id) => open(runHref(id))}
+          onRuns={() => open(RUNS_HREF)}
         />
       </AppShell.Header>
       <AppShell.Navbar className="app-navbar">
@@ -85,19 +90,16 @@ export function App() {
           onMade={session.value?.role === 'operator' ? (id) => open(editHref(id)) : undefined}
         />
         <RunList current={route.page === 'run' ? route.id : undefined} href={runHref} onOpen={(id) => open(runHref(id))} limit={30} />
-        <a
-          href={PAST_HREF}
-          className={`side-item run-item${route.page === 'past' ? ' is-current' : ''}`}
-          aria-current={route.page === 'past' ? 'page' : undefined}
-          onClick={(event) => {
-            if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-            event.preventDefault()
-            open(PAST_HREF)
-          }}
-        >
-          <IconHistory size={15} aria-hidden />
-          <span className="side-item-name">Past runs and recordings</span>
-        </a>
+        <div>
+          <PageLink href={RUNS_HREF} className={sideItem(isOfRuns)} isCurrent={isOfRuns} onOpen={() => open(RUNS_HREF)}>
+            <IconLayoutGrid size={15} aria-hidden />
+            <span className="side-item-name">All runs under way</span>
+          </PageLink>
+          <PageLink href={PAST_HREF} className={sideItem(route.page === 'past')} isCurrent={route.page === 'past'} onOpen={() => open(PAST_HREF)}>
+            <IconHistory size={15} aria-hidden />
+            <span className="side-item-name">Past runs and recordings</span>
+          </PageLink>
+        </div>
       </AppShell.Navbar>
       <AppShell.Main id="main" className="app-main">
         <Interruption />
@@ -135,6 +137,14 @@ export function App() {
           <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
             <PastRunsPage onOpen={open} />
           </Suspense>
+        ) : route.page === 'runs' ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <RunsPage onOpen={open} />
+          </Suspense>
+        ) : route.page === 'beside' ? (
+          <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+            <BesidePage left={route.left} right={route.right} isNarrow={isNarrow ?? false} onOpen={open} />
+          </Suspense>
         ) : behaviorId ? (
           <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
             <BehaviorPage
@@ -159,6 +169,10 @@ export function App() {
       )}
     </AppShell>
   )
+}
+
+function sideItem(isCurrent: boolean): string {
+  return `side-item run-item${isCurrent ? ' is-current' : ''}`
 }
 
 /** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */

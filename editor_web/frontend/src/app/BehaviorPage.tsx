@@ -156,7 +156,14 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
   )
   const parameters = (
     <div className="tab-body">
-      <ParameterForm behavior={behavior} obstacle={obstacle} place={placeOf(session, active.filter((each) => each.behavior !== behavior.id))} onStarted={onStarted} />
+      <ParameterForm
+        behavior={behavior}
+        obstacle={obstacle}
+        place={placeOf(session, active.filter((each) => each.behavior !== behavior.id))}
+        terminal={`flexcell run ${behavior.id} --clock virtual`}
+        onStarted={onStarted}
+        run={run?.id}
+      />
     </div>
   )
   const nodeTab = (

@@ -5,24 +5,29 @@ import { useState } from 'react'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import type { RunLine } from '../api/types'
+import { PageLink } from '../components/PageLink'
 import { StatusIcon } from '../components/StatusIcon'
 import { nameOf, RunTime } from '../features/runs/RunList'
-import { TEACH_HREF } from './route'
+import { RUNS_HREF, TEACH_HREF } from './route'
 
 export interface HeaderProps {
   readonly cellName: string
   readonly mayOperate: boolean
-  /** The run under way that is shown, else any. */
-  readonly active: RunLine | undefined
-  /** How many more are under way. */
-  readonly others: number
+  /** The run of the page. */
+  readonly shown: RunLine | undefined
+  /** The runs under way. */
+  readonly active: readonly RunLine[]
   readonly onHome: () => void
   readonly isTeaching: boolean
   readonly onTeach: () => void
   readonly onRun: (id: string) => void
+  readonly onRuns: () => void
 }
 
-export function Header({ cellName, mayOperate, active, others, onHome, isTeaching, onTeach, onRun }: HeaderProps) {
+export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching, onTeach, onRun, onRuns }: HeaderProps) {
+  // Of several it is the one of the page, or none: nobody is to stop a run that was not meant.
+  const named = active.find((run) => run.id === shown?.id) ?? (active.length === 1 ? active[0] : undefined)
+  const others = active.length - 1
   return (
     <>
       <a
@@ -37,32 +42,36 @@ export function Header({ cellName, mayOperate, active, others, onHome, isTeachin
         <span className="brand-name">flexcell</span>
       </a>
       {cellName && <span className="cell-name">{cellName}</span>}
-      <a
-        href={TEACH_HREF}
-        className="header-link"
-        aria-current={isTeaching ? 'page' : undefined}
-        onClick={(event) => {
-          if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-          event.preventDefault()
-          onTeach()
-        }}
-      >
+      <PageLink href={TEACH_HREF} className="header-link" isCurrent={isTeaching} onOpen={onTeach}>
         <IconHandFinger size={16} aria-hidden />
         Teach
-      </a>
+      </PageLink>
       <ConnectionLabel />
       <span className="spacer" />
-      {active && (
+      {!named && active.length > 1 && (
+        <PageLink href={RUNS_HREF} className="active-run" onOpen={onRuns}>
+          <StatusIcon status="active" size={14} />
+          <span>
+            {active.length} runs<span className="active-run-words"> under way</span>
+          </span>
+        </PageLink>
+      )}
+      {named && (
         <div className="active-run">
-          <button type="button" className="active-run-name" onClick={() => onRun(active.id)}>
-            <StatusIcon status={active.status === 'stopping' ? 'stopped' : 'active'} size={14} />
-            <span>{nameOf(active.behavior)}</span>
+          <button type="button" className="active-run-name" onClick={() => onRun(named.id)}>
+            <StatusIcon status={named.status === 'stopping' ? 'stopped' : 'active'} size={14} />
+            <span>{nameOf(named.behavior)}</span>
           </button>
-          <RunTime run={active} />
-          {others > 0 && <span>+ {others}</span>}
+          <RunTime run={named} />
+          {others > 0 && (
+            <PageLink href={RUNS_HREF} className="active-run-others" title="All runs under way" onOpen={onRuns}>
+              + {others}
+              <span className="active-run-words"> other{others > 1 && 's'}</span>
+            </PageLink>
+          )}
         </div>
       )}
-      {active && mayOperate && <StopButton run={active} />}
+      {named && mayOperate && <StopButton run={named} />}
       <SchemeSwitch />
     </>
   )

@@ -1,8 +1,9 @@
 /** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
 import { useEffect, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
-import { connectTeach, useTeach } from '../api/teaching'
+import { connectTeach, lookAway, useTeach } from '../api/teaching'
 import type { ArmCard, SessionBody } from '../api/types'
+import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
@@ -28,6 +29,7 @@ interface TeachPageProps {
 
 export function TeachPage({ session, isNarrow }: TeachPageProps) {
   const arms = useTeach((s) => s.arms)
+  const isLooking = useTeach((s) => s.isLooking)
   const [chosen, setChosen] = useState('')
   useEffect(connectTeach, [])
   useButtons()
@@ -39,6 +41,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
       tools={
         <>
           <span className="spacer" />
+          {session?.has_cell_view && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={lookAway} />}
           {session?.has_cell_view && <ShowMenu />}
           {session?.has_cell_view && session.role === 'operator' && <HandleMenu />}
           {session?.role === 'operator' && <StopCell />}

@@ -25,7 +25,7 @@ export function later(name: string, load: () => Promise<ComponentType<DockProps>
 }
 
 const DOCK_TABS: readonly DockTab[] = [
-  { name: 'Log', Body: EventLog },
+  { name: 'Log', Body: () => <EventLog /> },
   later('Timeline', async () => (await import('../features/timeline/Timeline')).Timeline),
   later('Failure', async () => (await import('../features/timeline/FailureView')).FailureView),
   later('Data', async () => (await import('../features/data/Data')).Data),

@@ -5,6 +5,8 @@ export type Route =
   | { readonly page: 'home' }
   | { readonly page: 'behavior'; readonly id: string }
   | { readonly page: 'run'; readonly id: string }
+  | { readonly page: 'runs' }
+  | { readonly page: 'beside'; readonly left: string; readonly right: string }
   | { readonly page: 'edit'; readonly id: string }
   | { readonly page: 'past' }
   | { readonly page: 'teach' }
@@ -15,7 +17,8 @@ export function routeOf(pathname: string): Route {
   const [, page, ...rest] = pathname.split('/')
   const id = rest.map(decoded).join('/')
   if (page === 'behaviors' && id) return { page: 'behavior', id }
-  if (page === 'runs' && id) return { page: 'run', id }
+  if (page === 'runs') return id ? { page: 'run', id } : { page: 'runs' }
+  if (page === 'beside') return { page: 'beside', left: decoded(rest[0] ?? ''), right: decoded(rest[1] ?? '') }
   if (page === 'edit' && id) return { page: 'edit', id }
   if (page === 'past') return { page: 'past' }
   if (page === 'teach') return { page: 'teach' }
@@ -44,6 +47,13 @@ export function editHref(id: string, node = ''): string {
 
 export function runHref(id: string): string {
   return `/runs/${encodeURIComponent(id)}`
+}
+
+export const RUNS_HREF = '/runs'
+
+/** Two runs side by side. */
+export function besideHref(left: string, right: string): string {
+  return `/beside/${encodeURIComponent(left)}/${encodeURIComponent(right)}`
 }
 
 export const PAST_HREF = '/past'

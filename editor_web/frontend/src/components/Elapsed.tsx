@@ -1,18 +1,18 @@
 /** Time on the run's clock since `sinceS`, ticking ten times a second while the run does. */
 import { useEffect, useState } from 'react'
-import { useLive } from '../api/live'
+import { useLiveStore, type LiveStore } from '../api/liveStore'
 import { duration } from '../document/time'
 
-export function runClock(): number {
-  const { nowS, ticking, atMs } = useLive.getState()
+function clockOf({ nowS, ticking, atMs }: LiveStore): number {
   return ticking ? nowS + (performance.now() - atMs) / 1000 : nowS
 }
 
 export function Elapsed({ sinceS }: { sinceS: number }) {
-  const [now, setNow] = useState(runClock)
+  const store = useLiveStore()
+  const [now, setNow] = useState(() => clockOf(store.getState()))
   useEffect(() => {
-    const timer = setInterval(() => setNow(runClock()), 100)
+    const timer = setInterval(() => setNow(clockOf(store.getState())), 100)
     return () => clearInterval(timer)
-  }, [])
+  }, [store])
   return <span className="elapsed">{duration(Math.max(0, now - sinceS))}</span>
 }

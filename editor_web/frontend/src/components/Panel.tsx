@@ -3,6 +3,8 @@ import type { ReactNode } from 'react'
 
 export interface PanelProps {
   readonly title: string
+  /** Whose it is, where there are several of that title. */
+  readonly of?: string | undefined
   readonly tools?: ReactNode
   readonly children: ReactNode
   /** Stays in sight below what is shown. */
@@ -10,9 +12,9 @@ export interface PanelProps {
   readonly className?: string
 }
 
-export function Panel({ title, tools, children, foot, className = '' }: PanelProps) {
+export function Panel({ title, of, tools, children, foot, className = '' }: PanelProps) {
   return (
-    <section className={`panel ${className}`} aria-label={title}>
+    <section className={`panel ${className}`} aria-label={of ? `${title} of ${of}` : title}>
       <header className="panel-header">
         <h2 className="panel-title">{title}</h2>
         {tools}

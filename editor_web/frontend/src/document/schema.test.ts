@@ -1,6 +1,6 @@
 /** Forms: from JSON Schema to fields, checks and the parameters that are sent. */
 import { describe, expect, it } from 'vitest'
-import { fieldOf, parametersOf, problemWith, rangeText } from './schema'
+import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, rangeText, shownValue } from './schema'
 
 const field = (schema: Record<string, unknown>, required = false) => fieldOf({ name: 'p', schema, required })
 
@@ -18,6 +18,19 @@ describe('fieldOf', () => {
   it('falls back to JSON for structures', () => {
     expect(field({ type: 'object', default: { x: 1 } })).toMatchObject({ kind: 'json', initial: '{\n "x": 1\n}' })
   })
+})
+
+it('shows what a run was started with so that the form sends the same again', () => {
+  const fields = [fieldOf({ name: 'n', schema: { type: 'number' }, required: false }), fieldOf({ name: 'o', schema: { type: 'object' }, required: false })]
+  const started = { n: 0.25, o: { x: [1, 2] } }
+  const values = Object.fromEntries(fields.map(({ name, kind }) => [name, shownValue(kind, started[name as 'n' | 'o'])]))
+  expect(parametersOf(fields, values)).toEqual(started)
+})
+
+it('reads the userdata to begin with, and writes it the same', () => {
+  expect(inputsOf(inputsText({ count: 3 }))).toEqual({ count: 3 })
+  expect(inputsOf(inputsText({}))).toEqual({})
+  expect(['[1]', '3', 'null', '{'].map(inputsOf)).toEqual([undefined, undefined, undefined, undefined])
 })
 
 describe('problemWith', () => {

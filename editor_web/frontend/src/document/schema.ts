@@ -31,7 +31,7 @@ export function fieldOf(parameter: ParameterBody): Field {
     minimum: numeric(schema['minimum']) ?? numeric(schema['exclusiveMinimum']),
     maximum: numeric(schema['maximum']) ?? numeric(schema['exclusiveMaximum']),
     choices,
-    initial: initialOf(kind, schema['default']),
+    initial: shownValue(kind, schema['default']),
   }
 }
 
@@ -49,7 +49,8 @@ function kindOf(type: unknown): FieldKind {
   }
 }
 
-function initialOf(kind: FieldKind, value: unknown): unknown {
+/** A value as its field of the form shows it. */
+export function shownValue(kind: FieldKind, value: unknown): unknown {
   if (kind === 'json') return value === undefined ? '' : JSON.stringify(value, null, 1)
   if (kind === 'boolean') return value === true
   return value ?? ''
@@ -92,6 +93,18 @@ function isJson(value: string): boolean {
   } catch {
     return false
   }
+}
+
+/** The userdata to begin with, written as a JSON object; undefined where it is none. */
+export function inputsOf(text: string): Readonly<Record<string, unknown>> | undefined {
+  if (text.trim() === '') return {}
+  const value: unknown = isJson(text) ? JSON.parse(text) : undefined
+  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Record<string, unknown>) : undefined
+}
+
+/** The same as it is written; empty where there is none. */
+export function inputsText(inputs: Readonly<Record<string, unknown>>): string {
+  return Object.keys(inputs).length > 0 ? JSON.stringify(inputs, null, 1) : ''
 }
 
 /** The parameters to send; fields left empty are left out, so that the document's default holds. */

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
 import type { Trace } from '../api/types'
-import { apart, changesOf, curveOf, endOf, jogVelocity, nameFault, rollPitchYaw, tagFault, tagsOf, toolStep } from './teaching'
+import { apart, changesOf, curveOf, endOf, errorsOf, jogVelocity, nameFault, rollPitchYaw, tagFault, tagsOf, toolStep } from './teaching'
 
 function trace(times_s: number[], joint: (t: number) => number): Trace {
   return {
@@ -54,4 +54,15 @@ it('measures how far two curves are apart where both are', () => {
   expect(apart(one, one)).toEqual({ rms: 0, most: 0 })
   expect(apart(two, one)?.most).toBeCloseTo(2)
   expect(apart(one, curveOf(trace([5, 6], () => 0), 'far', 'tool 0'))).toBeUndefined()
+})
+
+it('measures the errors of what was learned in the joints and at the tool, where both are', () => {
+  const times = [0, 1, 2]
+  const shown: Trace = { times_s: times, joint_names: ['a', 'b'], joints: [[0, 0], [1, 0], [2, 0]], poses: times.map((x) => [x, 0, 0, 0, 0, 0, 1]), remark: '' }
+  const learned: Trace = { ...shown, times_s: [1, 2], joints: [[1.1, 0], [2, 0]], poses: [[1, 0.003, 0.004, 0, 0, 0, 1], [2, 0, 0, 0, 0, 0, 1]] }
+  const errors = errorsOf(shown, learned)
+  expect(errors.joints?.most).toBeCloseTo(0.1)
+  expect(errors.joints?.rms).toBeCloseTo(0.05)
+  expect(errors.tool?.most).toBeCloseTo(0.005)
+  expect(errorsOf(shown, { ...learned, joints: [] }).joints).toBeUndefined()
 })

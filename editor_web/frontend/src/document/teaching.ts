@@ -133,7 +133,38 @@ export function apart(one: Curve, two: Curve): { readonly rms: number; readonly 
   const to = Math.min(one.times_s.at(-1) ?? 0, two.times_s.at(-1) ?? 0)
   const inside = one.times_s.map((time, at) => [time, one.values[at] ?? 0] as const).filter(([time]) => time >= from && time <= to)
   if (inside.length < 2) return undefined
-  const errors = inside.map(([time, value]) => Math.abs(value - valueAt(two, time)))
+  return summed(inside.map(([time, value]) => Math.abs(value - valueAt(two, time))))
+}
+
+/** How far what was learned is from what was shown: of the joints (rad) and of the tool (m). */
+export interface Errors {
+  readonly joints: { readonly rms: number; readonly most: number } | undefined
+  readonly tool: { readonly rms: number; readonly most: number } | undefined
+}
+
+/** The errors in joint and task space, at the times of `shown` at which there is something of both. */
+export function errorsOf(shown: Trace, learned: Trace): Errors {
+  const joints = shown.joints.length > 0 && learned.joints.length > 0 ? (shown.joints[0]?.length ?? 0) : 0
+  const turns = distances(shown, learned, joints, 'joints')
+  const ways = distances(shown, learned, 3, 'poses')
+  return { joints: summed(turns.flat()), tool: summed(ways.map((each) => Math.hypot(...each))) }
+}
+
+/** For each time the distances of the first columns. */
+function distances(one: Trace, two: Trace, columns: number, rows: 'joints' | 'poses'): readonly (readonly number[])[] {
+  const from = Math.max(one.times_s[0] ?? 0, two.times_s[0] ?? 0)
+  const to = Math.min(one.times_s.at(-1) ?? 0, two.times_s.at(-1) ?? 0)
+  const curves = Array.from({ length: columns }, (_, at) => ({ name: '', times_s: two.times_s, values: two[rows].map((row) => row[at] ?? 0) }))
+  const made: number[][] = []
+  one.times_s.forEach((time, index) => {
+    if (time < from || time > to || columns === 0) return
+    made.push(curves.map((curve, at) => Math.abs((one[rows][index]?.[at] ?? 0) - valueAt(curve, time))))
+  })
+  return made
+}
+
+function summed(errors: readonly number[]): { readonly rms: number; readonly most: number } | undefined {
+  if (errors.length === 0) return undefined
   return { rms: Math.sqrt(errors.reduce((sum, each) => sum + each * each, 0) / errors.length), most: Math.max(...errors) }
 }
 

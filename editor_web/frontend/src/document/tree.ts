@@ -1,8 +1,6 @@
 /** Looking things up in a behavior's tree of nodes. Pure. */
 import type { GraphNodeBody } from '../api/types'
 
-export const CONTAINER_KINDS: ReadonlySet<string> = new Set(['machine', 'concurrency', 'priority', 'tree', 'foreach'])
-
 /** All nodes, parents before children. */
 export function flatten(root: GraphNodeBody): readonly GraphNodeBody[] {
   return [root, ...root.children.flatMap(flatten)]

@@ -15,15 +15,17 @@ export interface RequestsProps {
   readonly root: GraphNodeBody | null
   readonly commands: Commands
   readonly onShow: (path: string) => void
+  /** Which run asks, where there are several. */
+  readonly of?: string
 }
 
-export function Requests({ root, commands, onShow }: RequestsProps) {
+export function Requests({ root, commands, onShow, of }: RequestsProps) {
   const control = useLive((s) => s.control)
   const requests = requestsOf(control)
   return (
     <div aria-live="assertive" className="requests-area">
       {requests.length > 0 && (
-        <section className="requests" id={REQUESTS_ID} aria-label="The run asks">
+        <section className="requests" id={of ? undefined : REQUESTS_ID} aria-label={of ? `${of} asks` : 'The run asks'}>
           <ul className="plain-list">
             {requests.map((each) => (
               <Request key={each.path} request={each} outcomes={(root && nodeAt(root, each.path)?.outcomes) ?? []} commands={commands} onShow={onShow} />

@@ -10,6 +10,7 @@ import {
   IconRefreshDot,
 } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
+import { useOperated } from '../../api/liveStore'
 import type { RunLine } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
@@ -20,14 +21,19 @@ import type { Commands } from './useCommands'
 export interface RunBarProps {
   readonly run: RunLine | undefined
   readonly commands: Commands
-  readonly onSheet: () => void
+  /** Show all keys; undefined where the keys of the page are not for this run. */
+  readonly onSheet?: () => void
+  /** What it is the bar of, where there are several. */
+  readonly of?: string
   /** Choose a node and bring it into view. */
   readonly onShow: (path: string) => void
 }
 
-export function RunBar({ run, commands, onSheet, onShow }: RunBarProps) {
+export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps) {
   const control = useLive((s) => s.control)
-  const operated = useLive((s) => s.operated)
+  const operated = useOperated()
+  const key = (letter: string) => (onSheet ? letter : undefined)
+  const named = (label: string) => (of ? `${label} of ${of}` : label)
   const isHeld = control?.paused === true && !control.stepping
   // What asks has its own place below the bar.
   const waiting = control?.waiting.filter((each) => !each.reasons.includes('autonomy')) ?? []
@@ -39,20 +45,20 @@ export function RunBar({ run, commands, onSheet, onShow }: RunBarProps) {
     isCompact: true,
   })
   return (
-    <section className="run-bar" aria-label="Run control">
-      <div className="run-bar-row" role="toolbar" aria-label="Commands to the run">
+    <section className="run-bar" aria-label={named('Run control')}>
+      <div className="run-bar-row" role="toolbar" aria-label={of ? `Commands to ${of}` : 'Commands to the run'}>
         <CommandButton
           {...bar(isHeld ? 'resume' : 'pause', isHeld ? 'Resume' : 'Pause')}
           hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
           icon={isHeld ? <IconPlayerPlay size={16} aria-hidden /> : <IconPlayerPause size={16} aria-hidden />}
-          shortcut="p"
+          shortcut={key('p')}
           tone={isHeld ? 'strong' : 'plain'}
           isCompact={false}
           onPress={commands.pauseOrResume}
         />
-        <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut="i" onPress={() => commands.step('into')} />
-        <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut="o" onPress={() => commands.step('over')} />
-        <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut="u" onPress={() => commands.step('out')} />
+        <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut={key('i')} onPress={() => commands.step('into')} />
+        <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut={key('o')} onPress={() => commands.step('over')} />
+        <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut={key('u')} onPress={() => commands.step('out')} />
         <span className="run-bar-gap" />
         <CommitSlider
           label="Autonomy"
@@ -78,11 +84,11 @@ export function RunBar({ run, commands, onSheet, onShow }: RunBarProps) {
           icon={<IconRefreshDot size={16} aria-hidden />}
           onPress={commands.change}
         />
-        <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />
+        {onSheet && <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />}
       </div>
       {run && isActive(run) && control && (
         <div className="run-state">
-          <span role="status" aria-label="State of the run" className={`run-standing${control.paused ? ' is-paused' : ''}`}>
+          <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'} className={`run-standing${control.paused ? ' is-paused' : ''}`}>
             {standing(run, control)}
           </span>
           <span className="quiet run-autonomy">

@@ -27,7 +27,8 @@ export interface Commands {
   readonly forgetReport: () => void
 }
 
-export function useCommands(run: RunLine | undefined, node: string | undefined): Commands {
+/** `name` says in refusals which run is meant, on a page that shows several. */
+export function useCommands(run: RunLine | undefined, node: string | undefined, name = ''): Commands {
   const role = useLive((s) => s.role)
   const isConnected = useLive((s) => s.connection === 'live')
   const control = useLive((s) => s.control)
@@ -38,15 +39,17 @@ export function useCommands(run: RunLine | undefined, node: string | undefined):
   return useMemo(() => {
     const now: Situation = { role, isConnected, run, control, node, nodeStatus }
     const obstacle = (command: Command) => obstacleTo(command, now)
+    const of = (words: string) => (name ? `${name}: ${words}` : words)
+    const sendOf = <T>(words: string, request: () => Promise<T>) => send(of(words), request)
     /** Send it, or say why not. */
     const attempt = (command: Command, words: string, request: () => Promise<unknown>): void => {
       const why = obstacle(command)
-      if (why) refuse(words, why)
-      else void send(words, request)
+      if (why) refuse(of(words), why)
+      else void sendOf(words, request)
     }
     return {
       obstacle,
-      explain: (command, words) => refuse(words, obstacle(command) ?? ''),
+      explain: (command, words) => refuse(of(words), obstacle(command) ?? ''),
       pauseOrResume: () => {
         const isHeld = control?.paused === true && !control.stepping
         if (isHeld) attempt('resume', 'Resume', () => api.resume(id))
@@ -58,20 +61,20 @@ export function useCommands(run: RunLine | undefined, node: string | undefined):
         attempt('step', `Step ${mode}`, () => api.step(id, { mode, path }))
       },
       stop: () => attempt('stop', 'Stop', () => api.stop(id)),
-      setAutonomy: async (level) => (await send('Autonomy', () => api.autonomy(id, level))) !== undefined,
+      setAutonomy: async (level) => (await sendOf('Autonomy', () => api.autonomy(id, level))) !== undefined,
       toggleOperating: () => {
         const why = obstacle('operate')
-        if (why) refuse('Operate', why)
+        if (why) refuse(of('Operate'), why)
         else operate(useLive.getState().operated === id ? '' : id)
       },
       change: () => attempt('change', 'Take the file as it is now', async () => setReport((await api.change(id)).changes)),
-      lock: (path, reason) => send('Lock', () => api.lock(id, path, reason)),
-      unlock: (path) => send('Unlock', () => api.unlock(id, path)),
-      force: (path, outcome) => send(`Force ${outcome}`, () => api.force(id, path, outcome)),
-      repeat: (path) => send('Run again', () => api.repeat(id, path)),
-      answer: (path) => send('Agree', () => api.answer(id, path)),
+      lock: (path, reason) => sendOf('Lock', () => api.lock(id, path, reason)),
+      unlock: (path) => sendOf('Unlock', () => api.unlock(id, path)),
+      force: (path, outcome) => sendOf(`Force ${outcome}`, () => api.force(id, path, outcome)),
+      repeat: (path) => sendOf('Run again', () => api.repeat(id, path)),
+      answer: (path) => sendOf('Agree', () => api.answer(id, path)),
       report,
       forgetReport: () => setReport(undefined),
     }
-  }, [role, isConnected, run, control, node, nodeStatus, id, report])
+  }, [role, isConnected, run, control, node, nodeStatus, id, name, report])
 }

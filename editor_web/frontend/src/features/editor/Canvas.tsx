@@ -203,7 +203,10 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       return before && (Math.abs(before.x - node.position.x) > 2 || Math.abs(before.y - node.position.y) > 2)
     })
     const free = changed.filter((node) => isMachine(nodeOf(root, parentPath(node.id))?.kind ?? ''))
-    if (free.length > 0) void place(new Map(free.map((node) => [node.id, node.position])))
+    if (free.length > 0)
+      void place(new Map(free.map((node) => [node.id, node.position]))).then((isThere) => {
+        if (!isThere) setNodes([...computed])
+      })
     if (free.length < changed.length) setNodes([...computed])
   }
 

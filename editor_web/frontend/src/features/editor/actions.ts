@@ -10,7 +10,6 @@ import {
   isForeign,
   isMachine,
   isTreePart,
-  nameFor,
   nameOfPath,
   nodeOf,
   parentPath,
@@ -86,10 +85,6 @@ export async function add(what: Addition, request: AddRequest): Promise<void> {
 function afterOf(parent: EditNode): string | undefined {
   const chosen = chosenOf(editor())
   return chosen && isMachine(parent.kind) && parentPath(chosen.path) === parent.path ? chosen.path : undefined
-}
-
-export function addState(state: string, request: AddRequest): Promise<void> {
-  return add({ kind: 'state', runs: state, name: nameFor(state) }, request)
 }
 
 /** Put the keyboard on a node once it is drawn. */
@@ -268,8 +263,11 @@ function positionedBelow(node: EditNode): readonly string[] {
   return node.children.flatMap((child) => [...(child.position ? [child.path] : []), ...positionedBelow(child)])
 }
 
-/** Put nodes where they were dragged to. The first one that is moved pins its siblings, which stay where they are seen. */
-export async function place(moved: ReadonlyMap<string, { x: number; y: number }>): Promise<void> {
+/**
+ * Put nodes where they were dragged to; false where they are not there.
+ * The first one that is moved pins its siblings, which stay where they are seen.
+ */
+export async function place(moved: ReadonlyMap<string, { x: number; y: number }>): Promise<boolean> {
   const root = rootOf(editor())
   const { boxes, origins } = canvasBoxes()
   const positions: Record<string, readonly [number, number]> = {}
@@ -286,11 +284,9 @@ export async function place(moved: ReadonlyMap<string, { x: number; y: number }>
     }
     positions[path] = corner(at.x - origin.x, at.y - origin.y)
   }
-  if (Object.keys(positions).length > 0) {
-    await perform(moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`, [
-      { edit: 'set_positions', positions },
-    ])
-  }
+  if (Object.keys(positions).length === 0) return false
+  const words = moved.size === 1 ? `Move ${nameOfPath([...moved.keys()][0] ?? '')}` : `Move ${moved.size} nodes`
+  return (await perform(words, [{ edit: 'set_positions', positions }])) !== undefined
 }
 
 export async function align(how: Alignment): Promise<void> {

@@ -34,21 +34,25 @@ export function perform(label: string, edits: readonly Edit[]): Promise<EditedBo
   if (edits.length === 0) return Promise.resolve(undefined)
   const { id } = editor()
   return inTurn(async () => {
-    if (editor().id !== id) return undefined
-    const before = draftOf(editor())
     try {
-      const answer = await documents.edit(id, before.text, edits)
-      if (answer.refused) {
-        refused(label, answer.refused.message, answer.refused.hint)
-        return undefined
+      // What was typed, or came from the disk, while the server was asked is edited in its turn.
+      while (editor().id === id) {
+        const before = draftOf(editor())
+        const answer = await documents.edit(id, before.text, edits)
+        if (editor().id !== id) break
+        if (draftOf(editor()).text !== before.text) continue
+        if (answer.refused) {
+          refused(label, answer.refused.message, answer.refused.hint)
+          return undefined
+        }
+        setHistory(pushed(settled(editor().history), label, draftFrom(answer, answer.text, before)))
+        setEditor({ notice: undefined })
+        return answer
       }
-      setHistory(pushed(settled(editor().history), label, draftFrom(answer, answer.text, before)))
-      setEditor({ notice: undefined })
-      return answer
     } catch (error) {
-      refused(label, ...reasonOf(error))
-      return undefined
+      if (editor().id === id) refused(label, ...reasonOf(error))
     }
+    return undefined
   })
 }
 
@@ -85,25 +89,28 @@ let looking: Promise<void> | undefined
 
 /** Ask what is wrong with the present text, until that is known; edits go on meanwhile. */
 export function lookForFindings(): Promise<void> {
-  looking ??= look()
+  looking ??= Promise.resolve()
+    .then(look)
     .catch((error: unknown) => refused('Check', ...reasonOf(error)))
-    .finally(() => {
-      looking = undefined
-    })
   return looking
 }
 
 async function look(): Promise<void> {
-  for (;;) {
-    const { id } = editor()
-    const { text, isChecked } = draftOf(editor())
-    if (isChecked || !id) return
-    const findings = await findingsOf(id, text)
-    const now = draftOf(editor())
-    if (editor().id === id && now.text === text) {
-      const known = { ...now, findings: sameFindings(now, findings), isChecked: true }
-      setEditor({ history: replaced(editor().history, known) })
+  try {
+    for (;;) {
+      const { id } = editor()
+      const { text, isChecked } = draftOf(editor())
+      if (isChecked || !id) return
+      const findings = await findingsOf(id, text)
+      const now = draftOf(editor())
+      if (editor().id === id && now.text === text) {
+        const known = { ...now, findings: sameFindings(now, findings), isChecked: true }
+        setEditor({ history: replaced(editor().history, known) })
+      }
     }
+  } finally {
+    // At once, not a turn later: a text that comes in between would wait for a look that is over.
+    looking = undefined
   }
 }
 
@@ -151,11 +158,19 @@ export function readAnew(): Promise<void> {
 }
 
 export function undo(): void {
-  void inTurn(() => Promise.resolve(setHistory(undone(settled(editor().history)))))
+  go(undone)
 }
 
 export function redo(): void {
-  void inTurn(() => Promise.resolve(setHistory(redone(settled(editor().history)))))
+  go(redone)
+}
+
+function go(step: (history: History) => History): void {
+  const { id } = editor()
+  void inTurn(() => {
+    if (editor().id === id) setHistory(step(settled(editor().history)))
+    return Promise.resolve()
+  })
 }
 
 /** Put a whole text in place of the present one, as one step that can be undone. */

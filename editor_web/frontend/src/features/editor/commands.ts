@@ -373,7 +373,8 @@ export function obstacleOf(command: Command): string | undefined {
     case 'nodes':
       return state.selection.length === 0 ? 'choose a node first' : undefined
     case 'undo':
-      return canUndo(state.history) ? undefined : 'nothing was changed'
+      // What is on its way to the server now can be taken back as soon as it is there.
+      return state.isBusy || canUndo(state.history) ? undefined : 'nothing was changed'
     case 'redo':
       return canRedo(state.history) ? undefined : 'nothing was undone'
     case 'changes':

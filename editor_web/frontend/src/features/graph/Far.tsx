@@ -1,7 +1,6 @@
 /** The graph of a large behavior from far away: plain boxes in the colours of the run, and all arrows as one line. */
 import { ViewportPortal, type NodeProps } from '@xyflow/react'
-import { memo, useMemo, type ComponentType } from 'react'
-import { create } from 'zustand'
+import { createContext, memo, useContext, useMemo, type ComponentType } from 'react'
 import { useNodeLive } from '../../api/liveParts'
 import { statusOf } from '../../components/StatusIcon'
 import type { Course } from '../../document/layout'
@@ -12,17 +11,13 @@ export const MANY = 300
 /** Below this zoom nothing that is written on a node can be read. */
 export const FAR = 0.4
 
-const useFar = create<{ readonly isFar: boolean }>(() => ({ isFar: false }))
-
-/** Draw plain boxes from now on, or everything in full. */
-export function setFar(isFar: boolean): void {
-  useFar.setState({ isFar })
-}
+/** Whether plain boxes are drawn in the place of everything in full. */
+export const FarContext = createContext(false)
 
 /** A kind of node that is a plain box when seen from far away. */
 export function fromFar<P extends NodeProps<CanvasNode>>(Near: ComponentType<P>): ComponentType<P> {
   return memo(function Levelled(props: P) {
-    const isFar = useFar((s) => s.isFar)
+    const isFar = useContext(FarContext)
     return isFar ? <PlainStep id={props.id} type={props.type} selected={props.selected} /> : <Near {...props} />
   })
 }

@@ -10,7 +10,7 @@ import {
   IconPlus,
 } from '@tabler/icons-react'
 import { Background, BackgroundVariant, ReactFlow, ReactFlowProvider, useReactFlow, useStore } from '@xyflow/react'
-import { useCallback, useEffect, useLayoutEffect, useMemo, useState, type ReactNode } from 'react'
+import { useCallback, useEffect, useMemo, useState, type ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody, NodeLive } from '../../api/types'
 import { Empty } from '../../components/Empty'
@@ -18,7 +18,7 @@ import { Panel } from '../../components/Panel'
 import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
-import { FAR, FarCourses, fromFar, MANY, setFar } from './Far'
+import { FAR, FarContext, FarCourses, fromFar, MANY } from './Far'
 import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useLayout, type Flow, type LaidOut } from './useLayout'
 
@@ -39,6 +39,8 @@ export interface GraphProps {
   readonly shown: Shown | undefined
   /** Shown in the head of the panel. */
   readonly breadcrumb: ReactNode
+  /** Whose graph it is, where there are several. */
+  readonly of?: string
 }
 
 /** Which node was asked for. */
@@ -54,7 +56,7 @@ export function Graph(props: GraphProps) {
   )
 }
 
-function Canvas({ root, selected, onSelect, shown, breadcrumb }: GraphProps) {
+function Canvas({ root, selected, onSelect, shown, breadcrumb, of }: GraphProps) {
   const { ref, width, height } = useElementSize()
   const [flow, setFlow] = useState<Flow>('AUTO')
   const [follows, setFollows] = useState(false)
@@ -64,6 +66,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb }: GraphProps) {
   return (
     <Panel
       title="Graph"
+      of={of}
       className="graph-panel"
       tools={
         <>
@@ -97,7 +100,7 @@ function Canvas({ root, selected, onSelect, shown, breadcrumb }: GraphProps) {
   )
 }
 
-interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb'> {
+interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'of'> {
   readonly laidOut: LaidOut
   readonly pane: string
   readonly follows: boolean
@@ -125,8 +128,6 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
 
   const hasMany = drawn.length > MANY
   const isFar = useStore((s) => s.transform[2] < FAR) && hasMany
-  useLayoutEffect(() => setFar(isFar), [isFar])
-  useEffect(() => () => setFar(false), [])
 
   useEffect(() => {
     const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
@@ -143,6 +144,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
   )
 
   return (
+    <FarContext value={isFar}>
     <ReactFlow
       nodes={nodes}
       edges={isFar ? NO_EDGES : edges}
@@ -169,6 +171,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
       <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
       {isFar && <FarCourses courses={laidOut.layout.courses} />}
     </ReactFlow>
+    </FarContext>
   )
 }
 

@@ -2,6 +2,7 @@
 import { IconLock } from '@tabler/icons-react'
 import { toggleBreakpoint, useBreakpointsAt } from '../../api/breakpoints'
 import { useHolds } from '../../api/liveParts'
+import { useIsPage } from '../../api/liveStore'
 
 export function Marks({ path }: { path: string }) {
   const points = useBreakpointsAt(path)
@@ -21,8 +22,10 @@ export function Marks({ path }: { path: string }) {
   )
 }
 
-/** For the mouse; the keyboard has the key `b` and the form of the chosen node. */
+/** For the mouse; the keyboard has the key `b` and the form of the chosen node. Set only on the page of the run. */
 function Dot({ path, when, isSet }: { path: string; when: 'before' | 'after'; isSet: boolean }) {
+  const isPage = useIsPage()
+  if (!isPage) return isSet && <span className={`break-dot is-${when} is-set`} title={`Pauses ${when} this node`} />
   return (
     <button
       type="button"

@@ -18,7 +18,7 @@ const LEVELS = [
   { value: 'error', label: 'Errors' },
 ]
 
-export function EventLog() {
+export function EventLog({ of }: { of?: string }) {
   const log = useLive((s) => s.log)
   const dropped = useLive((s) => s.dropped)
   const [level, setLevel] = useState<Level>('info')
@@ -59,7 +59,7 @@ export function EventLog() {
   )
 
   return (
-    <Panel title="Event log" tools={tools} className="log-panel">
+    <Panel title="Event log" of={of} tools={tools} className="log-panel">
       <Lines lines={shown} follows={follows} onLeave={() => setFollows(false)} hidden={hidden} isFiltered={log.length > 0} />
     </Panel>
   )

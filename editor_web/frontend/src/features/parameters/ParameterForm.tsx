@@ -1,8 +1,9 @@
 /** The form that sets a behavior's parameters for one run. */
-import { Alert, Collapse, NumberInput, UnstyledButton } from '@mantine/core'
-import { IconAlertCircle, IconChevronDown, IconChevronRight } from '@tabler/icons-react'
+import { Alert, Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
+import { IconAlertCircle, IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { BehaviorBody } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
 import { ParameterField } from '../../components/ParameterField'
 import { StartOptions } from './StartOptions'
 import { useStart } from './useStart'
@@ -16,12 +17,16 @@ export interface ParameterFormProps {
   readonly obstacle: string | undefined
   /** Where it will run, in words. */
   readonly place: string
+  /** The command line that runs it in virtual time, which a server does not. */
+  readonly terminal: string
   readonly onStarted: () => void
+  /** The run that is shown, whose values can be taken over. */
+  readonly run: string | undefined
 }
 
-export function ParameterForm({ behavior, obstacle, place, onStarted }: ParameterFormProps) {
+export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, run }: ParameterFormProps) {
   const start = useStart(behavior, onStarted)
-  const { fields, values, set, problems, refusal, submit, seed, setSeed } = start
+  const { fields, values, set, problems, refusal, submit, repeat, seed, setSeed } = start
   return (
     <form
       id={FORM_ID}
@@ -52,6 +57,19 @@ export function ParameterForm({ behavior, obstacle, place, onStarted }: Paramete
       <Disclosure title="Operation">
         <StartOptions supervision={start.supervision} onChange={start.setSupervision} hasBreakpoints={start.hasBreakpoints} />
       </Disclosure>
+      <Disclosure title="Initial userdata">
+        <Textarea
+          size="sm"
+          label="Userdata"
+          description={'Values to begin with in the place of those of the document, as JSON: {"count": 3}'}
+          classNames={{ input: 'mono' }}
+          autosize
+          minRows={2}
+          value={start.inputs}
+          error={start.inputsProblem}
+          onChange={(event) => start.setInputs(event.currentTarget.value)}
+        />
+      </Disclosure>
       <Disclosure title="Repeatability">
         <NumberInput
           size="sm"
@@ -64,7 +82,23 @@ export function ParameterForm({ behavior, obstacle, place, onStarted }: Paramete
           allowDecimal={false}
         />
       </Disclosure>
+      {run !== undefined && (
+        <div>
+          <CommandButton
+            label="Same as the shown run"
+            hint="Fill in the parameters, userdata and seed that the shown run was started with"
+            icon={<IconRepeat size={15} aria-hidden />}
+            onPress={() => void repeat(run)}
+          />
+        </div>
+      )}
       <p className="quiet start-place">{place}</p>
+      <Disclosure title="Another cell or clock">
+        <p className="quiet start-place">
+          The cell is chosen when the server starts: <code>flexcell serve --cell …</code>. It goes by the real clock; in virtual time, as fast as can be
+          computed, a behavior is run on the terminal: <code>{terminal}</code>
+        </p>
+      </Disclosure>
     </form>
   )
 }

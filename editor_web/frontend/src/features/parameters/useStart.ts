@@ -3,9 +3,10 @@ import { useMemo, useState } from 'react'
 import { useKept } from '../../api/breakpoints'
 import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
+import { originOf } from '../../api/origin'
 import { send } from '../../api/refusal'
 import type { BehaviorBody, ErrorBody, StartBody } from '../../api/types'
-import { fieldOf, parametersOf, problemWith, type Field } from '../../document/schema'
+import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
 type Values = Readonly<Record<string, unknown>>
@@ -17,6 +18,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const [problems, setProblems] = useState<Problems>({})
   const [refusal, setRefusal] = useState<ErrorBody>()
   const [seed, setSeed] = useState<string | number>('')
+  const [inputs, setInputs] = useState('')
+  const data = inputsOf(inputs)
   const [supervision, setSupervision] = useState<Supervision>(SUPERVISION)
   const hasBreakpoints = useKept((s) => s.kept.length > 0)
 
@@ -26,15 +29,27 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     setProblems({ ...problems, [name]: field && problemWith(field, value) })
   }
 
+  /** Fill the form with what a run was started with, seed and userdata included: started like that, it is repeated. */
+  async function repeat(run: string): Promise<void> {
+    const origin = await send('Take the values of the run', () => originOf(run))
+    if (!origin) return
+    const known = fields.filter((field) => field.name in origin.parameters)
+    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, origin.parameters[name])])) })
+    setSeed(origin.seed)
+    setInputs(inputsText(origin.inputs))
+    setProblems({})
+  }
+
   async function submit(): Promise<void> {
     const found = problemsOf(fields, values)
     setProblems(found)
     setRefusal(undefined)
-    if (Object.values(found).some(Boolean)) return
+    if (Object.values(found).some(Boolean) || !data) return
     try {
       const body: StartBody = {
         behavior: behavior.id,
         parameters: parametersOf(fields, values),
+        inputs: data,
         seed: seedOf(seed),
         supervision: supervisionOf(supervision, hasBreakpoints),
       }
@@ -57,7 +72,23 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     await send('Resume', () => api.resume(run))
   }
 
-  return { fields, values, set, problems, refusal, submit, seed, setSeed, supervision, setSupervision, hasBreakpoints }
+  return {
+    fields,
+    values,
+    set,
+    problems,
+    refusal,
+    submit,
+    repeat,
+    seed,
+    setSeed,
+    inputs,
+    setInputs,
+    inputsProblem: data ? undefined : 'This is not a JSON object',
+    supervision,
+    setSupervision,
+    hasBreakpoints,
+  }
 }
 
 function problemsOf(fields: readonly Field[], values: Values): Problems {

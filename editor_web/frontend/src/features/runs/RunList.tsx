@@ -1,8 +1,10 @@
 /** The runs of this server, newest first. */
-import { useLive } from '../../api/live'
+import { useEffect, useState } from 'react'
+import { serverNow, useLive } from '../../api/live'
 import type { RunLine } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
+import { PageLink } from '../../components/PageLink'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { isActive } from '../../document/live'
 import { duration, wallTime } from '../../document/time'
@@ -23,22 +25,18 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
       <ul className="plain-list">
         {runs.slice(0, limit).map((run) => (
           <li key={run.id}>
-            <a
+            <PageLink
               href={href(run.id)}
               className={`side-item run-item${run.id === current ? ' is-current' : ''}`}
-              aria-current={run.id === current ? 'page' : undefined}
-              onClick={(event) => {
-                if (event.metaKey || event.ctrlKey || event.shiftKey || event.button !== 0) return
-                event.preventDefault()
-                onOpen(run.id)
-              }}
+              isCurrent={run.id === current}
+              onOpen={() => onOpen(run.id)}
             >
               <StatusIcon status={run.waits ? 'warning' : statusOf(isFailure(run) ? 'failed' : run.status)} size={15} />
               <span className="side-item-name">{nameOf(run.behavior)}</span>
               <span className="side-item-text">
                 {wallTime(run.started_at_s)} · {runText(run)}
               </span>
-            </a>
+            </PageLink>
           </li>
         ))}
       </ul>
@@ -71,6 +69,16 @@ export function nameOf(behavior: string): string {
 /** How long a run takes or took. */
 export function RunTime({ run }: { run: RunLine }) {
   const watched = useLive((s) => s.run)
-  if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <span className="elapsed">{run.status}</span>
+  if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <SinceStart startedS={run.started_at_s} />
   return <span className="elapsed">{duration(run.duration_s)}</span>
+}
+
+/** By the clock on the wall, for runs that are not watched. */
+function SinceStart({ startedS }: { startedS: number }) {
+  const [now, setNow] = useState(serverNow)
+  useEffect(() => {
+    const timer = setInterval(() => setNow(serverNow()), 1000)
+    return () => clearInterval(timer)
+  }, [])
+  return <span className="elapsed">{duration(Math.max(0, now - startedS))}</span>
 }

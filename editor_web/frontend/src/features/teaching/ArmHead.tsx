@@ -7,6 +7,7 @@ import { teach, useObstacle, useTeach } from '../../api/teaching'
 import type { ArmCard, Trigger } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon, type Status } from '../../components/StatusIcon'
+import { FrameCapture } from './FrameCapture'
 import { toolWords } from './ToolRow'
 
 const LOOKS: Readonly<Record<string, Status>> = {
@@ -35,7 +36,11 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
   const look = LOOKS[now?.mode ?? ''] ?? 'idle'
 
   function take(callback: Trigger['trig_callback'], pressed = true): void {
-    teach.now(arm.name, callback, pressed).then(
+    attempt(teach.now(arm.name, callback, pressed))
+  }
+
+  function attempt(work: Promise<unknown>): void {
+    work.then(
       () => setProblem(''),
       (error: unknown) => setProblem(wordsOf(error)),
     )
@@ -60,6 +65,7 @@ export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
         {arm.skills.includes('gripper/gripper_open') && (
           <CommandButton label="Grip" hint="Capture how the gripper stands" icon={<IconHandGrab size={15} aria-hidden />} obstacle={obstacle} onPress={() => take('gripper_save')} />
         )}
+        <FrameCapture obstacle={obstacle} onCapture={(source, target) => attempt(teach.frame(arm.name, source, target))} />
         {isRecording ? (
           <CommandButton label="End recording" tone="danger" icon={<IconPlayerStopFilled size={14} aria-hidden />} obstacle={obstacle} onPress={() => take('joint_dmp_save', false)} />
         ) : (

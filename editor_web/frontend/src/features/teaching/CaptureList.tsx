@@ -1,16 +1,18 @@
 /** The buffer: what was captured and waits to be looked at, compared, saved or discarded. */
 import { Checkbox } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
-import { useState } from 'react'
+import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { forgiveTeach, teach, tellServer, useObstacle, useTeach } from '../../api/teaching'
+import { lookAt, teach, useObstacle, useTeach, type CapturedPlace } from '../../api/teaching'
 import type { CaptureSummary } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
-import { degrees, rollPitchYaw } from '../../document/teaching'
+import { degrees } from '../../document/teaching'
 import { duration, wallTime } from '../../document/time'
-import { Comparison, fitWords, useFits } from './Comparison'
+import { asCompared, Comparison, fitWords, MOST_COMPARED, useFits } from './Comparison'
 import { FORM_WORDS } from './forms'
+import { PlayBack } from './PlayBack'
+import { poseWords } from './poseWords'
 import { SaveForm } from './SaveForm'
 
 export function CaptureList({ arm }: { readonly arm: string }) {
@@ -35,7 +37,7 @@ export function CaptureList({ arm }: { readonly arm: string }) {
               aria-label={`Compare capture ${each.id}`}
               title="Compare"
               checked={compared.includes(each.id)}
-              disabled={each.samples === 0}
+              disabled={each.form === 'gripper' || (beside.length >= MOST_COMPARED && !compared.includes(each.id))}
               onChange={(event) => setCompared(event.currentTarget.checked ? [...compared, each.id] : compared.filter((id) => id !== each.id))}
             />
             <button type="button" className="capture-name" aria-pressed={each.id === one?.id} onClick={() => setChosen(each.id)}>
@@ -50,7 +52,7 @@ export function CaptureList({ arm }: { readonly arm: string }) {
       {beside.length > 0 && (
         <section aria-label="Comparison" className="teach-part">
           <h3>Side by side</h3>
-          <Comparison arm={arm} captures={beside} />
+          <Comparison things={beside.map((each) => asCompared(each, arm))} />
         </section>
       )}
       {one && <Details key={one.id} arm={arm} capture={one} />}
@@ -69,11 +71,13 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
   const off = useObstacle()
   const looked = useTeach((s) => s.refused.look)
   const [problem, setProblem] = useState('')
-  const { fits } = useFits(arm, [capture])
+  const robot = capture.robot || arm
+  const { fits, problem: unfit } = useFits(capture.form === 'gripper' ? [] : [asCompared(capture, arm)])
   const fit = fits[capture.id]
   const last = fit?.demonstration
-  const robot = capture.robot || arm
+  const place = usePlace(capture)
   const pose = last?.poses.at(-1)
+  const look = () => lookAt(robot, { kind: '', name: '', capture: capture.id })
   const joints = last?.joints.at(-1)
   return (
     <section className="teach-part" aria-label={`Capture ${capture.id}`}>
@@ -87,6 +91,12 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           <>
             <dt>{capture.samples > 0 ? 'Ends at joints' : 'Joints'}</dt>
             <dd className="mono">{joints.map((value) => `${degrees(value).toFixed(1)}°`).join('  ')}</dd>
+          </>
+        )}
+        {place?.frame && (
+          <>
+            <dt>In {place.frame}</dt>
+            <dd className="mono">{poseWords([...place.xyz, ...(place.xyzw ?? [0, 0, 0, 1])])}</dd>
           </>
         )}
         {pose && (
@@ -105,22 +115,19 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
             <dd>{fitWords(fit)}</dd>
           </>
         )}
-        {capture.remark && (
+        {(capture.remark || last?.remark || unfit) && (
           <>
             <dt>Remark</dt>
-            <dd>{capture.remark}</dd>
+            <dd>{capture.remark || last?.remark || unfit}</dd>
           </>
         )}
       </dl>
-      {capture.samples > 0 && fit && <Comparison arm={arm} captures={[capture]} />}
+      {capture.samples > 0 && fit && <Comparison things={[asCompared(capture, arm)]} />}
       <div className="command-row">
         <CommandButton
           label="Show in the cell"
           icon={<IconEye size={15} aria-hidden />}
-          onPress={() => {
-            forgiveTeach('look')
-            tellServer({ k: 'look', arm: robot, kind: '', name: '', capture: capture.id })
-          }}
+          onPress={look}
         />
         <CommandButton
           label="Discard"
@@ -135,14 +142,25 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
           {problem || looked?.message}
         </p>
       )}
+      {capture.form !== 'gripper' && <PlayBack arm={robot} what={{ kind: '', name: '', capture: capture.id }} words={`capture ${capture.id}`} onLook={look} />}
       <SaveForm key={capture.id} capture={capture} fit={fit} arm={robot} />
     </section>
   )
 }
 
-/** A pose in millimetres and degrees. */
-export function poseWords(pose: readonly number[]): string {
-  const place = pose.slice(0, 3).map((value) => `${(value * 1000).toFixed(1)}`)
-  const turn = rollPitchYaw(pose.slice(3)).map((value) => `${degrees(value).toFixed(1)}°`)
-  return `${place.join('  ')} mm   ${turn.join('  ')}`
+/** Where a captured pose is in its own frame, where that is not the world. */
+function usePlace({ id, form }: CaptureSummary): NonNullable<CapturedPlace['pose']> | undefined {
+  const [place, setPlace] = useState<CapturedPlace['pose']>()
+  useEffect(() => {
+    if (form !== 'pose') return
+    let current = true
+    teach.capture(id).then(
+      (found) => current && setPlace(found.pose),
+      () => current && setPlace(undefined),
+    )
+    return () => {
+      current = false
+    }
+  }, [id, form])
+  return place && place.frame !== undefined && place.frame !== 'world' ? place : undefined
 }

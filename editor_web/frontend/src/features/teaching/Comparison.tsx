@@ -1,65 +1,127 @@
-/** Recordings side by side, and each beside the primitive learned from it. */
+/** Things taught side by side: over time, each beside the primitive learned from it, and together in the cell. */
 import { NativeSelect } from '@mantine/core'
+import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach } from '../../api/teaching'
-import type { CaptureSummary, Fits } from '../../api/types'
-import { apart, curveOf, degrees } from '../../document/teaching'
+import { lookAt, teach, type Reference } from '../../api/teaching'
+import type { CaptureSummary, Fits, Trace } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { apart, changesOf, curveOf, degrees, endOf, errorsOf } from '../../document/teaching'
 import { Chart, type Drawn } from './Chart'
 
-const COLOURS = 5
+/** As many as there are colours, here and in the cell. */
+export const MOST_COMPARED = 5
 const TOOL = ['Tool x', 'Tool y', 'Tool z']
 
-export function Comparison({ arm, captures }: { readonly arm: string; readonly captures: readonly CaptureSummary[] }) {
+/** Something taught, and the arm that it is shown with. */
+export interface Compared {
+  readonly key: string
+  readonly label: string
+  readonly arm: string
+  readonly what: Reference
+}
+
+export function asCompared(capture: CaptureSummary, arm: string): Compared {
+  return { key: `${capture.id}`, label: `${capture.id}`, arm: capture.robot || arm, what: { kind: '', name: '', capture: capture.id } }
+}
+
+export function Comparison({ things }: { readonly things: readonly Compared[] }) {
   const [channel, setChannel] = useState('tool 0')
-  const { fits, problem } = useFits(arm, captures)
-  const shown = captures.filter((each) => fits[each.id])
-  const joints = Math.max(0, ...shown.map((each) => fits[each.id]?.demonstration?.joints[0]?.length ?? 0))
+  const { fits, problem } = useFits(things)
+  const joints = Math.max(0, ...things.map((each) => traceOf(fits[each.key])?.joints[0]?.length ?? 0))
   const isTool = channel.startsWith('tool')
   const unit = isTool ? 'mm' : '°'
-  const curves = shown.flatMap((each, at) => drawn(each, fits[each.id], channel, at))
+  const curves = things.flatMap((each, at) => drawn(each, fits[each.key], channel, at))
+  const learned = things.filter((each) => fits[each.key]?.demonstration && fits[each.key]?.primitive)
   return (
     <div className="comparison">
-      <NativeSelect
-        size="xs"
-        label="Show over time"
-        value={channel}
-        onChange={(event) => setChannel(event.currentTarget.value)}
-        data={[...TOOL.map((label, at) => ({ value: `tool ${at}`, label })), ...Array.from({ length: joints }, (_, at) => ({ value: `joint ${at}`, label: `Joint ${at + 1}` }))]}
-      />
-      {curves.length > 0 && <Chart curves={curves} unit={unit} label={`${shown.length} recordings, ${isTool ? TOOL[Number(channel.at(-1))] : `joint ${Number(channel.at(-1)) + 1}`} over time`} />}
+      {curves.length > 0 && (
+        <>
+          <NativeSelect
+            size="xs"
+            label="Show over time"
+            value={channel}
+            onChange={(event) => setChannel(event.currentTarget.value)}
+            data={[...TOOL.map((label, at) => ({ value: `tool ${at}`, label })), ...Array.from({ length: joints }, (_, at) => ({ value: `joint ${at}`, label: `Joint ${at + 1}` }))]}
+          />
+          <Chart curves={curves} unit={unit} label={`${curves.length} curves, ${isTool ? TOOL[Number(channel.at(-1))] : `joint ${Number(channel.at(-1)) + 1}`} over time`} />
+        </>
+      )}
       {problem && (
         <p className="teach-problem" role="alert">
           {problem}
         </p>
       )}
-      <table className="fit-table">
-        <thead>
-          <tr>
-            <th scope="col">Recording</th>
-            <th scope="col">Learned against shown, here</th>
-            <th scope="col">Over the whole motion</th>
-          </tr>
-        </thead>
-        <tbody>
-          {shown.map((each) => (
-            <tr key={each.id}>
-              <th scope="row">{each.id}</th>
-              <td>{apartWords(fits[each.id], channel, unit)}</td>
-              <td>{fitWords(fits[each.id])}</td>
+      {learned.length > 0 && (
+        <table className="fit-table" aria-label="Learned against shown">
+          <thead>
+            <tr>
+              <th scope="col">Learned against shown</th>
+              <th scope="col">What is drawn</th>
+              <th scope="col">Joints</th>
+              <th scope="col">Tool</th>
             </tr>
-          ))}
-        </tbody>
-      </table>
+          </thead>
+          <tbody>
+            {learned.map((each) => (
+              <tr key={each.key}>
+                <th scope="row">{each.label}</th>
+                <td>{apartWords(fits[each.key], channel, unit)}</td>
+                <td>{jointErrorWords(fits[each.key])}</td>
+                <td>{toolErrorWords(fits[each.key])}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      )}
+      {things.length > 1 && <Differences things={things} fits={fits} />}
+      {things.length > 1 && (
+        <div className="command-row">
+          <CommandButton label="Show all in the cell" hint="Each in the colour that it has here" icon={<IconEye size={15} aria-hidden />} onPress={() => things.forEach((each, at) => lookAt(each.arm, each.what, at))} />
+        </div>
+      )}
     </div>
   )
 }
 
-function drawn(capture: CaptureSummary, fit: Fits | undefined, channel: string, at: number): readonly Drawn[] {
-  const colour = at % COLOURS
+/** In what the others are not the first. */
+function Differences({ things, fits }: { readonly things: readonly Compared[]; readonly fits: Readonly<Record<string, Fits>> }) {
+  const [first, ...others] = things
+  const before = first && traceOf(fits[first.key])
+  if (!first || !before) return null
+  return (
+    <ul className="plain-list differences" aria-label={`Against ${first.label}`}>
+      <li>
+        <span className="chart-key is-colour-0">{first.label}</span>
+      </li>
+      {others.map((each, at) => {
+        const after = traceOf(fits[each.key])
+        return (
+          <li key={each.key}>
+            <span className={`chart-key is-colour-${at + 1}`}>{each.label}</span>
+            <span className="quiet">{after ? `against ${first.label}: ${differencesOf(before, after).join(', ')}` : ''}</span>
+          </li>
+        )
+      })}
+    </ul>
+  )
+}
+
+/** Of a motion and a place it is the end of the motion that counts. */
+function differencesOf(before: Trace, after: Trace): readonly string[] {
+  const isWay = before.poses.length > 1 && after.poses.length > 1
+  return isWay ? changesOf(before, after) : changesOf(endOf(before), endOf(after))
+}
+
+function traceOf(fit: Fits | undefined): Trace | undefined {
+  return fit?.demonstration ?? fit?.primitive ?? undefined
+}
+
+function drawn(thing: Compared, fit: Fits | undefined, channel: string, at: number): readonly Drawn[] {
+  const colour = at % MOST_COMPARED
   const made: Drawn[] = []
-  if (fit?.demonstration) made.push({ ...curveOf(fit.demonstration, `${capture.id} shown`, channel), colour, isDashed: false })
-  if (fit?.primitive) made.push({ ...curveOf(fit.primitive, `${capture.id} learned`, channel), colour, isDashed: true })
+  if (fit?.demonstration) made.push({ ...curveOf(fit.demonstration, fit.primitive ? `${thing.label} shown` : thing.label, channel), colour, isDashed: false })
+  if (fit?.primitive) made.push({ ...curveOf(fit.primitive, fit.demonstration ? `${thing.label} learned` : thing.label, channel), colour, isDashed: fit.demonstration !== null })
   return made.filter((curve) => curve.values.length > 1)
 }
 
@@ -69,32 +131,39 @@ function apartWords(fit: Fits | undefined, channel: string, unit: string): strin
   return found ? `${found.rms.toFixed(2)} ${unit} RMS, ${found.most.toFixed(2)} ${unit} at most` : '–'
 }
 
-/** How far a primitive is from its demonstration. */
-export function fitWords(fit: Fits | undefined): string {
-  const cart = fit?.cart_fit
-  if (cart) return `${(cart.rms_m * 1000).toFixed(2)} mm RMS, ${(cart.max_m * 1000).toFixed(2)} mm at most, ${cart.kernels} kernels`
-  const joint = fit?.joint_fit
-  return joint ? `${degrees(joint.rms_rad).toFixed(3)}° RMS, ${degrees(joint.max_rad).toFixed(3)}° at most, ${joint.kernels} kernels` : '–'
+function jointErrorWords(fit: Fits | undefined): string {
+  const found = fit?.demonstration && fit.primitive ? errorsOf(fit.demonstration, fit.primitive).joints : undefined
+  return found ? `${degrees(found.rms).toFixed(3)}° RMS, ${degrees(found.most).toFixed(3)}° at most` : '–'
 }
 
-/** What is worked out of captures, each asked for once. */
-export function useFits(arm: string, captures: readonly CaptureSummary[]): { readonly fits: Readonly<Record<number, Fits>>; readonly problem: string } {
-  const [fits, setFits] = useState<Readonly<Record<number, Fits>>>({})
+function toolErrorWords(fit: Fits | undefined): string {
+  const found = fit?.demonstration && fit.primitive ? errorsOf(fit.demonstration, fit.primitive).tool : undefined
+  return found ? `${(found.rms * 1000).toFixed(2)} mm RMS, ${(found.most * 1000).toFixed(2)} mm at most` : '–'
+}
+
+/** What was learned, and how far that is from the demonstration: of the joints and of the tool. */
+export function fitWords(fit: Fits | undefined): string {
+  const own = fit?.cart_fit ?? fit?.joint_fit
+  return own ? `${own.kernels} kernels; joints ${jointErrorWords(fit)}; tool ${toolErrorWords(fit)}` : '–'
+}
+
+/** Where an arm is along things, each asked for once. */
+export function useFits(things: readonly Compared[]): { readonly fits: Readonly<Record<string, Fits>>; readonly problem: string } {
+  const [fits, setFits] = useState<Readonly<Record<string, Fits>>>({})
   const [problem, setProblem] = useState('')
-  const key = captures.map((each) => each.id).join()
+  const asked = JSON.stringify(things)
   useEffect(() => {
     let current = true
-    for (const { id, robot, form } of captures) {
-      if (form === 'gripper') continue
-      teach.fits(robot || arm, { kind: '', name: '', capture: id }).then(
-        (found) => current && setFits((known) => ({ ...known, [id]: found })),
-        (error: unknown) => current && setProblem(wordsOf(error)),
+    setProblem('')
+    for (const { key, label, arm, what } of JSON.parse(asked) as readonly Compared[]) {
+      teach.fits(arm, what).then(
+        (found) => current && setFits((known) => ({ ...known, [key]: found })),
+        (error: unknown) => current && setProblem(`${label}: ${wordsOf(error)}`),
       )
     }
     return () => {
       current = false
     }
-    // eslint-disable-next-line react-hooks/exhaustive-deps -- a capture never changes, its number stands for it
-  }, [arm, key])
+  }, [asked])
   return { fits, problem }
 }

@@ -1,26 +1,25 @@
-/** The named entries of the cell: found, looked at, played back, undone. */
-import { NativeSelect, TextInput } from '@mantine/core'
-import { IconArrowBackUp, IconEye, IconTrash } from '@tabler/icons-react'
+/** The named entries of the cell: found, and laid beside each other. */
+import { Checkbox, NativeSelect, TextInput } from '@mantine/core'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { forgiveTeach, teach, tellServer, useObstacle, useTeach, type EntryChange } from '../../api/teaching'
+import { teach, useTeach } from '../../api/teaching'
 import type { EntryPage, EntryRow } from '../../api/types'
-import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
-import { wallTime } from '../../document/time'
-import { PlayBack } from './PlayBack'
+import { Comparison, MOST_COMPARED, type Compared } from './Comparison'
+import { EntryDetails } from './EntryDetails'
+import { PLAYED } from './forms'
 
 const KINDS = ['joints', 'pose', 'dmp', 'cart_dmp', 'trajectory', 'gripper', 'cart_offsets', 'record']
-/** What an arm can carry out. */
-const PLAYED = new Set(['joints', 'pose', 'dmp', 'cart_dmp', 'trajectory'])
 const TYPING_MS = 150
 
 export function EntryList({ arm }: { readonly arm: string }) {
   const [text, setText] = useState('')
   const [kind, setKind] = useState('')
   const [chosen, setChosen] = useState('')
+  const [compared, setCompared] = useState<readonly string[]>([])
   const { page, problem } = useEntries(kind, text)
   const one = page?.entries.find((each) => keyOf(each) === chosen)
+  const beside = page?.entries.filter((each) => compared.includes(keyOf(each))) ?? []
   return (
     <div className="entries">
       <div className="entry-search">
@@ -37,8 +36,16 @@ export function EntryList({ arm }: { readonly arm: string }) {
       ) : (
         <ul className="plain-list entry-list" aria-label="Entries">
           {page?.entries.map((each) => (
-            <li key={keyOf(each)}>
-              <button type="button" className={`entry${keyOf(each) === chosen ? ' is-current' : ''}`} aria-pressed={keyOf(each) === chosen} onClick={() => setChosen(keyOf(each))}>
+            <li key={keyOf(each)} className={`entry-row${keyOf(each) === chosen ? ' is-current' : ''}`}>
+              <Checkbox
+                size="xs"
+                aria-label={`Compare ${keyOf(each)}`}
+                title="Compare"
+                checked={compared.includes(keyOf(each))}
+                disabled={!PLAYED.has(each.kind) || (beside.length >= MOST_COMPARED && !compared.includes(keyOf(each)))}
+                onChange={(event) => setCompared(event.currentTarget.checked ? [...compared, keyOf(each)] : compared.filter((key) => key !== keyOf(each)))}
+              />
+              <button type="button" className="entry" aria-pressed={keyOf(each) === chosen} onClick={() => setChosen(keyOf(each))}>
                 <span className="entry-kind">{each.kind}</span>
                 <span className="entry-name">{each.name}</span>
                 <span className="entry-tags">
@@ -58,6 +65,13 @@ export function EntryList({ arm }: { readonly arm: string }) {
           The first {page.entries.length} of {page.total}; search to see others.
         </p>
       )}
+      {beside.length > 0 && (
+        <section aria-label="Comparison" className="teach-part">
+          <h3>Side by side</h3>
+          {beside.length < 2 && <p className="quiet">Choose another one to compare it with.</p>}
+          <Comparison things={beside.map((each) => asCompared(each, arm))} />
+        </section>
+      )}
       {one && <EntryDetails key={keyOf(one)} arm={arm} entry={one} />}
     </div>
   )
@@ -67,68 +81,9 @@ function keyOf(entry: EntryRow): string {
   return `${entry.kind} ${entry.name}`
 }
 
-function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryRow }) {
-  const off = useObstacle()
-  const looked = useTeach((s) => s.refused.look)
-  const [problem, setProblem] = useState('')
-  const { kind, name } = entry
-  const history = useHistory(entry)
-
-  function attempt(work: () => Promise<unknown>): void {
-    work().then(
-      () => setProblem(''),
-      (error: unknown) => setProblem(wordsOf(error)),
-    )
-  }
-
-  function look(): void {
-    forgiveTeach('look')
-    tellServer({ k: 'look', arm, kind, name, capture: 0 })
-  }
-
-  return (
-    <section className="teach-part" aria-label={`Entry ${kind} ${name}`}>
-      <h3>
-        {name} <span className="quiet">{kind}</span>
-      </h3>
-      <div className="command-row">
-        {PLAYED.has(kind) && <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />}
-        <CommandButton label="Undo" hint="Bring back what it was before the last change" icon={<IconArrowBackUp size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.undo(kind, name))} />
-        <CommandButton label="Delete" hint="Undo brings it back" tone="quiet" icon={<IconTrash size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.remove(kind, name))} />
-      </div>
-      {(problem || looked) && (
-        <p className="teach-problem" role="alert">
-          {problem || looked?.message}
-        </p>
-      )}
-      {PLAYED.has(kind) && <PlayBack arm={arm} what={{ kind, name, capture: 0 }} words={`${kind} ${name}`} onLook={look} />}
-      <h4>History</h4>
-      <ol className="plain-list history" aria-label={`History of ${name}`}>
-        {[...history].reverse().map((change) => (
-          <li key={change.revision}>
-            <span className="mono">{change.revision}</span> {change.deleted ? 'deleted' : change.revision === 1 ? 'made' : 'changed'}
-            {change.by && ` by ${change.by}`}, {wallTime(change.changed_unix_ms / 1000)}
-            {change.reason && <span className="quiet"> – {change.reason}</span>}
-          </li>
-        ))}
-      </ol>
-    </section>
-  )
-}
-
-function useHistory({ kind, name, revision }: EntryRow): readonly EntryChange[] {
-  const [changes, setChanges] = useState<readonly EntryChange[]>([])
-  useEffect(() => {
-    let current = true
-    teach.history(kind, name).then(
-      (found) => current && setChanges(found.changes),
-      () => current && setChanges([]),
-    )
-    return () => {
-      current = false
-    }
-  }, [kind, name, revision])
-  return changes
+/** As it is at its revision, so that a change is asked for anew. */
+function asCompared({ kind, name, revision }: EntryRow, arm: string): Compared {
+  return { key: `${kind} ${name}`, label: name, arm, what: { kind, name, capture: 0, revision } }
 }
 
 function useEntries(kind: string, text: string): { readonly page: EntryPage | undefined; readonly problem: string } {

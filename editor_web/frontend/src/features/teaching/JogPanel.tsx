@@ -1,5 +1,5 @@
 /** Moving an arm by hand: held or step by step, by joints or at the tool, with mouse, touch or keyboard. */
-import { SegmentedControl, Slider } from '@mantine/core'
+import { SegmentedControl, Slider, Switch } from '@mantine/core'
 import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
 import { useObstacle, useTeach } from '../../api/teaching'
@@ -9,6 +9,7 @@ import { HoldButton } from './HoldButton'
 import { jogKey } from './jogKeys'
 import { ToolRow } from './ToolRow'
 import { useJog } from './useJog'
+import { usePadJog } from './usePadJog'
 import { useSteps } from './useSteps'
 
 const BUSY = new Set(['moving', 'guiding', 'direct', 'reflex', 'fault', 'disconnected'])
@@ -41,11 +42,14 @@ export function JogPanel({ arm }: { readonly arm: ArmCard }) {
   const off = useObstacle()
   const obstacle = off ?? (jog.held || steps.isBusy ? undefined : busy(now))
   const rows = space === 'tool' ? toolRows(now) : jointRows(arm, now)
+  const [withPad, setWithPad] = useState(false)
+  const isPadThere = usePadJog({ isOn: withPad, jog, space, share: share / 100, joints: arm.joint_names.length, obstacle })
 
   function press(axis: number, way: 1 | -1): void {
     if (obstacle !== undefined) return
     if (!isStepping) {
-      jog.hold(`${rows[axis]?.name ?? ''}${way}`, jogVelocity(space, axis, (way * share) / 100, arm.joint_names.length))
+      const velocity = jogVelocity(space, axis, (way * share) / 100, arm.joint_names.length)
+      jog.hold(`${rows[axis]?.name ?? ''}${way}`, () => velocity)
       return
     }
     const turn_rad = (way * Number(stepDeg) * Math.PI) / 180
@@ -108,6 +112,14 @@ export function JogPanel({ arm }: { readonly arm: ArmCard }) {
           {space === 'tool' ? 'Arrows: X and Y. Page Up and Down: Z. With Shift they turn.' : 'Digits turn that joint, with Shift the other way.'}
         </span>
       </button>
+      <Switch
+        size="sm"
+        label="Jog with a gamepad"
+        description={padWords(space, withPad, isPadThere)}
+        checked={withPad}
+        disabled={off !== undefined}
+        onChange={(event) => setWithPad(event.currentTarget.checked)}
+      />
       <p className="teach-said" role="status" aria-label="State of jogging">
         {refusal ? `${refusal.message}${refusal.hint ? ` – ${refusal.hint}` : ''}` : heldBy || steps.problem || obstacle || (jog.held ? 'It goes as long as this is held' : '')}
       </p>
@@ -119,6 +131,13 @@ export function JogPanel({ arm }: { readonly arm: ArmCard }) {
       )}
     </div>
   )
+}
+
+function padWords(space: Space, isOn: boolean, isThere: boolean): string {
+  if (isOn && !isThere) return 'No gamepad is seen: press a button of it.'
+  return space === 'tool'
+    ? 'As long as L1 is held. Left stick: X and Y. Right stick: Z. With R1 they turn.'
+    : 'As long as L1 is held. Left stick: J1 and J2. Right stick: J3 and J4. With R1 the next joints.'
 }
 
 interface Row {

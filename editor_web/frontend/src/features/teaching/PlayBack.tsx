@@ -3,7 +3,7 @@ import { NativeSelect } from '@mantine/core'
 import { IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
 import { useCallback, useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach, tellServer, useObstacle, type Reference } from '../../api/teaching'
+import { lookAway, teach, useObstacle, type Reference } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 
 const SPEEDS = [5, 10, 25, 50]
@@ -31,14 +31,14 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
     setStage('moves')
     setSaid(`${arm} goes along ${words}`)
     teach
-      .play({ arm, speed: percent / 100, ...what }, control.signal)
+      .play({ arm, speed: percent / 100, revision: 0, ...what }, control.signal)
       .then(
         (played) => setSaid(played.status === 'succeeded' ? `${arm} has gone along ${words}` : played.cause),
         (error: unknown) => setSaid(control.signal.aborted ? 'Stopped' : wordsOf(error)),
       )
       .finally(() => {
         setStage('idle')
-        tellServer({ k: 'look', arm: '', kind: '', name: '', capture: 0 })
+        lookAway()
       })
   }
 

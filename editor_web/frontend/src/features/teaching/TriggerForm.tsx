@@ -1,6 +1,7 @@
 /** Makes or changes one trigger, in the words of the Helping Hand. */
 import { NativeSelect, TextInput } from '@mantine/core'
 import { useState } from 'react'
+import { useTeach } from '../../api/teaching'
 import type { Trigger } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CALLBACK_WORDS, TYPE_WORDS } from './triggerWords'
@@ -15,6 +16,7 @@ interface TriggerFormProps {
 }
 
 export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerFormProps) {
+  const frames = useTeach((s) => s.frames)
   const [made, setMade] = useState(trigger)
   const [value, setValue] = useState(JSON.stringify(trigger.trig_value))
   const fault = !made.trig_name ? 'give it a name' : taken.includes(made.trig_name) ? 'another trigger has this name' : !made.trig_topic ? 'name a topic' : ''
@@ -42,8 +44,13 @@ export function TriggerForm({ arms, trigger, taken, onKeep, onCancel }: TriggerF
         <NativeSelect size="xs" label="Callback" value={made.trig_callback} onChange={(event) => set({ trig_callback: event.currentTarget.value as Trigger['trig_callback'] })} data={optionsOf(CALLBACK_WORDS)} />
         {made.trig_callback === 'tf_save' && (
           <>
-            <TextInput size="xs" label="Source frame" value={made.source_frame} onChange={(event) => set({ source_frame: event.currentTarget.value })} />
-            <TextInput size="xs" label="Target frame" value={made.target_frame} onChange={(event) => set({ target_frame: event.currentTarget.value })} />
+            <datalist id="frames">
+              {['world', ...frames].map((each) => (
+                <option key={each} value={each} />
+              ))}
+            </datalist>
+            <TextInput size="xs" label="Source frame" list="frames" value={made.source_frame} onChange={(event) => set({ source_frame: event.currentTarget.value })} />
+            <TextInput size="xs" label="Target frame" list="frames" value={made.target_frame} onChange={(event) => set({ target_frame: event.currentTarget.value })} />
           </>
         )}
       </div>

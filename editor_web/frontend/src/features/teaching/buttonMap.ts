@@ -18,10 +18,19 @@ const FIRST_KEYS: readonly KeyButton[] = [
 ]
 
 /** The buttons of the standard gamepad by their numbers. */
-export const GAMEPAD_BUTTONS = [
+const GAMEPAD_BUTTONS = [
   'south', 'east', 'west', 'north', 'left_1', 'right_1', 'left_2', 'right_2', 'select', 'start', 'left_stick', 'right_stick', 'up', 'down', 'left',
   'right', 'home',
 ] as const
+
+/** The buttons that are down on any of these gamepads. */
+export function padButtons(pads: readonly (Gamepad | null)[]): ReadonlySet<string> {
+  const down = new Set<string>()
+  for (const pad of pads) {
+    pad?.buttons.forEach((button, at) => button.pressed && down.add(GAMEPAD_BUTTONS[at] ?? `button_${at}`))
+  }
+  return down
+}
 
 export function buttonFault(button: string): string {
   return BUTTON.test(button) ? '' : 'Lower-case letters, digits and _'

@@ -3,6 +3,9 @@ import type { CaptureSummary } from '../../api/types'
 
 export type Form = CaptureSummary['form']
 
+/** What an arm can carry out. */
+export const PLAYED: ReadonlySet<string> = new Set(['joints', 'pose', 'dmp', 'cart_dmp', 'trajectory'])
+
 export const FORM_WORDS: Readonly<Record<Form, string>> = {
   joints: 'Joints',
   pose: 'Pose',

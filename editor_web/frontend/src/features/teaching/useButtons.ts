@@ -1,7 +1,7 @@
 /** Buttons of the keyboard and of gamepads on the bus; everything is let go when the page is left. */
 import { useEffect, useRef } from 'react'
 import { forgiveTeach, tellServer, useObstacle } from '../../api/teaching'
-import { GAMEPAD_BUTTONS, useButtonMap } from './buttonMap'
+import { padButtons, useButtonMap } from './buttonMap'
 
 const NOT_TYPED = new Set(['checkbox', 'radio', 'range', 'button'])
 
@@ -53,8 +53,12 @@ export function useButtons(): void {
 
     let frame = 0
     function look(): void {
-      for (const pad of navigator.getGamepads()) {
-        pad?.buttons.forEach((button, at) => tell('gamepad', GAMEPAD_BUTTONS[at] ?? `button_${at}`, button.pressed))
+      // A button is down where it is on any gamepad; one that is gone has let go of everything.
+      const down = padButtons(navigator.getGamepads())
+      for (const button of down) tell('gamepad', button, true)
+      for (const name of [...held]) {
+        const [source = '', button = ''] = name.split('/')
+        if (source === 'gamepad' && !down.has(button)) tell(source, button, false)
       }
       frame = requestAnimationFrame(look)
     }

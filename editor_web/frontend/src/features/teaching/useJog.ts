@@ -9,7 +9,8 @@ const REPEAT_MS = 40
 export interface Jog {
   /** What is held, in the words of the one who holds it; empty for nothing. */
   readonly held: string
-  readonly hold: (what: string, velocity: readonly number[]) => void
+  /** `velocity` is asked for each time that it is told; nothing lets go. */
+  readonly hold: (what: string, velocity: () => readonly number[] | undefined) => void
   readonly letGo: () => void
 }
 
@@ -28,14 +29,18 @@ export function useJog(arm: string, space: Space, frame: Frame): Jog {
   }, [])
 
   const hold = useCallback(
-    (what: string, velocity: readonly number[]) => {
+    (what: string, velocity: () => readonly number[] | undefined) => {
       letGo()
       forgiveTeach('jog')
       tellServer({ k: 'jog', arm, space, frame })
-      const go = () => tellServer({ k: 'go', velocity })
-      go()
+      const go = () => {
+        const now = velocity()
+        if (now) tellServer({ k: 'go', velocity: now })
+        else letGo()
+      }
       timer.current = setInterval(go, REPEAT_MS)
       setHeld(what)
+      go()
     },
     [arm, space, frame, letGo],
   )

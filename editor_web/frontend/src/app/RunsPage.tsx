@@ -1,0 +1,146 @@
+/** All runs under way at once, each with its commands; those that ended last; and two of them to be compared. */
+import { IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { useData, type LeaseLine } from '../api/data'
+import { useLive } from '../api/live'
+import { forgive, refuse } from '../api/refusal'
+import type { RunLine } from '../api/types'
+import { CommandButton } from '../components/CommandButton'
+import { Empty } from '../components/Empty'
+import { LiveOf } from '../components/LiveOf'
+import { isActive } from '../document/live'
+import { RefusalLine } from '../features/control/RefusalLine'
+import { Requests } from '../features/control/Requests'
+import { RunButtons } from '../features/control/RunButtons'
+import { useCommands } from '../features/control/useCommands'
+import { StopCell } from '../features/robots/StopCell'
+import { FinishedRuns } from '../features/runs/FinishedRuns'
+import { RunCard } from '../features/runs/RunCard'
+import { nameOf } from '../features/runs/RunList'
+import '../features/runs/runs.css'
+import { InterruptedHere } from './InterruptedHere'
+import { besideHref, runHref } from './route'
+import { useBehaviorOf } from './useBehaviorOf'
+
+/** So many of those that are over are listed. */
+const ENDED = 8
+const CHOOSE = 'tick Compare at two runs first'
+
+export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
+  const runs = useLive((s) => s.runs)
+  const role = useLive((s) => s.role)
+  const [chosen, setChosen] = useState<readonly string[]>([])
+  const leases = useLeases()
+  useEffect(forgive, [])
+  const active = runs.filter(isActive)
+  const ended = runs.filter((run) => !isActive(run)).slice(0, ENDED)
+  const pair = pairOf(chosen.filter((id) => runs.some((run) => run.id === id)), active)
+  const asking = active.filter((run) => run.waits === 'asks').length
+
+  /** The two that were chosen last. */
+  function choose(run: string, isChosen: boolean): void {
+    const others = chosen.filter((each) => each !== run)
+    setChosen(isChosen ? [...others, run].slice(-2) : others)
+  }
+
+  return (
+    <div className="runs-page">
+      <header className="page-head">
+        <div className="page-head-text">
+          <h1>Runs</h1>
+          <p className="quiet" role="status">
+            {wordsOf(active.length, asking)}
+          </p>
+        </div>
+        <span className="spacer" />
+        <CommandButton
+          label="Side by side"
+          hint="Graph and log of two runs beside one another"
+          icon={<IconLayoutColumns size={16} aria-hidden />}
+          obstacle={pair ? undefined : CHOOSE}
+          onObstacle={() => refuse('Side by side', CHOOSE)}
+          onPress={() => pair && onOpen(besideHref(...pair))}
+        />
+        {role === 'operator' && <StopCell />}
+      </header>
+      <RefusalLine />
+      <div className="runs-body">
+        <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
+        {active.length === 0 ? (
+          <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is under way">
+            Choose a behavior on the left and start it; several go on at once as long as no two need the same arm.
+          </Empty>
+        ) : (
+          <div className="run-cards">
+            {active.map((run) => (
+              <LiveOf key={run.id} run={run.id}>
+                <Card
+                  run={run}
+                  held={leases.filter((lease) => lease.run === run.id).map((lease) => lease.resource)}
+                  isChosen={chosen.includes(run.id)}
+                  onChoose={(isChosen) => choose(run.id, isChosen)}
+                  onOpen={() => onOpen(runHref(run.id))}
+                />
+              </LiveOf>
+            ))}
+          </div>
+        )}
+        {ended.length > 0 && (
+          <section aria-labelledby="ended-runs">
+            <h2 id="ended-runs" className="runs-title">
+              Ended last
+            </h2>
+            <FinishedRuns runs={ended} href={runHref} onOpen={(run) => onOpen(runHref(run))} chosen={chosen} onChoose={choose} />
+          </section>
+        )}
+      </div>
+    </div>
+  )
+}
+
+interface CardProps {
+  readonly run: RunLine
+  readonly held: readonly string[]
+  readonly isChosen: boolean
+  readonly onChoose: (isChosen: boolean) => void
+  readonly onOpen: () => void
+}
+
+function Card({ run, held, isChosen, onChoose, onOpen }: CardProps) {
+  const name = nameOf(run.behavior)
+  const root = useBehaviorOf(run).value?.graph ?? null
+  const commands = useCommands(run, undefined, name)
+  return (
+    <RunCard
+      run={run}
+      root={root}
+      held={held}
+      href={runHref(run.id)}
+      onOpen={onOpen}
+      isChosen={isChosen}
+      onChoose={onChoose}
+      requests={<Requests root={root} commands={commands} onShow={onOpen} of={name} />}
+      commands={<RunButtons run={run} commands={commands} of={name} />}
+    />
+  )
+}
+
+function useLeases(): readonly LeaseLine[] {
+  const [leases, setLeases] = useState<readonly LeaseLine[]>([])
+  useData({ traffic: true }, (frame) => {
+    if (frame.k === 'traffic') setLeases(frame.leases)
+  })
+  return leases
+}
+
+/** The two that were chosen; without a choice the only two that are under way. */
+function pairOf(chosen: readonly string[], active: readonly RunLine[]): readonly [string, string] | undefined {
+  const [left, right] = chosen.length > 0 ? chosen : active.length === 2 ? active.map((run) => run.id) : []
+  return left !== undefined && right !== undefined ? [left, right] : undefined
+}
+
+function wordsOf(active: number, asking: number): string {
+  const going = active === 0 ? 'None is under way' : active === 1 ? 'One is under way' : `${active} are under way`
+  if (asking === 0) return going
+  return `${going}, ${asking === 1 ? 'one asks' : `${asking} ask`}`
+}

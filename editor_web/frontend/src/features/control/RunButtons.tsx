@@ -1,0 +1,54 @@
+/** The few commands to a run that stands among others: pause or resume, stop, operate. */
+import { IconHeadset, IconPlayerPause, IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
+import { useLive } from '../../api/live'
+import { useOperated } from '../../api/liveStore'
+import type { RunLine } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { operatorWords } from '../../document/commands'
+import type { Commands } from './useCommands'
+
+export function RunButtons({ run, commands, of }: { run: RunLine; commands: Commands; of: string }) {
+  const control = useLive((s) => s.control)
+  const isMine = useOperated() === run.id
+  const isHeld = control?.paused === true && !control.stepping
+  return (
+    <footer className="run-buttons">
+      <div className="command-row" role="group" aria-label={`Commands to ${of}`}>
+        <CommandButton
+          label={isHeld ? 'Resume' : 'Pause'}
+          hint={isHeld ? 'Let every goal and timer go on' : 'Hold every goal and timer; the arms come to rest and keep their goals'}
+          icon={isHeld ? <IconPlayerPlay size={16} aria-hidden /> : <IconPlayerPause size={16} aria-hidden />}
+          tone={isHeld ? 'strong' : 'plain'}
+          obstacle={commands.obstacle(isHeld ? 'resume' : 'pause')}
+          onObstacle={() => commands.explain(isHeld ? 'resume' : 'pause', isHeld ? 'Resume' : 'Pause')}
+          onPress={commands.pauseOrResume}
+        />
+        <CommandButton
+          label="Operate"
+          hint="Be asked for outcomes that are above the autonomy of the run. A page operates one run at a time"
+          icon={<IconHeadset size={16} aria-hidden />}
+          isPressed={isMine}
+          obstacle={commands.obstacle('operate')}
+          onObstacle={() => commands.explain('operate', 'Operate')}
+          onPress={commands.toggleOperating}
+        />
+        <StopRun commands={commands} />
+      </div>
+      {control && <p className={control.operator === 'lost' ? 'is-lost' : 'quiet'}>{operatorWords(control, isMine)}</p>}
+    </footer>
+  )
+}
+
+export function StopRun({ commands }: { commands: Commands }) {
+  return (
+    <CommandButton
+      label="Stop"
+      hint="The robots decelerate to rest and the run ends"
+      icon={<IconPlayerStopFilled size={15} aria-hidden />}
+      tone="danger"
+      obstacle={commands.obstacle('stop')}
+      onObstacle={() => commands.explain('stop', 'Stop')}
+      onPress={commands.stop}
+    />
+  )
+}

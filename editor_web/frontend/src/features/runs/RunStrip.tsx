@@ -1,0 +1,30 @@
+/** A run at a glance: one cell for each of its steps, lit by the run that is shown here. */
+import { useMemo } from 'react'
+import { useLive } from '../../api/live'
+import { useHolds, useNodePart } from '../../api/liveParts'
+import type { GraphNodeBody } from '../../api/types'
+import { statusOf } from '../../components/StatusIcon'
+import { cellsOf, pathWords, tally } from '../../document/course'
+
+export function RunStrip({ root }: { root: GraphNodeBody }) {
+  const cells = useMemo(() => cellsOf(root), [root])
+  const words = useLive((s) => tally(cells, s.nodes, s.control?.waiting.map((each) => each.path)))
+  return (
+    <div className="run-strip">
+      <div className="run-cells" role="img" aria-label={words}>
+        {cells.map((node) => (
+          <Cell key={node.path} path={node.path} />
+        ))}
+      </div>
+      <span className="quiet" aria-hidden>
+        {words}
+      </span>
+    </div>
+  )
+}
+
+function Cell({ path }: { path: string }) {
+  const status = useNodePart(path, (live) => statusOf(live?.status ?? 'idle'))
+  const waits = useHolds((control) => control?.waiting.some((each) => each.path === path) ?? false)
+  return <span className={`run-cell is-${waits ? 'stopped' : status}`} title={`${pathWords(path)}: ${waits ? 'waits' : status}`} />
+}

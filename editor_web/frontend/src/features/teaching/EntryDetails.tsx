@@ -1,0 +1,76 @@
+/** One named entry: shown, played back, undone, tagged; and what it was. */
+import { TextInput } from '@mantine/core'
+import { IconArrowBackUp, IconEye, IconTag, IconTrash } from '@tabler/icons-react'
+import { useState } from 'react'
+import { wordsOf } from '../../api/client'
+import { lookAt, teach, useObstacle, useTeach } from '../../api/teaching'
+import type { EntryRow } from '../../api/types'
+import { CommandButton } from '../../components/CommandButton'
+import { tagFault, tagsOf } from '../../document/teaching'
+import { EntryHistory } from './EntryHistory'
+import { PLAYED } from './forms'
+import { PlayBack } from './PlayBack'
+
+export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryRow }) {
+  const off = useObstacle()
+  const looked = useTeach((s) => s.refused.look)
+  const [problem, setProblem] = useState('')
+  const { kind, name } = entry
+  const what = { kind, name, capture: 0 }
+  const look = () => lookAt(arm, what)
+
+  function attempt(work: () => Promise<unknown>): void {
+    work().then(
+      () => setProblem(''),
+      (error: unknown) => setProblem(wordsOf(error)),
+    )
+  }
+
+  return (
+    <section className="teach-part" aria-label={`Entry ${kind} ${name}`}>
+      <h3>
+        {name} <span className="quiet">{kind}</span>
+      </h3>
+      <div className="command-row">
+        {PLAYED.has(kind) && <CommandButton label="Show in the cell" icon={<IconEye size={15} aria-hidden />} onPress={look} />}
+        <CommandButton label="Undo" hint="Bring back what it was before the last change" icon={<IconArrowBackUp size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.undo(kind, name))} />
+        <CommandButton label="Delete" hint="Undo brings it back" tone="quiet" icon={<IconTrash size={15} aria-hidden />} obstacle={off} onPress={() => attempt(() => teach.remove(kind, name))} />
+      </div>
+      {(problem || looked) && (
+        <p className="teach-problem" role="alert">
+          {problem || looked?.message}
+        </p>
+      )}
+      {PLAYED.has(kind) && <PlayBack arm={arm} what={what} words={`${kind} ${name}`} onLook={look} />}
+      <Tags key={entry.revision} entry={entry} obstacle={off} onKeep={(tags) => attempt(() => teach.tag({ kind, name, tags, revision: entry.revision }))} />
+      <EntryHistory arm={arm} entry={entry} />
+    </section>
+  )
+}
+
+interface TagsProps {
+  readonly entry: EntryRow
+  readonly obstacle: string | undefined
+  readonly onKeep: (tags: readonly string[]) => void
+}
+
+function Tags({ entry, obstacle, onKeep }: TagsProps) {
+  const before = entry.tags.join(', ')
+  const [typed, setTyped] = useState(before)
+  const fault = tagFault(typed)
+  const isSame = [...tagsOf(typed)].sort().join() === [...entry.tags].sort().join()
+  const off = obstacle ?? (fault || (isSame ? 'they are as they were' : undefined))
+  return (
+    <form
+      className="tag-form"
+      aria-label={`Tags of ${entry.name}`}
+      onSubmit={(event) => {
+        event.preventDefault()
+        if (off === undefined) onKeep(tagsOf(typed))
+      }}
+    >
+      <TextInput size="xs" label="Tags" placeholder="station_1, tested" value={typed} error={fault} onChange={(event) => setTyped(event.currentTarget.value)} autoComplete="off" spellCheck={false} />
+      <CommandButton label="Keep the tags" icon={<IconTag size={15} aria-hidden />} obstacle={off} onPress={() => onKeep(tagsOf(typed))} />
+    </form>
+  )
+}

@@ -1,0 +1,42 @@
+"""What happens in the editor while an edit is on its way to the server, or does not get there."""
+
+from __future__ import annotations
+
+from playwright.sync_api import Browser, Route, expect
+
+from tests.editor_web.editing import at_editor, card, idle
+from tests.editor_web.workshop import SHIFT_ID, Workshop
+
+
+def test_the_first_change_is_taken_back_before_the_server_has_answered(browser: Browser, shop: Workshop) -> None:
+    """The key is pressed as soon as one sees what one has done, which may be sooner than the answer."""
+    held: list[Route] = []
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        nodes = page.locator(".react-flow__node")
+        before = nodes.count()
+        page.route("**/edits", lambda route: held.append(route))
+        card(page, "root/set").click()
+        with page.expect_request("**/edits"):
+            page.keyboard.press("Control+d")
+        page.keyboard.press("Control+z")
+        with page.expect_response("**/edits"):
+            held[0].continue_()
+        expect(page.get_by_role("button", name="Redo")).to_be_enabled()
+        idle(page)
+        expect(nodes).to_have_count(before)
+        expect(page.locator(".dirty-mark")).to_have_count(0)
+
+
+def test_a_node_whose_move_does_not_reach_the_server_goes_back_to_its_place(browser: Browser, shop: Workshop) -> None:
+    """What is seen is what is in the document."""
+    with at_editor(browser, shop, SHIFT_ID, quiet=False) as page:
+        before: str = card(page, "root/set").evaluate("(node) => getComputedStyle(node).transform")
+        there = card(page, "root/set").bounding_box()
+        assert there is not None
+        page.route("**/edits", lambda route: route.abort())
+        page.mouse.move(there["x"] + 60, there["y"] + 12)
+        page.mouse.down()
+        page.mouse.move(there["x"] + 160, there["y"] + 72, steps=6)
+        page.mouse.up()
+        expect(page.locator(".edit-note.is-refused")).to_contain_text("Move")
+        expect(card(page, "root/set")).to_have_css("transform", before)
