@@ -99,8 +99,8 @@ def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
         expect(page.locator(".connection")).to_have_text("Live", timeout=10_000)
         expect(page.get_by_role("alert")).to_have_count(0)
         expect(page.get_by_label("Speed")).to_have_value("0.7")
-        page.get_by_role("button", name="Start").click()
-        expect(page.locator(".leaf.is-active")).to_have_count(2)
+        page.get_by_role("button", name="Start", exact=True).click()
+        expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=20_000)
 
 
 def test_new_keys_of_the_server_ask_for_a_new_log_in(visit: Visit, site: Site) -> None:

@@ -7,7 +7,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 from engine.document import load_behavior
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
-from tests.editor_web.editing import LAPTOP, card, drag, pill, port
+from tests.editor_web.editing import LAPTOP, card, drag, idle, pill, port
 from tests.editor_web.workshop import Workshop
 
 MADE = "behaviors/first_steps.yaml"
@@ -76,6 +76,7 @@ def test_the_whole_tour_by_mouse(browser: Browser, shop: Workshop) -> None:
         page.get_by_role("combobox", name="message").fill("hello")
         page.get_by_role("combobox", name="message").press("Tab")
         at_step(page, "Lead the outcomes on")
+        idle(page)
         drag(page, port(page, "root/log", "done"), pill(page, "root", "finished"))
         at_step(page, "Check, save, and go to the run page")
         page.get_by_role("button", name="Run", exact=True).click()

@@ -51,7 +51,7 @@ def test_entries_are_listed_with_their_last_change(http: httpx.Client) -> None:
     assert found["total"] == 1
     (entry,) = found["entries"]
     assert (entry["name"], entry["tags"], entry["by"], entry["reason"]) == ("turn", ["tested"], "me", "first")
-    assert http.get("/entries", params={"limit": 1}).json()["total"] == 3
+    assert http.get("/entries", params={"text": "tested", "limit": 1}).json()["total"] == 3
 
 
 def test_a_capture_is_the_recording_beside_what_was_learned(http: httpx.Client, site: TeachSite) -> None:
