@@ -23,6 +23,7 @@ from editor_web.teaching.pushing import push
 from editor_web.teaching_wire import Jog, Jogging, PushBody, Refused
 from engine.errors import FlexcellError
 from engine.messages import FramePoses, RobotDescription
+from engine.pose_algebra import rotation_between
 
 PERIOD_S = 0.05
 SILENCE_S = 0.2
@@ -202,7 +203,7 @@ class Grip:
 def _velocity(now: Placed, target: Placed) -> tuple[float, ...]:
     """Return how fast the tool goes towards the handle, m/s and rad/s in the world."""
     way = np.subtract(target.xyz, now.xyz)
-    turn = _turn(now, target)
+    turn = np.array(rotation_between(now.xyzw, target.xyzw))
     linear = _limited(way * GAIN_1_S, MOST_M_S) if np.linalg.norm(way) > NEAR_M else np.zeros(3)
     angular = _limited(turn * GAIN_1_S, MOST_RAD_S) if np.linalg.norm(turn) > NEAR_RAD else np.zeros(3)
     return tuple(float(value) for value in (*linear, *angular))
@@ -211,24 +212,6 @@ def _velocity(now: Placed, target: Placed) -> tuple[float, ...]:
 def _force(now: Placed, target: Placed) -> tuple[float, float, float]:
     x, y, z = _limited(np.subtract(target.xyz, now.xyz) * SPRING_N_M, MOST_N)
     return (float(x), float(y), float(z))
-
-
-def _turn(now: Placed, target: Placed) -> Vector:
-    """Return the rotation vector that turns one orientation into the other, in the world."""
-    x, y, z, w = now.xyzw
-    a, b, c, d = target.xyzw
-    vector = np.array([
-        -d * x + a * w - b * z + c * y,
-        -d * y + a * z + b * w - c * x,
-        -d * z - a * y + b * x + c * w,
-    ])  # fmt: skip
-    real = d * w + a * x + b * y + c * z
-    length = float(np.linalg.norm(vector))
-    if length < 1e-9:
-        return np.zeros(3)
-    # The shorter of the two ways round.
-    angle_rad = 2 * math.atan2(length, abs(real)) * (1 if real >= 0 else -1)
-    return vector / length * angle_rad
 
 
 def _limited(vector: Vector, most: float) -> Vector:

@@ -6,6 +6,8 @@ import math
 
 from engine.messages import Pose, Quaternion, Vector3
 
+_NO_TURN = 1e-9
+
 
 def composed(outer: Pose, inner: Pose) -> Pose:
     """Return where a pose in the frame that `outer` describes is, in the frame of `outer`."""
@@ -29,6 +31,17 @@ def rotated(by: Quaternion, vector: Vector3) -> Vector3:
 def turn_between_rad(one: Quaternion, other: Quaternion) -> float:
     """Return the angle between two orientations."""
     return 2 * math.acos(min(1.0, abs(sum(a * b for a, b in zip(one, other, strict=True)))))
+
+
+def rotation_between(one: Quaternion, other: Quaternion) -> Vector3:
+    """Return the rotation vector, radians, that turns one orientation into the other, the shorter way round."""
+    x, y, z, w = one
+    a, b, c, real = _product(other, (-x, -y, -z, w))
+    length = math.hypot(a, b, c)
+    if length < _NO_TURN:
+        return (0.0, 0.0, 0.0)
+    share = math.copysign(2.0 * math.atan2(length, abs(real)), real) / length
+    return (a * share, b * share, c * share)
 
 
 def inverse(pose: Pose) -> Pose:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 import fcntl
 import logging
+import os
 import re
 import time
-from collections.abc import AsyncGenerator, Mapping
-from contextlib import asynccontextmanager
+from collections.abc import AsyncGenerator, Generator, Iterable, Mapping
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -161,13 +162,20 @@ class SessionRecordings:
     def _remove_oldest(self, *, room: int = 0) -> None:
         """Remove recordings, oldest first, until `room` more are allowed; never one that is written or read."""
         listed = [path for path in self.folder.iterdir() if path.name.endswith((_SUFFIX, _SUFFIX + PART))]
-        states = sorted(((path.stat(), path) for path in listed), key=lambda each: each[0].st_mtime_ns)
+        states = sorted(_present(listed), key=lambda each: each[0].st_mtime_ns)
         number, size = len(states), sum(state.st_size for state, _ in states)
         for state, path in states:
             if number + room <= self._kept and size <= self._bytes:
                 return
             if path not in self._used and _removed(path):
                 number, size = number - 1, size - state.st_size
+
+
+def _present(paths: Iterable[Path]) -> Generator[tuple[os.stat_result, Path]]:
+    for path in paths:
+        # A recording that is finished meanwhile has another name by now.
+        with suppress(FileNotFoundError):
+            yield path.stat(), path
 
 
 def _removed(path: Path) -> bool:

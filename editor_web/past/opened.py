@@ -102,13 +102,17 @@ class Pasts:
             return None
         return known or self._entry(key, run_id, self._book(run_id)), further
 
+    def keeps(self, run_id: str) -> bool:
+        """Return whether a run of the journal is kept open."""
+        return self._known(_journal_key(run_id)) is not None
+
     def of_journal(self, run_id: str, *, fresh: bool) -> OpenedRun:
         """Return a run of the journal; one without an end is read again where `fresh` is asked for.
 
         Raises:
             JournalError: there is no such run, or it cannot be read.
         """
-        key = f"journal {run_id}"
+        key = _journal_key(run_id)
         known = self._known(key)
         is_over = known is not None and known.archived is not None and known.archived.summary.status != "running"
         if known is not None and (is_over or not fresh):
@@ -159,3 +163,7 @@ class Pasts:
         self._opened.move_to_end(key)
         while len(self._opened) > KEPT:
             self._opened.popitem(last=False)
+
+
+def _journal_key(run_id: str) -> str:
+    return f"journal {run_id}"

@@ -14,6 +14,7 @@ from fastapi.responses import StreamingResponse
 from editor_web.bus_wire import BusBoard, BusFields, BusForm, BusParameterBody, TopicFields
 from editor_web.goal_stream import GoalStream, until_gone
 from editor_web.pruned import pruned
+from editor_web.routes.answers import json_answer
 from editor_web.routes.services import ServicesOf
 from editor_web.signals import signal_fields
 from editor_web.traffic import shape_of
@@ -24,14 +25,10 @@ CLIENT_CLOSED_REQUEST = 499
 R = TypeVar("R")
 
 
-def _json(value: object) -> Response:
-    return Response(msgspec.json.encode(value), media_type="application/json")
-
-
 @router.get("")
 async def list_bus(services: ServicesOf) -> Response:
     """List topics, services, actions, parameters and leases."""
-    return _json(await services.backend.bus.listing())
+    return json_answer(await services.backend.bus.listing())
 
 
 @router.get("/echo")
@@ -70,7 +67,7 @@ async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Requ
     end = await while_there(work, request, name=f"goal {body.address}")
     if end is None:
         return Response(status_code=CLIENT_CLOSED_REQUEST)
-    return _json({"status": end.status.value, "result": end.result, "cause": end.cause})
+    return json_answer({"status": end.status.value, "result": end.result, "cause": end.cause})
 
 
 @router.get("/board")
@@ -78,7 +75,7 @@ async def get_board(services: ServicesOf) -> Response:
     """Return topics, services, actions and parameters with what they are for; `shape` tells when to ask again."""
     desk = services.backend.desk
     parameters = (msgspec.structs.replace(each, value=pruned(each.value)) for each in desk.parameters())
-    return _json(
+    return json_answer(
         BusBoard(shape=shape_of(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters))
     )
 
@@ -88,7 +85,7 @@ async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> 
     """Return the JSON Schema of the request at an address, or of the messages of a topic."""
     desk = services.backend.desk
     schema = desk.message_schema(topic) if topic else desk.request_schema(address)
-    return _json(BusForm(name=topic or address, schema=schema))
+    return json_answer(BusForm(name=topic or address, schema=schema))
 
 
 @router.get("/fields")
@@ -96,7 +93,7 @@ async def get_fields(services: ServicesOf) -> Response:
     """Return the numbers of the newest message of every topic, to be plotted."""
     desk = services.backend.desk
     topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
-    return _json(
+    return json_answer(
         BusFields(
             topics=tuple(
                 TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields
@@ -108,7 +105,7 @@ async def get_fields(services: ServicesOf) -> Response:
 @router.put("/parameter")
 async def set_parameter(body: BusParameterBody, services: ServicesOf) -> Response:
     """Set a parameter and return its value then. This may change what a robot does."""
-    return _json(pruned(services.backend.desk.set_parameter(body.name, body.value)))
+    return json_answer(pruned(services.backend.desk.set_parameter(body.name, body.value)))
 
 
 @router.post("/goals")

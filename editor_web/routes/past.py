@@ -7,13 +7,13 @@ import math
 from collections.abc import Callable
 from typing import Annotated
 
-import msgspec
 from fastapi import APIRouter, HTTPException, Query, Request, Response
 
 from editor_web.live_run import LOG_LINES
 from editor_web.past import OpenedRun, Pasts
 from editor_web.past.listing import KINDS, Kind, Wanted, page_of
 from editor_web.past_wire import OpenedPastBody, PastRunBody, PastRunsBody, RecordingBody
+from editor_web.routes.answers import json_answer
 from editor_web.routes.services import ServicesOf
 from editor_web.wire import BehaviorBody, ErrorBody
 from engine.archive import ArchivedRun
@@ -182,7 +182,8 @@ async def _of_run(request: Request, run_id: str, look: Look, *, fresh: bool = Fa
 
 
 def _of_journal(pasts: Pasts, run_id: str, *, fresh: bool) -> OpenedRun:
-    if not any(run.id == run_id for run in pasts.archive.runs()):
+    # A moment of a run that is open already asks nothing of the journal.
+    if (fresh or not pasts.keeps(run_id)) and not any(run.id == run_id for run in pasts.archive.runs()):
         raise HTTPException(404, f"there is no run {run_id[:80]!r}, neither of this server nor in its journal")
     return pasts.of_journal(run_id, fresh=fresh)
 
@@ -200,7 +201,7 @@ def _recording(pasts: Pasts, path: str) -> OpenedRun:
 
 
 def _answer(found: object) -> Response:
-    return found if isinstance(found, Response) else Response(msgspec.json.encode(found), media_type="application/json")
+    return found if isinstance(found, Response) else json_answer(found)
 
 
 def _opened_body(opened: OpenedRun, *, recording: str) -> OpenedPastBody:

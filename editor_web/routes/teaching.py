@@ -13,6 +13,7 @@ from fastapi import APIRouter, Query, Request, Response, WebSocket
 from editor_web.access import OPERATOR
 from editor_web.backend import Backend, Unsubscribe
 from editor_web.cell_view import CellView
+from editor_web.routes.answers import json_answer
 from editor_web.routes.bus import CLIENT_CLOSED_REQUEST, while_there
 from editor_web.routes.services import ServicesOf, role_of, services_of
 from editor_web.routes.sockets import Gone, read, send
@@ -58,7 +59,7 @@ async def list_entries(
     limit: Annotated[int, Query(ge=1, le=MOST_ENTRIES)] = 100,
 ) -> Response:
     """List entries of the cell's store, each with its last change."""
-    return _json(await entries(services.backend.bus, kind=kind, text=text, limit=limit))
+    return json_answer(await entries(services.backend.bus, kind=kind, text=text, limit=limit))
 
 
 @router.get("/fits")
@@ -72,7 +73,7 @@ async def get_fits(
 ) -> Response:
     """Return how an arm would go along an entry or a capture, beside the recording that it was learned from."""
     look = LookAt(arm=arm, kind=kind, name=name, capture=capture, revision=revision)
-    return _json(await fits(services.backend.bus, arm, look))
+    return json_answer(await fits(services.backend.bus, arm, look))
 
 
 @router.post("/tags", status_code=204)
@@ -85,7 +86,7 @@ async def set_tags(body: TagsBody, services: ServicesOf) -> None:
 async def play_back(body: PlayBody, request: Request, services: ServicesOf) -> Response:
     """Carry out what was taught, slowly; it is stopped when the page goes. This moves the robot."""
     played = await while_there(play(services.backend.bus, body), request, name=f"play {body.arm}")
-    return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else _json(played)
+    return Response(status_code=CLIENT_CLOSED_REQUEST) if played is None else json_answer(played)
 
 
 @router.post("/push", status_code=204)
@@ -253,7 +254,3 @@ async def _stream(socket: WebSocket, page: _Page) -> None:
             await send(socket, message)
         # The frame rate's limit; what happens meanwhile is coalesced.
         await asyncio.sleep(PERIOD_S)
-
-
-def _json(value: object) -> Response:
-    return Response(msgspec.json.encode(value), media_type="application/json")

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -62,7 +60,6 @@ class JogRun:
         self._guard = guard
         self._told: Row = (0.0,) * width
         self._told_s = clock.now_s()
-        self._silence: asyncio.TimerHandle | None = None
         self._stream: Stream | None = None
         self._countdown: Countdown | None = None
         # Its own velocity is repeated with the feedback, which is no silence of anybody.
@@ -111,14 +108,12 @@ class JogRun:
     def close(self) -> None:
         """The stream has ended."""
         self._stream = None
-        self._still_due()
         if self._countdown is not None:
             self._countdown.close()
 
     def _send(self, velocity: Row) -> None:
         """Send what was told just now."""
         self._told, self._told_s = velocity, self._clock.now_s()
-        self._still_due()
         self._pass_on()
 
     def _pass_on(self) -> None:
@@ -131,29 +126,15 @@ class JogRun:
         """The way ahead is another: the arm may go faster, or must go slower; but for a silence it comes to rest.
 
         What is passed on anew keeps its age, so the watchdog of the stream bites in its time whatever happens here;
-        the silence is counted here too, so that nobody looks ahead of an arm that nobody leads.
+        after a silence nobody need look ahead either.
         """
-        left_s = self._told_s + self.watchdog_s - self._clock.now_s()
-        if left_s <= 0.0 or self._stream is None:
-            return
+        if self._clock.now_s() - self._told_s >= self.watchdog_s:
+            self._told = (0.0,) * self._width
         try:
             self._pass_on()
         except RobotError as error:
             # The goal itself ends with the reason.
             _log.warning("%s: %s", self._handle.address, error)
-            return
-        self._still_due()
-        self._silence = asyncio.get_running_loop().call_later(left_s, self._fall_silent)
-
-    def _fall_silent(self) -> None:
-        self._told = (0.0,) * self._width
-        with suppress(RobotError):
-            self._pass_on()
-
-    def _still_due(self) -> None:
-        if self._silence is not None:
-            self._silence.cancel()
-            self._silence = None
 
     def _fault(self, velocity: Row) -> str:
         if not are_numbers(velocity):

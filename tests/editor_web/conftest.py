@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
 from editor_web.access import load_access
 from editor_web.server import Dashboard, dashboard
@@ -19,6 +19,9 @@ from tests.editor_web.served import Served
 from tests.editor_web.workshop import Workshop
 
 Serve = Callable[..., AbstractAsyncContextManager[Served]]
+
+# How long a page takes depends on what else the machine does; a page that never does it still fails.
+expect.set_options(timeout=20_000)
 
 
 @pytest.fixture(scope="session")

@@ -112,6 +112,17 @@ async def test_a_run_under_way_has_one_too_and_a_killed_server_leaves_it_readabl
             pass  # the disk is written by a thread of its own
 
 
+async def test_a_file_that_is_gone_when_it_is_looked_at_costs_no_recording(project: Path) -> None:
+    """As that of the run before is, which gets its name just then."""
+    (project / "recordings").mkdir()
+    (project / "recordings" / "before.mcap.part").symlink_to(project / "nowhere")
+    recordings = SessionRecordings(project / "recordings")
+    async with _session(project, recordings) as session:
+        run = await _quick(session)
+        await recordings.finished()
+        assert [file.name for file in session.recording_files(run)] == [f"{run}.mcap"]
+
+
 async def test_only_so_many_are_kept_and_the_oldest_go_first(project: Path) -> None:
     recordings = SessionRecordings(project / "recordings", kept=2)
     async with _session(project, recordings) as session:

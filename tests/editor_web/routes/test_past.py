@@ -51,9 +51,14 @@ def restarted(folder: Path, loopback: str) -> Generator[tuple[Workshop, str]]:
 def http(restarted: tuple[Workshop, str]) -> Generator[httpx.Client]:
     """A client with the operator's token."""
     shop, _ = restarted
-    headers = {"Authorization": f"Bearer {shop.access.operator}"}
-    with httpx.Client(base_url=f"{shop.running.url}api/v1", headers=headers, trust_env=False) as client:
+    with client_of(shop) as client:
         yield client
+
+
+def client_of(shop: Workshop) -> httpx.Client:
+    """The operator of a server."""
+    headers = {"Authorization": f"Bearer {shop.access.operator}"}
+    return httpx.Client(base_url=f"{shop.running.url}api/v1", headers=headers, trust_env=False)
 
 
 def got(http: httpx.Client, path: str, **query: object) -> Any:
@@ -202,12 +207,12 @@ def test_a_viewer_may_look(restarted: tuple[Workshop, str]) -> None:
                 assert client.get(path).status_code == status
 
 
-def test_a_run_of_this_server_is_followed_by_many_at_once(restarted: tuple[Workshop, str], http: httpx.Client) -> None:
+def test_a_run_of_this_server_is_followed_by_many_at_once(shop: Workshop) -> None:
     """Each is told the same."""
-    shop, _ = restarted
     run = shop.start(SHIFT_ID)
     try:
-        told = [got(http, f"/runs/{run}/timeline") for _ in range(3)]
+        with client_of(shop) as http:
+            told = [got(http, f"/runs/{run}/timeline") for _ in range(3)]
         assert len({each["run"] for each in told}) == 1
         assert told[-1]["seq"] >= told[0]["seq"]
     finally:

@@ -117,11 +117,13 @@ def test_a_viewer_moves_nothing(site: TeachSite) -> None:
     assert answer.status_code == 403
 
 
-def test_an_entry_gets_other_tags_unless_somebody_has_changed_it_meanwhile(http: httpx.Client) -> None:
+def test_an_entry_gets_other_tags_unless_somebody_has_changed_it_meanwhile(http: httpx.Client, site: TeachSite) -> None:
     """Of its revision that the page has seen; the value stays."""
-    body = {"kind": "record", "name": "note", "tags": ["b", "a"], "revision": 1}
+    written = WriteEntry(kind="record", name="label", value={"text": "something"}, by="me", reason="first")
+    site.call(site.bus.call(written, to="store"))
+    body = {"kind": "record", "name": "label", "tags": ["b", "a"], "revision": 1}
     assert http.post("/tags", json=body).status_code == 204
-    (entry,) = http.get("/entries", params={"kind": "record"}).json()["entries"]
+    (entry,) = http.get("/entries", params={"text": "label"}).json()["entries"]
     assert (entry["tags"], entry["revision"], entry["by"]) == (["a", "b"], 2, "the dashboard")
     late = http.post("/tags", json={**body, "tags": ["c"]})
     assert late.status_code in (409, 422)

@@ -1,6 +1,7 @@
 /** A websocket to the live stream: opened again when it is lost, given up when it is silent. */
 import { api, ServerError } from './client'
 import type { Frame, Operate, Show, Watch } from './types'
+import { openSocket } from './socket'
 
 export interface ConnectionEvents {
   /** It is open; what the server is to know of this side is sent now. */
@@ -30,7 +31,7 @@ export function keepConnected(events: ConnectionEvents): LiveConnection {
   let silence: ReturnType<typeof setTimeout> | undefined
 
   function open(): void {
-    const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/live`)
+    const opened = openSocket('/live')
     socket = opened
     opened.onopen = () => {
       attempt = 0

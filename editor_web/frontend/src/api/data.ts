@@ -1,5 +1,6 @@
 /** The data stream: traffic, messages, samples, userdata and goals, each only while somebody looks at it. */
 import { useEffect, useRef } from 'react'
+import { openSocket } from './socket'
 
 export interface Look {
   /** Comes back with the samples of these `fields`. */
@@ -143,7 +144,7 @@ class Stream {
   }
 
   private open(): void {
-    const socket = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/data`)
+    const socket = openSocket('/data')
     this.socket = socket
     socket.onopen = () => this.request && socket.send(this.request)
     socket.onmessage = (message: MessageEvent<string>) => {

@@ -4,6 +4,7 @@
  */
 import { create } from 'zustand'
 import { PAGE } from './shown'
+import { openSocket } from './socket'
 
 /** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
 export type Way = 'move' | 'push'
@@ -82,7 +83,7 @@ function letGo(): void {
 
 function open(then: () => void): void {
   socket?.close()
-  const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/cell/grip/${PAGE}`)
+  const opened = openSocket(`/cell/grip/${PAGE}`)
   socket = opened
   opened.onopen = then
   opened.onmessage = (message: MessageEvent<string>) => {

@@ -1,6 +1,7 @@
 /** Past moments in the 3D view of this page: asked for over a connection of their own, which ends with the past. */
 import { create } from 'zustand'
 import { PAGE } from './shown'
+import { openSocket } from './socket'
 
 /** What the 3D view shows: a run at a time of it, recorded from and until; or `problem`, and so the present. */
 export interface PastState {
@@ -48,7 +49,7 @@ function leave(): void {
 }
 
 function open(): void {
-  const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/cell/past/${PAGE}`)
+  const opened = openSocket(`/cell/past/${PAGE}`)
   socket = opened
   opened.onopen = send
   opened.onmessage = (message: MessageEvent<string>) => {

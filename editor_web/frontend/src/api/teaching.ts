@@ -25,6 +25,7 @@ import type {
   TeachStatus,
   Trigger,
 } from './types'
+import { openSocket } from './socket'
 
 type FromServer = ArmCards | ArmsNow | HandNews | EntriesChanged | Jogging | Refused
 type ToServer = Jog | Go | Rest | Button | LookAt
@@ -85,7 +86,7 @@ export function connectTeach(): () => void {
   let retry: ReturnType<typeof setTimeout> | undefined
 
   function open(): void {
-    const opened = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/teach/live`)
+    const opened = openSocket('/teach/live')
     socket = opened
     opened.onopen = () => useTeach.setState({ isOpen: true })
     opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as FromServer)

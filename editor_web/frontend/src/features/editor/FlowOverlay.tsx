@@ -6,9 +6,12 @@ import type { Box } from '../../document/geometry'
 import { useDataFlow } from './dataFlow'
 import type { CanvasNode } from './elements'
 import { nodeBoxes } from './nodeBoxes'
+import { ArrowHeads } from './ArrowHeads'
 
 const CHIP = { width: 88, height: 26 }
 const LEGIBLE = 14
+
+const FLOW_ARROWS = ['flow-arrow', 'flow-arrow-unsure']
 
 export function FlowOverlay() {
   const isShown = useDataFlow((s) => s.isShown)
@@ -28,22 +31,7 @@ function Arrows() {
   return (
     <ViewportPortal>
       <svg className="flow-overlay" role="img" aria-label={wordsFor(links, key)}>
-        <defs>
-          {['flow-arrow', 'flow-arrow-unsure'].map((id) => (
-            <marker
-              key={id}
-              id={id}
-              viewBox="0 0 10 10"
-              refX="8.5"
-              refY="5"
-              markerWidth="7"
-              markerHeight="7"
-              orient="auto"
-            >
-              <path d="M 0 1 L 9 5 L 0 9 z" className={id} />
-            </marker>
-          ))}
-        </defs>
+        <ArrowHeads ids={FLOW_ARROWS} />
         {[...ends].map((path) => {
           const box = boxes.get(path)
           return (

@@ -5,6 +5,7 @@ import { roundedPath, type Point } from '../../document/geometry'
 import type { BranchEdge, WayEdge } from './elements'
 import { askInsert } from './asking'
 import { useWayFindings } from './marks'
+import { ArrowHeads } from './ArrowHeads'
 
 const TOLERANCE = 3
 
@@ -100,26 +101,13 @@ export const BranchLine = memo(function BranchLine({ sourceX, sourceY, targetX, 
   )
 })
 
+const EDIT_ARROWS = ['edit-arrow', 'edit-arrow-selected']
+
 /** The heads of all arrows, once per canvas. */
 export function EditArrowHeads() {
   return (
     <svg className="arrow-heads" aria-hidden>
-      <defs>
-        {['edit-arrow', 'edit-arrow-selected'].map((id) => (
-          <marker
-            key={id}
-            id={id}
-            viewBox="0 0 10 10"
-            refX="8.5"
-            refY="5"
-            markerWidth="7"
-            markerHeight="7"
-            orient="auto"
-          >
-            <path d="M 0 1 L 9 5 L 0 9 z" className={id} />
-          </marker>
-        ))}
-      </defs>
+      <ArrowHeads ids={EDIT_ARROWS} />
     </svg>
   )
 }
