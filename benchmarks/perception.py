@@ -94,8 +94,11 @@ def robot_voxels(postures: int) -> str:
     for number in range(postures):
         joints = random.uniform(stage.lower, stage.upper)
         stage.put_arm(joints)
+        seen = eye.look(stage.look())
+        assert sight.box is not None
+        assert seen.grid is not None
         shells.append(_shell_l(sight.box, body, joints))
-        left[number] = len(occupied_centres(eye.look(stage.look()).grid))
+        left[number] = len(occupied_centres(seen.grid))
     own, near = np.mean(shells, axis=0)
     return (
         f"robot voxels left in {postures} random configurations, two cameras: {sum(left)} in all, "
@@ -115,8 +118,11 @@ def arm_seen(cameras: int, postures: int) -> str:
     extra: list[float] = []
     for number in range(postures):
         stage.put_arm(random.uniform(stage.lower, stage.upper) * 0.4)
+        assert sight.box is not None
         points = inside(sight.box, stage.put_hand(number))
-        found = occupied_centres(eye.look(stage.look(forget=True)).grid)
+        seen = eye.look(stage.look(forget=True))
+        assert seen.grid is not None
+        found = occupied_centres(seen.grid)
         nearest = _nearest(points, found)
         shares.append(float((nearest <= 1.5 * sight.box.voxel_m).mean()))
         extra.append(float(_nearest(found, points).max()) if len(found) else 0.0)

@@ -55,6 +55,7 @@ from states.scene.put_obstacle import PutObstacle
 from states.scene.remove_obstacle import RemoveObstacle
 from states.store.read_entry import ReadEntry
 from states.store.write_entry import WriteEntry
+from states.vision.detect import Detect
 
 _STATES: tuple[type[State], ...] = (
     AllowContact,
@@ -63,6 +64,7 @@ _STATES: tuple[type[State], ...] = (
     CheckHeld,
     Decide,
     Detach,
+    Detect,
     ExecutePlan,
     ExpectPart,
     FollowCartDmp,

@@ -1,4 +1,7 @@
-"""Depth cameras in the 3D view: a frustum where each stands, with its newest image in colours of distance."""
+"""Depth cameras in the 3D view: a frustum where each stands, with its newest image in colours of distance.
+
+What a detector finds is framed and labelled in it.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,13 @@ from numpy.typing import NDArray
 
 from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.colours import ramp
+from editor_web.cell_view.detections import is_fresh
 from editor_web.cell_view.groups import root_of
+from editor_web.cell_view.labelled_image import labelled
 from editor_web.cell_view.newest import Newest
 from editor_web.cell_view.placement import wxyz
 from engine.sensing import CameraInfo, CameraIntrinsics, DepthImage
+from engine.skills.vision import Detections
 
 _log = logging.getLogger("flexcell.cell_view")
 PERIOD_S = 0.2
@@ -63,7 +69,10 @@ class Cameras:
         due: list[float] = []
         for name in {**newest.cameras, **newest.depths}:
             camera = self._cameras.setdefault(name, _Camera(self._server, name, node=f"{self._root}/{name}"))
-            if (next_s := camera.draw(newest.cameras.get(name), newest.depths.get(name), now_s)) is not None:
+            found = newest.detections.get(name)
+            if found is not None and not is_fresh(found, newest.frames):
+                found = None
+            if (next_s := camera.draw(newest.cameras.get(name), newest.depths.get(name), found, now_s)) is not None:
                 due.append(next_s)
         return min(due, default=None)
 
@@ -73,17 +82,19 @@ class _Camera:
         self._server = server
         self._name = name
         self._node = node
-        self._drawn: tuple[CameraInfo | None, DepthImage | None] = (None, None)
+        self._drawn: tuple[CameraInfo | None, DepthImage | None, Detections | None] = (None, None, None)
         self._lens: CameraIntrinsics | None = None
         self._handle: viser.CameraFrustumHandle | None = None
         self._next_s = 0.0
 
-    def draw(self, info: CameraInfo | None, image: DepthImage | None, now_s: float) -> float | None:
-        if info is self._drawn[0] and image is self._drawn[1]:
+    def draw(
+        self, info: CameraInfo | None, image: DepthImage | None, found: Detections | None, now_s: float
+    ) -> float | None:
+        if all(new is drawn for new, drawn in zip((info, image, found), self._drawn, strict=True)):
             return None
         if now_s < self._next_s:
             return self._next_s
-        self._drawn, self._next_s = (info, image), now_s + PERIOD_S
+        self._drawn, self._next_s = (info, image, found), now_s + PERIOD_S
         seen = image if image is not None else info
         if seen is None:
             return None
@@ -96,7 +107,7 @@ class _Camera:
             handle = self._frustum(seen.intrinsics)
             handle.position, handle.wxyz = seen.pose.xyz, wxyz(seen.pose.xyzw)
             if shades is not None:
-                handle.image = shades
+                handle.image = labelled(shades, found) if found is not None else shades
         return None
 
     def _frustum(self, lens: CameraIntrinsics) -> viser.CameraFrustumHandle:

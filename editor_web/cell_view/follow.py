@@ -17,6 +17,7 @@ from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
+from engine.skills.vision import Detections
 
 _log = logging.getLogger("flexcell.cell_view")
 # By type, not by name: what an arm or a camera is called is the cell's affair. Descriptions come first, they tell
@@ -27,6 +28,7 @@ _WHILE_SHOWN: dict[str, Group] = {
     OccupancyState.__name__: "voxels",
     OccupancyGrid.__name__: "voxels",
     DepthImage.__name__: "cameras",
+    Detections.__name__: "detections",
 }
 _RANK = {kind.__name__: rank for rank, kind in enumerate(_ALWAYS)}
 

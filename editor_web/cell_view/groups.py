@@ -15,9 +15,9 @@ import viser
 from editor_web.cell_view.canvas import CELL, PAST, TAUGHT
 from editor_web.cell_view.lock import PAGE
 
-Group = Literal["voxels", "ways", "obstacles", "cameras", "people", "frames"]
-GROUPS: tuple[Group, ...] = ("voxels", "ways", "obstacles", "cameras", "people", "frames")
-SHOWN_AT_FIRST: frozenset[Group] = frozenset({"voxels", "ways", "obstacles", "people"})
+Group = Literal["voxels", "ways", "obstacles", "cameras", "detections", "people", "frames"]
+GROUPS: tuple[Group, ...] = ("voxels", "ways", "obstacles", "cameras", "detections", "people", "frames")
+SHOWN_AT_FIRST: frozenset[Group] = frozenset({"voxels", "ways", "obstacles", "detections", "people"})
 _KEPT_PAGES = 200
 
 

@@ -8,13 +8,14 @@ from engine.messages import FramePoses, RobotDescription, SceneDescription
 from engine.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
+from engine.skills.vision import Detections
 
 
 class Newest:
     """One reference for each, the newest wins; `arrived` is set with every message.
 
-    `descriptions`, `ways`, `cameras` and `depths` are by the name of the arm or camera, `ghosts` by that and a place
-    beside others. Messages are frozen: whoever reads one sees it whole.
+    `descriptions`, `ways`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
+    frozen: whoever reads one sees it whole.
     """
 
     def __init__(self) -> None:
@@ -25,10 +26,10 @@ class Newest:
         self.occupancy: OccupancyGrid | None = None
         self.descriptions: dict[str, RobotDescription] = {}
         self.ways: dict[str, PathPreview] = {}
-        self.ghosts: dict[tuple[str, int], PathPreview] = {}
         self.occupancy_state: OccupancyState | None = None
         self.cameras: dict[str, CameraInfo] = {}
         self.depths: dict[str, DepthImage] = {}
+        self.detections: dict[str, Detections] = {}
 
     def put(self, name: str, message: object) -> None:
         """Keep a message; `name` is that of its arm or camera, where it has one."""
@@ -51,11 +52,8 @@ class Newest:
                 self.ways = {**self.ways, name: message}
             case DepthImage():
                 self.depths = {**self.depths, name: message}
+            case Detections():
+                self.detections = {**self.detections, name: message}
             case _:
                 return
-        self.arrived.set()
-
-    def put_ghost(self, preview: PathPreview, *, place: int = 0) -> None:
-        """Keep what somebody looks at, which nobody goes; several of an arm each have their place."""
-        self.ghosts = {**self.ghosts, (preview.robot, place): preview}
         self.arrived.set()

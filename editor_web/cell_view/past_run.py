@@ -16,6 +16,7 @@ from engine.recording.moments import Moments
 from engine.sensing import CameraInfo, OccupancyGrid, OccupancyState
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import PlanningSceneState
+from engine.skills.vision import Detections
 
 _KINDS: tuple[type[msgspec.Struct], ...] = (
     RobotDescription,
@@ -26,6 +27,7 @@ _KINDS: tuple[type[msgspec.Struct], ...] = (
     CameraInfo,
     OccupancyState,
     OccupancyGrid,
+    Detections,
 )
 _DECODERS: Mapping[str, msgspec.json.Decoder[Any]] = {kind.__name__: msgspec.json.Decoder(kind) for kind in _KINDS}
 _NO_VOXELS = OccupancyGrid(
@@ -91,8 +93,11 @@ class PastRun:
 
 def _nothing(topic: str, kind: str) -> object | None:
     """Return what is shown before the first message of a topic, where a later one may be drawn already."""
+    name = topic.rpartition("/")[0]
     if kind == PathPreview.__name__:
-        return PathPreview(robot=topic.rpartition("/")[0], state="none")
+        return PathPreview(robot=name, state="none")
+    if kind == Detections.__name__:
+        return Detections(camera=name, frame="world", time_s=0.0, detections=(), image_px=(0, 0))
     if kind == OccupancyGrid.__name__:
         return _NO_VOXELS
     return _EMPTY_SCENE if kind == PlanningSceneState.__name__ else None

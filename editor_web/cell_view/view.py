@@ -18,6 +18,7 @@ from editor_web.cell_view.groups import ClientGroups, Group
 from editor_web.cell_view.handles import Handle, Handles
 from editor_web.cell_view.lock import new_server
 from editor_web.cell_view.newest import Newest
+from editor_web.cell_view.page_ghosts import PageGhosts
 from editor_web.cell_view.past_pages import PastPages, Tell
 from engine.errors import FlexcellError
 from engine.skills.planning import PathPreview
@@ -43,6 +44,7 @@ class CellView:
         self._groups: ClientGroups | None = None
         self._past: PastPages | None = None
         self._handles: Handles | None = None
+        self._ghosts: PageGhosts | None = None
         self._backend = backend
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -70,7 +72,10 @@ class CellView:
         self._groups = ClientGroups(server, changed=self._on_shown)
         self._past = PastPages(server, self._groups, find=self._backend.recording_files)
         handles = self._handles = Handles(server, changed=self._newest.arrived.set)
-        self._thread = threading.Thread(target=self._write, args=(server, handles), name="cell-view", daemon=True)
+        ghosts = self._ghosts = PageGhosts(server, changed=self._newest.arrived.set)
+        self._thread = threading.Thread(
+            target=self._write, args=(server, handles, ghosts), name="cell-view", daemon=True
+        )
         self._thread.start()
 
     def request_tunnel(self) -> str | None:
@@ -102,14 +107,15 @@ class CellView:
         if self._handles is not None:
             self._handles.take(page, handle)
 
+    def show_ghost(self, page: str, preview: PathPreview, *, place: int = 0) -> None:
+        """Show a page where an arm would be, until another is shown in its place; one in the state `none` hides it."""
+        if self._ghosts is not None:
+            self._ghosts.put(page, preview, place=place)
+
     async def subscribe(self) -> None:
         """Follow the cell's topics, on the event loop's thread."""
         self._loop = asyncio.get_running_loop()
         await self._follower.open()
-
-    def show_ghost(self, preview: PathPreview, *, place: int = 0) -> None:
-        """Show where an arm would be, until another is shown in its place; one in the state `none` shows nothing."""
-        self._newest.put_ghost(preview, place=place)
 
     async def unsubscribe(self) -> None:
         """Stop following, on the event loop's thread."""
@@ -142,13 +148,14 @@ class CellView:
                 # The loop has just been closed: nothing is followed any more.
                 _log.debug("the last page left after the event loop had ended")
 
-    def _write(self, server: viser.ViserServer, handles: Handles) -> None:
+    def _write(self, server: viser.ViserServer, handles: Handles, ghosts: PageGhosts) -> None:
         draw = Drawing(server)
         wait_s: float | None = None
         while not self._ending.is_set():
             self._newest.arrived.wait(wait_s)
             self._newest.arrived.clear()
-            next_s = draw.all(self._newest, self.shown)
+            due = (draw.all(self._newest, self.shown), ghosts.draw(self._newest, time.monotonic()))
             handles.draw(self._newest)
             self._ending.wait(PERIOD_S)
+            next_s = min((each for each in due if each is not None), default=None)
             wait_s = None if next_s is None else max(0.0, next_s - time.monotonic())

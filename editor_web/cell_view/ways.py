@@ -30,6 +30,8 @@ _GOAL_M = 0.012
 TRAVEL_S = 4.0
 REST_S = 1.2
 PERIOD_S = 1.0 / 15.0
+GhostsShown = Mapping[tuple[str, int], PathPreview]
+"""What somebody looks at, by the name of its arm and its place beside others."""
 
 
 class Ways:
@@ -56,19 +58,18 @@ class Ways:
 class Ghosts:
     """Draws what somebody looks at, each place in its colour, also where planned ways are hidden."""
 
-    def __init__(self, server: Canvas, *, under: str = "") -> None:
+    def __init__(self, server: Canvas) -> None:
         self._server = server
-        self._root = f"{under}{TAUGHT}"
         self._arms: dict[tuple[str, int], _ArmWay] = {}
 
-    def draw(self, newest: Newest, now_s: float) -> float | None:
+    def draw(self, shown: GhostsShown, newest: Newest, now_s: float) -> float | None:
         """Draw what has changed; returns when to call again where a ghost moves."""
         due: list[float] = []
-        for key, preview in newest.ghosts.items():
+        for key, preview in shown.items():
             if key not in self._arms:
                 name, place = key
                 colours = {"proposed": _PLACE_COLOURS[place % len(_PLACE_COLOURS)]}
-                self._arms[key] = _ArmWay(self._server, name, node=f"{self._root}/{name}.{place}", colours=colours)
+                self._arms[key] = _ArmWay(self._server, name, node=f"{TAUGHT}/{name}.{place}", colours=colours)
             self._arms[key].draw(preview, newest, now_s)
             if (next_s := self._arms[key].animate(now_s)) is not None:
                 due.append(next_s)

@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from engine.document.conversion import Strict
-from engine.document.placement import Color, Length, Offset
+from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
 from engine.messages import Vector3
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
@@ -15,12 +15,44 @@ Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images in a second")
 FieldOfView = Annotated[float, Meta(gt=0.05, lt=3.0, description="Angle between the upper and lower edge, radians")]
 
 
+DetectionRate = Annotated[float, Meta(gt=0.0, le=120.0, description="Detections in a second")]
+PixelCount = Annotated[int, Meta(ge=1, description="Number of pixels")]
+SeenShare = Annotated[float, Meta(ge=0.0, le=1.0, description="Share of a part that is seen, 0 to 1")]
+PartLabel = Annotated[str, Meta(min_length=1, max_length=80, description="What the detector calls a part")]
+
+
+class ObjectDetector(Strict, frozen=True, kw_only=True):
+    """Finds the parts of the cell in a camera's images; an ideal detector that stands in for a learned one.
+
+    It knows the parts and where they are, and reports those of which the camera sees enough: the score is the
+    share of a part's pixels that nothing hides. Parts of which fewer than `min_pixels`, or a smaller share than
+    `min_share`, are seen are not found. `labels` say what parts are called, else it is by their names. Boxes are in
+    the frame `frame` that stands at `frame_at`. `noise_m` and `noise_rad` are standard deviations of the pose along
+    and about each axis. It works at most `rate_hz` times a second, while somebody reads it or with `always`.
+    """
+
+    rate_hz: DetectionRate = 4.0
+    always: bool = False
+    labels: dict[Name, PartLabel] = {}
+    min_pixels: PixelCount = 25
+    min_share: SeenShare = 0.2
+    noise_m: Offset = 0.0
+    noise_rad: Angle = 0.0
+    frame: Name = "world"
+    frame_at: Placement = Placement()
+
+    def __post_init__(self) -> None:
+        if self.frame == "world" and self.frame_at != Placement():
+            raise ValueError("the frame `world` stands at its own origin; give the frame another name")
+
+
 class DepthCamera(Strict, frozen=True, kw_only=True):
     """A depth camera that stands in the cell, simulated by the world.
 
     `at` is where it stands and `look_at` the point in the middle of its image; up in the image is up in the
     world. Distances outside `range_m`, along the view, are not measured. `noise_m` is the standard deviation
-    at 1 m, it grows with the square of the distance. `driver` is `sim`.
+    at 1 m, it grows with the square of the distance. With `detect`, which may be `{}`, it finds parts.
+    `driver` is `sim`.
     """
 
     at: Vector3
@@ -30,6 +62,7 @@ class DepthCamera(Strict, frozen=True, kw_only=True):
     rate_hz: Rate = 10.0
     range_m: tuple[Length, Length] = (0.2, 5.0)
     noise_m: Offset = 0.0
+    detect: ObjectDetector | None = None
     driver: Annotated[str, Meta(pattern="^sim$", description="`sim`")] = "sim"
 
 

@@ -34,7 +34,10 @@ def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
         workspace = Workspace(
-            partial(_live_scene, scene, world), planners=Planners(bus.clock), clock=bus.clock, occupancy=cameras
+            partial(_live_scene, scene, world),
+            planners=Planners(bus.clock),
+            clock=bus.clock,
+            occupancy=cameras if cell.document.occupancy is not None else None,
         )
         arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
         return (*((cameras,) if cameras is not None else ()), workspace, *arms)

@@ -14,6 +14,7 @@ from engine.messages import Pose, Vector3
 from engine.sensing import CameraIntrinsics, DepthImage
 from robots.model.rigid import Rigid
 from robots.port import Array
+from robots.vision.detector_spec import DetectorSpec, detector_of
 
 Image = NDArray[np.float32]
 
@@ -33,6 +34,7 @@ class CameraSpec(msgspec.Struct, frozen=True, kw_only=True):
     rate_hz: float
     range_m: tuple[float, float]
     noise_m: float
+    detector: DetectorSpec | None = None
 
 
 def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
@@ -51,6 +53,7 @@ def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
         rate_hz=camera.rate_hz,
         range_m=camera.range_m,
         noise_m=camera.noise_m,
+        detector=detector_of(camera.detect) if camera.detect is not None else None,
     )
 
 

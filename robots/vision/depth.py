@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from ctypes.util import find_library
+from functools import partial
 from typing import Protocol
 
 from engine.errors import CellError
@@ -19,6 +20,9 @@ from robots.vision.physics_copy import PhysicsCopy
 from robots.vision.voxel_box import VoxelBox
 
 VARIABLE = "FLEXCELL_DEPTH"
+# How fine images by rays are where nothing is mapped: as for such voxels in the middle of the cell.
+_PITCH_M = 0.02
+_MIDDLE_M = (0.0, 0.0, 0.0)
 
 
 class DepthMaker(Protocol):
@@ -48,17 +52,25 @@ def check_choice() -> None:
         raise CellError(f"{VARIABLE} is {choice}", where="cameras", hint="set it to egl, osmesa or rays")
 
 
-def new_depth(cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, box: VoxelBox, repeatable: bool) -> DepthMaker:
+def new_depth(
+    cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, box: VoxelBox | None, repeatable: bool
+) -> DepthMaker:
     """Return who makes the images of `cameras`; `repeatable` asks for the same bits on every machine.
 
     Raises:
         CellError: `FLEXCELL_DEPTH` asks for what there is not.
     """
     check_choice()
-    middle = tuple(corner + box.voxel_m * count / 2.0 for corner, count in zip(box.corner_m, box.shape, strict=True))
+    rays = partial(
+        RayDepth,
+        cell,
+        cameras,
+        voxel_m=box.voxel_m if box is not None else _PITCH_M,
+        middle_m=box.middle_m if box is not None else _MIDDLE_M,
+    )
     match os.environ.get(VARIABLE, ""):
         case "rays":
-            return RayDepth(cell, cameras, voxel_m=box.voxel_m, middle_m=middle)
+            return rays()
         case "egl" | "osmesa" as kind:
             try:
                 return GlDepth(cell, cameras, kind=kind)
@@ -70,7 +82,7 @@ def new_depth(cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, box: VoxelB
                 ) from error
         case _:
             graphics = None if repeatable else _graphics(cell, cameras)
-            return graphics or RayDepth(cell, cameras, voxel_m=box.voxel_m, middle_m=middle)
+            return graphics or rays()
 
 
 def _graphics(cell: PhysicsCopy, cameras: tuple[CameraSpec, ...]) -> GlDepth | None:

@@ -7,13 +7,15 @@ import time
 import numpy as np
 
 from engine.errors import CellError
-from engine.sensing import DepthImage
+from engine.sensing import DepthImage, OccupancyGrid
+from engine.skills.vision import Detections
 from robots.planning.cell_scene import known_obstacles
 from robots.vision.camera import CameraSpec
 from robots.vision.depth import new_depth
 from robots.vision.depth_image import frame_number, measured_image
 from robots.vision.known import Known, Moment, Posture
 from robots.vision.mapper import Mapper
+from robots.vision.part_detector import PartDetector
 from robots.vision.physics_copy import PhysicsCopy
 from robots.vision.sight import Look, Seen, Sight
 
@@ -34,8 +36,9 @@ class Eye:
         self._cameras = {camera.name: camera for camera in sight.cameras}
         self._cell = PhysicsCopy(sight.scene)
         self._depth = new_depth(self._cell, sight.cameras, box=sight.box, repeatable=repeatable)
-        self._mapper = Mapper(sight.box, sight.scene.arms)
-        self._mapper.know(Known(obstacles=known_obstacles(sight.scene)))
+        self._detector = PartDetector(self._cell, sight.scene.parts, seed=sight.seed)
+        self._mapper = Mapper(sight.box, sight.scene.arms) if sight.box is not None else None
+        self.know(Known(obstacles=known_obstacles(sight.scene)))
 
     @property
     def words(self) -> str:
@@ -44,41 +47,55 @@ class Eye:
 
     def know(self, known: Known) -> None:
         """Leave out these obstacles and held parts from the next look on."""
-        self._mapper.know(known)
+        if self._mapper is not None:
+            self._mapper.know(known)
 
     def look(self, look: Look) -> Seen:
-        """Take the images and bring the map up to date.
+        """Take the images, bring the map up to date and find what is looked for.
 
         Raises:
             CellError: something known of the cell does not fit it; the map is as it was.
         """
-        unknown = [name for name in look.cameras if name not in self._cameras]
+        unknown = [name for name in (*look.cameras, *look.detecting) if name not in self._cameras]
         if unknown:
             raise CellError(f"there is no camera {unknown[0]}", where="cameras", hint=f"there are {[*self._cameras]}")
         started_s = time.perf_counter()
         self._cell.go_to(np.frombuffer(look.state))
         images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
         rendered_s = time.perf_counter()
-        if look.forget:
-            self._mapper.forget()
-        grid = self._mapper.update(images, self._cell.moment(look.time_s))
+        grid = self._mapped(look, images)
+        mapped_s = time.perf_counter()
         return Seen(
             grid=grid,
             images=tuple(image for image in images if image.camera in look.wanted),
+            detections=tuple(self._found(self._cameras[name], look.time_s) for name in look.detecting),
             render_s=rendered_s - started_s,
-            map_s=time.perf_counter() - rendered_s,
+            map_s=mapped_s - rendered_s,
         )
 
     def warm(self) -> None:
         """Have everything compiled and loaded that a first look would wait for; the map stays empty."""
         home = {arm.name: Posture(joints=arm.robot().home_rad) for arm in self._sight.scene.arms}
         images = [self._image(camera, 0.0) for camera in self._sight.cameras]
-        self._mapper.update(images, Moment(time_s=0.0, arms=home))
-        self._mapper.forget()
+        if self._mapper is not None:
+            self._mapper.update(images, Moment(time_s=0.0, arms=home))
+            self._mapper.forget()
 
     def close(self) -> None:
         """Let go of the graphics."""
         self._depth.close()
+
+    def _mapped(self, look: Look, images: tuple[DepthImage, ...]) -> OccupancyGrid | None:
+        if self._mapper is None or not images:
+            return None
+        if look.forget:
+            self._mapper.forget()
+        return self._mapper.update(images, self._cell.moment(look.time_s))
+
+    def _found(self, camera: CameraSpec, time_s: float) -> Detections:
+        if camera.detector is None:
+            raise CellError(f"{camera.name} detects nothing", where="cameras", hint="give it `detect: {}` in the cell")
+        return self._detector.detections(camera, camera.detector, time_s=time_s)
 
     def _image(self, camera: CameraSpec, time_s: float) -> DepthImage:
         return measured_image(

@@ -11,7 +11,6 @@ import msgspec
 from engine.errors import CellError
 from engine.robot import DeviceStatus
 from robots.sim.world import SimWorld
-from robots.vision.camera import CameraSpec
 from robots.vision.known import Known
 from robots.vision.sight import Look, Seen, Sight
 from robots.vision.watch import PROCESSING_S, CellWatch
@@ -55,6 +54,7 @@ class LockstepWatch(CellWatch):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.status = DeviceStatus.DISCONNECTED
+        self.desk.fail("the cell is closed")
         eye, self._eye = self._eye, None
         if eye is not None:
             eye.close()
@@ -68,21 +68,25 @@ class LockstepWatch(CellWatch):
             self.hand_in(seen, looked_at_s=taken * self.sight.scene.step_s)
             told = True
         if self._steps % self._tick == 0 and self.needed:
-            self._look_if_due()
+            told = self._look_if_due() or told
         return told
 
-    def _look_if_due(self) -> None:
+    def _look_if_due(self) -> bool:
+        """Look if it is time to; return whether somebody was told that it cannot be done."""
         due = tuple(camera for camera in self.sight.cameras if self._steps % self._every[camera.name] == 0)
         if due and self._coming is not None:
             self.dropped += 1
         elif due:
+            order = self.next_look(due, now_s=self._steps * self.sight.scene.step_s)
             try:
-                self._coming = (self._steps, self._look(due))
+                self._coming = (self._steps, self._look(order)) if order is not None else None
             except CellError as error:
-                # Nobody asked for this image who could be told; who needs the map hears that it is stale.
+                # Who waits for detections is told; who needs the map hears that it is stale.
                 self.fail(str(error))
+                return True
+        return False
 
-    def _look(self, cameras: tuple[CameraSpec, ...]) -> Seen:
+    def _look(self, order: Look) -> Seen:
         if self._eye is None:
             # It loads the compiled kernels and coal.
             from robots.vision.eye import Eye
@@ -92,4 +96,4 @@ class LockstepWatch(CellWatch):
         if self.known is not None and self.known is not self._told_known:
             self._eye.know(self.known)
             self._told_known = self.known
-        return msgspec.structs.replace(self._eye.look(self.next_look(cameras)), render_s=0.0, map_s=0.0)
+        return msgspec.structs.replace(self._eye.look(order), render_s=0.0, map_s=0.0)

@@ -10,7 +10,7 @@ from engine.errors import CellError, FlexcellError, RobotError
 from engine.robot import DeviceStatus
 from robots.sim.world import SimWorld
 from robots.vision.camera import CameraSpec
-from robots.vision.sight import Seen, Sight
+from robots.vision.sight import Look, Seen, Sight
 from robots.vision.watch import CellWatch
 from robots.vision.worker import CameraProcess
 
@@ -51,6 +51,7 @@ class RealTimeWatch(CellWatch):
             task.cancel()
             await asyncio.wait((task,))
         self._process.end()
+        self.desk.fail("the cell is closed")
         self.status = DeviceStatus.DISCONNECTED
 
     async def _watch(self) -> None:
@@ -80,10 +81,11 @@ class RealTimeWatch(CellWatch):
             if self.known is not None and self.known is not told:
                 told = self.known
                 self._process.know(told)
-            due, looked_at_s = self._due(loop.time()), loop.time()
-            if due:
+            looked_at_s = loop.time()
+            order = self.next_look(self._due(looked_at_s), now_s=looked_at_s)
+            if order is not None:
                 try:
-                    self.hand_in(await self._seen(due), looked_at_s=looked_at_s)
+                    self.hand_in(await self._seen(order), looked_at_s=looked_at_s)
                 except CellError as error:
                     # The process is well; what it was told of the cell cannot be mapped, and may be put right.
                     self.fail(str(error))
@@ -99,9 +101,9 @@ class RealTimeWatch(CellWatch):
                 found.append(camera)
         return tuple(found)
 
-    async def _seen(self, cameras: tuple[CameraSpec, ...]) -> Seen:
+    async def _seen(self, order: Look) -> Seen:
         """Return what is seen; meanwhile others hear how old the map gets."""
-        answer = self._process.ask(self.next_look(cameras))
+        answer = self._process.ask(order)
         waited_s = 0.0
         while not answer.done() and waited_s < _PATIENCE_S:
             await asyncio.wait((answer,), timeout=_LOOK_AFTER_S)

@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 
 from engine.sensing import DepthImage, OccupancyGrid
+from engine.skills.vision import Detections
 from robots.port import Array
 from robots.sim.scene import Scene
 from robots.vision.camera import CameraSpec
@@ -13,32 +14,41 @@ from robots.vision.voxel_box import VoxelBox
 
 
 class Sight(msgspec.Struct, frozen=True, kw_only=True):
-    """What is looked at and mapped: a simulated cell, its cameras, the box of voxels; `seed` is that of the noise."""
+    """What is looked at: a simulated cell, its cameras; `seed` is that of the noise.
+
+    `box` is what is mapped, None where nothing is.
+    """
 
     scene: Scene
     cameras: tuple[CameraSpec, ...]
-    box: VoxelBox
+    box: VoxelBox | None
     seed: int = 0
 
 
 class Look(msgspec.Struct, frozen=True, kw_only=True):
     """An order to take images with `cameras` of the world at `time_s`; `wanted` are those to be handed out too.
 
-    `state` are the float64 of `Host.image`. With `forget` the map begins anew with these images.
+    With those of `detecting` objects are looked for. `state` are the float64 of `Host.image`. With `forget` the map
+    begins anew with these images.
     """
 
     time_s: float
     state: bytes
     cameras: tuple[str, ...]
     wanted: tuple[str, ...] = ()
+    detecting: tuple[str, ...] = ()
     forget: bool = False
 
 
 class Seen(msgspec.Struct, frozen=True, kw_only=True):
-    """The map after a look, the images that were wanted, and how long making the images and mapping them took."""
+    """The map after a look, the images that were wanted, and how long making the images and mapping them took.
 
-    grid: OccupancyGrid
+    `grid` is None where nothing is mapped, or no images were taken.
+    """
+
+    grid: OccupancyGrid | None
     images: tuple[DepthImage, ...]
+    detections: tuple[Detections, ...] = ()
     render_s: float
     map_s: float
 

@@ -32,6 +32,12 @@ class VoxelBox(msgspec.Struct, frozen=True, kw_only=True):
         """From the centre of a voxel to its corners."""
         return self.voxel_m * math.sqrt(3.0) / 2.0
 
+    @property
+    def middle_m(self) -> Vector3:
+        """The middle of the box."""
+        x, y, z = (a + self.voxel_m * count / 2.0 for a, count in zip(self.corner_m, self.shape, strict=True))
+        return (x, y, z)
+
     def centres(self, low: tuple[int, int, int], high: tuple[int, int, int]) -> Array:
         """Return the centres of the voxels from `low` to before `high`, (k, 3), z fastest."""
         axes: list[Array] = [

@@ -1,4 +1,4 @@
-"""The cameras of a simulated cell as a device: takes images while somebody needs them, and publishes the map."""
+"""The cameras of a simulated cell as a device: takes images while somebody needs them, and tells what is in them."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from robots.gripper.grip_judgement import Grip
 from robots.planning.scene import PlanningScene
 from robots.sim.world import SimWorld
 from robots.vision.camera import CameraSpec
+from robots.vision.detection_desk import DetectionDesk
 from robots.vision.known import Known
 from robots.vision.live_map import LiveMap
 from robots.vision.sight import Look, Seen, Sight, state_bytes
@@ -42,6 +43,7 @@ class CellWatch:
         self._world = world
         slowest_s = max(1.0 / camera.rate_hz for camera in sight.cameras)
         self.map = LiveMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
+        self.desk = DetectionDesk(sight.cameras)
         self.known: Known | None = None
         self.status = DeviceStatus.DISCONNECTED
         self.dropped = 0
@@ -92,21 +94,30 @@ class CellWatch:
 
     @property
     def needed(self) -> bool:
-        """Whether anybody needs the map or an image now."""
-        read = self._grids is not None and self._grids.subscriber_count > 0
-        return self.map.required > 0 or read or bool(self._wanted())
+        """Whether anybody needs the map, an image or what is found in one now."""
+        return self._needs_images or self.desk.needed
 
-    def next_look(self, cameras: tuple[CameraSpec, ...]) -> Look:
-        """Return the order to look with these cameras at the world as it is now."""
+    def next_look(self, due: tuple[CameraSpec, ...], *, now_s: float) -> Look | None:
+        """Return the order to look at the world as it is now with those of the cameras `due` that are needed.
+
+        None where none is.
+        """
+        detecting = self.desk.due(due, now_s=now_s)
+        wanted = self._wanted()
+        is_mapped = self.sight.box is not None and self._needs_images
+        names = tuple(camera.name for camera in due if is_mapped or camera.name in wanted)
+        if not names and not detecting:
+            return None
         image = self._world.host.image()
-        names = tuple(camera.name for camera in cameras)
-        forget, self._forget = self._forget, False
+        forget = self._forget and bool(names)
+        self._forget = self._forget and not forget
         return Look(
             # An image begins with the number of steps done.
             time_s=round(float(image[0])) * self._world.host.summary.step_s,
             state=state_bytes(image),
             cameras=names,
-            wanted=tuple(name for name in self._wanted() if name in names),
+            wanted=tuple(name for name in wanted if name in names),
+            detecting=detecting,
             forget=forget,
         )
 
@@ -116,15 +127,16 @@ class CellWatch:
 
     def hand_in(self, seen: Seen, *, looked_at_s: float) -> None:
         """Publish what was seen."""
-        self._looks += 1
-        self._last = seen
-        grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
-        changed = self.map.arrived(grid, looked_at_s=looked_at_s)
         self.status = DeviceStatus.READY
-        if changed and self._grids is not None:
-            self._grids.publish(grid)
+        if seen.grid is not None:
+            self._looks += 1
+            self._last = seen
+            grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
+            if self.map.arrived(grid, looked_at_s=looked_at_s) and self._grids is not None:
+                self._grids.publish(grid)
         for image in seen.images:
             self._depths[image.camera].publish(image)
+        self.desk.hand_in(seen.detections)
 
     def fail(self, reason: str) -> None:
         """Say why no images come."""
@@ -132,6 +144,7 @@ class CellWatch:
             _log.error("the cameras see nothing: %s", reason)
         self.status = DeviceStatus.FAULT
         self.map.lost(reason)
+        self.desk.fail(reason)
 
     def say_how(self, words: str) -> None:
         """Say how depth images are made."""
@@ -151,11 +164,13 @@ class CellWatch:
         self.map.outdated()
 
     def register(self, bus: SkillBus) -> None:
-        """Publish what cameras there are; map and images come while somebody reads them."""
-        self._grids = bus.topic("cell/occupancy", OccupancyGrid)
-        self._states = bus.topic("cell/occupancy_state", OccupancyState)
-        self._states.provide(self._state)
-        self.map.subscribe(lambda: self._publish_state())
+        """Publish what cameras there are; map, images and detections come while somebody reads them."""
+        if self.sight.box is not None:
+            self._grids = bus.topic("cell/occupancy", OccupancyGrid)
+            self._states = bus.topic("cell/occupancy_state", OccupancyState)
+            self._states.provide(self._state)
+            self.map.subscribe(lambda: self._publish_state())
+        self.desk.register(bus)
         for camera in self.sight.cameras:
             self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
             bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(
@@ -170,6 +185,11 @@ class CellWatch:
 
     async def stop(self) -> None:
         """Nothing here moves."""
+
+    @property
+    def _needs_images(self) -> bool:
+        read = self._grids is not None and self._grids.subscriber_count > 0
+        return self.map.required > 0 or read or bool(self._wanted())
 
     def _wanted(self) -> tuple[str, ...]:
         return tuple(name for name, topic in self._depths.items() if topic.subscriber_count > 0)

@@ -68,6 +68,7 @@ def test_the_catalogue_has_the_standard_states() -> None:
         "scene.RemoveObstacle",
         "store.ReadEntry",
         "store.WriteEntry",
+        "vision.Detect",
     ]
 
 

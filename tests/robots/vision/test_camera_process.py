@@ -13,17 +13,19 @@ import msgspec
 import pytest
 
 from engine.cell import OpenCell
+from engine.document.cell_senses import ObjectDetector
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.sensing import OccupancyGrid
 from robots.sim.framing import framed
-from robots.sim.scene import ArmPlacement
+from robots.sim.scene import ArmPlacement, PartBody
 from robots.sim.world import SimWorld
 from robots.vision.known import Known
 from robots.vision.real_time_watch import RealTimeWatch
+from robots.vision.sight import Seen, Sight
 from robots.vision.worker import CameraProcess, Wire
 from tests.robots.vision.cell_document import watched
-from tests.robots.vision.watched_cell import block, look, scene, sight, voxels
+from tests.robots.vision.watched_cell import FRONT, block, cameras, look, scene, sight, voxels
 
 WHAT = scene(block((0.5, 0.0, 0.3)))
 
@@ -37,6 +39,26 @@ def by_rays(monkeypatch: pytest.MonkeyPatch) -> None:
 def alive(pid: int) -> bool:
     """Return whether a process is there."""
     return Path(f"/proc/{pid}").exists()
+
+
+def test_the_process_finds_the_parts_that_it_is_asked_to_look_for() -> None:
+    part = PartBody(name="cup", shape="box", size_m=(0.1, 0.1, 0.1), mass_kg=0.1, pose=Pose(xyz=(0.4, 0.1, 0.3)))
+    what = scene(parts=(part,))
+    seen_by = cameras(front=msgspec.structs.replace(FRONT, detect=ObjectDetector()))
+
+    async def main() -> Seen:
+        process = CameraProcess()
+        await process.start(Sight(scene=what, cameras=seen_by, box=None))
+        try:
+            return await process.ask(msgspec.structs.replace(look(what, ()), detecting=("front",)))
+        finally:
+            process.end()
+
+    seen = asyncio.run(main())
+    assert (seen.grid, seen.images) == (None, ())
+    (found,) = seen.detections[0].detections
+    assert (found.label, found.score) == ("cup", 1.0)
+    assert found.pose.xyz == pytest.approx((0.4, 0.1, 0.3), abs=1e-3)
 
 
 def test_what_the_process_sees_is_what_is_there() -> None:
@@ -105,7 +127,8 @@ def test_an_order_that_makes_no_sense_is_refused_and_the_next_one_is_carried_out
             ):
                 with pytest.raises(CellError):
                     await process.ask(bad)
-            return (await process.ask(good)).grid.revision
+            grid = (await process.ask(good)).grid
+            return grid.revision if grid is not None else 0
         finally:
             process.end()
 

@@ -155,7 +155,7 @@ def test_one_camera_fills_what_the_other_does_not_see_and_neither_clears_what_th
         eye = Eye(sight(what, *seen_by), repeatable=True)
         eye.know(told)
         grids = [eye.look(look(what, names)).grid for _ in range(4)]
-        assert len({grid.occupied for grid in grids[2:]}) == 1
+        assert len({grid.occupied for grid in grids[2:] if grid is not None}) == 1
         side = voxels(grids[-1])
         low = side[side[:, 2] < 0.35]
         faces[names] = (bool((low[:, 0] > 0.46).any()), bool((low[:, 0] < 0.34).any()))

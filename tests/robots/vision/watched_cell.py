@@ -54,8 +54,9 @@ def look(what: Scene, names: tuple[str, ...] = ("front",), *, joints: Array | No
     return Look(time_s=0.0, state=state_bytes(image), cameras=names, wanted=names)
 
 
-def voxels(grid: OccupancyGrid) -> Array:
-    """Return the centres of the occupied voxels."""
+def voxels(grid: OccupancyGrid | None) -> Array:
+    """Return the centres of the occupied voxels of a map, which must be there."""
+    assert grid is not None
     return occupied_centres(grid)
 
 

@@ -4,8 +4,8 @@ import type { Show } from './types'
 
 export type Group = Show['groups'][number]
 
-export const GROUPS: readonly Group[] = ['voxels', 'ways', 'obstacles', 'people', 'cameras', 'frames']
-const AT_FIRST: readonly Group[] = ['voxels', 'ways', 'obstacles', 'people']
+export const GROUPS: readonly Group[] = ['voxels', 'ways', 'obstacles', 'people', 'cameras', 'detections', 'frames']
+const AT_FIRST: readonly Group[] = ['voxels', 'ways', 'obstacles', 'people', 'detections']
 const KEPT = 'flexcell.shown'
 
 /** What this page calls itself in the path of its 3D view; another page shows what it wants. */

@@ -1064,7 +1064,7 @@ export interface SetTransition {
 export interface Show {
   readonly k: "show"
   readonly page: string
-  readonly groups: readonly ("cameras" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
+  readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
 }
 
 /** Everything of the watched run (empty when none is), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is there while the run is under way. */

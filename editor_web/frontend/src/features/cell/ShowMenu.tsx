@@ -10,6 +10,7 @@ const WORDS: Record<Group, readonly [label: string, description: string]> = {
   obstacles: ['Planning scene', 'Obstacles that were put there, and what arms hold'],
   people: ['People', 'Their arms in a simulated cell'],
   cameras: ['Cameras', 'Where they stand and how far away is what they see'],
+  detections: ['Detections', 'Boxes around what the cameras find, with label and score'],
   frames: ['Frames', 'Axes of the world, the tools and the parts'],
 }
 

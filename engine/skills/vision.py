@@ -1,0 +1,86 @@
+"""What a detector finds in the images of a camera, and how it is asked: answered under the camera's name.
+
+Without being asked it publishes on `<camera>/detections` while somebody reads that topic, or while the parameter
+`<camera>/detect_always` is true; the parameter `<camera>/detection_rate_hz` says how often.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Annotated, cast
+
+import msgspec
+
+from engine.messages import Message, Pose, Vector3
+from engine.pose_algebra import composed, rotated
+from engine.skill import Service
+
+Score = Annotated[float, msgspec.Meta(ge=0.0, le=1.0, description="How sure the detector is, 0 to 1")]
+Vertices = tuple[Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3]
+Rectangle = tuple[float, float, float, float]
+
+
+class Detection(Message, frozen=True, kw_only=True):
+    """One thing that was found: what it is and the oriented box that it fills.
+
+    `pose` is that of the box's centre in the frame that it names, `size_m` its full edge lengths along its own
+    axes. `rectangle_px` are left, top, right and bottom of what is seen of it in the camera's image, in pixels
+    whose centres are at whole numbers; None where the detector does not tell.
+    """
+
+    label: Annotated[str, msgspec.Meta(min_length=1, max_length=80)]
+    score: Score
+    pose: Pose
+    size_m: Vector3
+    rectangle_px: Rectangle | None = None
+
+    def __post_init__(self) -> None:
+        if not min(self.size_m) > 0.0:
+            raise ValueError(f"a box with the edges {self.size_m} m has no room")
+
+    @property
+    def vertices_m(self) -> Vertices:
+        """The corners of the box in the frame of `pose`, x slowest and z fastest, the lower ones first."""
+        corners: list[Vector3] = []
+        for signs in product((-0.5, 0.5), repeat=3):
+            x, y, z = (sign * edge for sign, edge in zip(signs, self.size_m, strict=True))
+            a, b, c = rotated(self.pose.xyzw, (x, y, z))
+            corners.append((self.pose.xyz[0] + a, self.pose.xyz[1] + b, self.pose.xyz[2] + c))
+        return cast("Vertices", tuple(corners))
+
+
+class Detections(Message, frozen=True, kw_only=True):
+    """Everything that was found in one image, published on `<camera>/detections`; best scores first.
+
+    `time_s` is that of the image, `image_px` its width and height. All boxes are in `frame`, which was at
+    `frame_pose` in the world. After `fresh_s` they tell of the past: later ones should have come.
+    """
+
+    camera: str
+    frame: str
+    time_s: float
+    detections: tuple[Detection, ...]
+    image_px: tuple[int, int]
+    frame_pose: Pose = Pose(xyz=(0.0, 0.0, 0.0))
+    fresh_s: float = 1.0
+
+    def in_world(self, detection: Detection) -> Pose:
+        """Return where the box of one of the detections was in the world."""
+        return composed(self.frame_pose, detection.pose)
+
+    def only(self, *, labels: tuple[str, ...] = (), minimal_score: float = 0.0) -> Detections:
+        """Return those with one of the labels, any where there are none, whose score is high enough."""
+        kept = tuple(
+            each for each in self.detections if each.score >= minimal_score and (not labels or each.label in labels)
+        )
+        return msgspec.structs.replace(self, detections=kept)
+
+
+class DetectObjects(Service[Detections], frozen=True, kw_only=True):
+    """Return what is found in the camera's next image: `labels` only, anything where empty, from a score on.
+
+    Refused while the camera gives no images.
+    """
+
+    labels: tuple[str, ...] = ()
+    minimal_score: Score = 0.0

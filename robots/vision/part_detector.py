@@ -1,0 +1,166 @@
+"""An ideal detector for simulated cameras: it finds the parts of which a camera sees enough.
+
+It stands in for a learned one and knows what no such detector knows: the parts' shapes and where they are. What it
+takes from the image is how much of each part is seen, by rays at the camera's own resolution: something in front,
+the edge of the image and the camera's range hide a part, bad light, blur and likeness do not; nothing is
+taken for something else, and nothing is found where there is none.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.messages import Pose
+from engine.sensing import CameraIntrinsics
+from engine.skills.vision import Detection, Detections, Rectangle
+from robots.model.rigid import Rigid, product, quaternion_of
+from robots.port import Array
+from robots.sim.physics import mujoco
+from robots.sim.scene import PartBody
+from robots.vision.camera import CameraSpec, pixels
+from robots.vision.depth_image import frame_number
+from robots.vision.depth_rays import SEEN_GROUPS
+from robots.vision.detector_spec import DetectorSpec
+from robots.vision.outline import edges_m, met
+from robots.vision.physics_copy import PhysicsCopy
+
+# Of a part that fills the image it is enough to look at every second or third pixel.
+_MOST_RAYS = 4096
+
+
+class PartDetector:
+    """Finds the parts of a copy of the cell, in the state that it is in.
+
+    Args:
+        cell: What is looked at.
+        parts: Those of its scene.
+        seed: Of the noise.
+    """
+
+    def __init__(self, cell: PhysicsCopy, parts: tuple[PartBody, ...], *, seed: int) -> None:
+        self._cell = cell
+        self._parts = parts
+        self._seed = seed
+        self._groups = np.array([group < SEEN_GROUPS for group in range(6)], dtype=np.uint8)
+        self._geoms = {part.name: int(cell.model.geom(part.name).id) for part in parts}
+
+    def detections(self, camera: CameraSpec, detector: DetectorSpec, *, time_s: float) -> Detections:
+        """Return what the detector of a camera finds now, the best seen first."""
+        poses = self._cell.moment(time_s).parts
+        found: list[Detection] = []
+        for part in self._parts:
+            seen = self._seen(camera, part, Rigid.from_pose(poses[part.name]))
+            if seen is None or seen.pixels < detector.min_pixels or seen.share < detector.min_share:
+                continue
+            found.append(
+                Detection(
+                    label=detector.labels.get(part.name, part.name),
+                    score=seen.share,
+                    pose=self._measured(camera, detector, part.name, poses[part.name], time_s),
+                    size_m=edges_m(part.shape, part.size_m),
+                    rectangle_px=seen.rectangle,
+                )
+            )
+        lens = camera.intrinsics
+        return Detections(
+            camera=camera.name,
+            frame=detector.frame,
+            frame_pose=detector.frame_pose,
+            time_s=time_s,
+            detections=tuple(sorted(found, key=lambda each: (-each.score, each.label))),
+            image_px=(lens.width_px, lens.height_px),
+        )
+
+    def _seen(self, camera: CameraSpec, part: PartBody, pose: Rigid) -> _Seen | None:
+        """Return how much the camera sees of a part, None where that is nothing."""
+        eye = Rigid.from_pose(camera.pose)
+        rays = _rays_around(camera.intrinsics, eye.inverse().then(pose), edges_m(part.shape, part.size_m))
+        if rays is None:
+            return None
+        ahead, step = rays
+        world = _directions(camera.intrinsics, ahead) @ eye.rotation.T
+        inside = met(part.shape, part.size_m, pose.rotation.T @ (eye.xyz - pose.xyz), world @ pose.rotation)
+        alone, world = ahead[inside], world[inside]
+        if not len(alone):
+            return None
+        lens, (near, far) = camera.intrinsics, camera.range_m
+        # What the edge of the image cuts off is hidden as well: it would be there in a larger image.
+        framed = ((alone >= -0.5) & (alone < (lens.width_px - 0.5, lens.height_px - 0.5))).all(axis=1)
+        depth = self._depths(self._geoms[part.name], eye.xyz, world, far)
+        seen = alone[framed & (depth >= near) & (depth <= far)]
+        if not len(seen):
+            return None
+        (left, top), (right, bottom) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
+        return _Seen(len(seen) * step * step, len(seen) / len(alone), (left, top, right, bottom))
+
+    def _depths(self, geom: int, start: Array, along: Array, far: float) -> Array:
+        """Return how deep the part is where a ray, one metre deep each, meets it first; else infinity."""
+        lengths = np.linalg.norm(along, axis=1)
+        hit, distance = np.empty(len(along), dtype=np.int32), np.empty(len(along))
+        mujoco.mj_multiRay(
+            self._cell.model,
+            self._cell.data,
+            start.copy(),
+            np.ascontiguousarray(along / lengths[:, None]).ravel(),
+            self._groups,
+            True,
+            -1,
+            hit,
+            distance,
+            None,
+            len(along),
+            far * float(lengths.max()),
+        )
+        return np.where(hit == geom, distance / lengths, np.inf)
+
+    def _measured(self, camera: CameraSpec, detector: DetectorSpec, part: str, pose: Pose, time_s: float) -> Pose:
+        """Return the pose of a part in the detector's frame, off by its noise."""
+        true = Rigid.from_pose(pose)
+        if detector.noise_m > 0.0 or detector.noise_rad > 0.0:
+            names = (zlib.crc32(name.encode()) for name in (camera.name, part))
+            stream = np.random.default_rng([self._seed, *names, frame_number(camera, time_s)])
+            off, turn = stream.standard_normal((2, 3))
+            true = Rigid(
+                xyz=true.xyz + off * detector.noise_m,
+                xyzw=product(true.xyzw, quaternion_of(turn * detector.noise_rad)),
+            )
+        return Rigid.from_pose(detector.frame_pose).inverse().then(true).to_pose(detector.frame)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    pixels: int
+    share: float
+    rectangle: Rectangle
+
+
+def _directions(lens: CameraIntrinsics, at_px: Array) -> Array:
+    """Return the points at depth 1 m that the pixels (k, 2) look at, (k, 3), optical frame."""
+    x, y = (at_px[:, 0] - lens.cx_px) / lens.fx_px, (at_px[:, 1] - lens.cy_px) / lens.fy_px
+    return np.column_stack((x, y, np.ones(len(at_px))))
+
+
+def _rays_around(lens: CameraIntrinsics, pose: Rigid, edges: tuple[float, float, float]) -> tuple[Array, int] | None:
+    """Return the pixels (k, 2) around a box of which one stands for `step` by `step`, and `step`.
+
+    They go beyond the image where the box does. None where the box, at `pose` in the optical frame, is not
+    wholly in front of the camera, or beside the image.
+    """
+    signs = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    corners = (signs * np.array(edges)) @ pose.rotation.T + pose.xyz
+    if corners[:, 2].min() <= 0.0:
+        return None
+    places = pixels(lens, corners)
+    low, high = np.floor(places.min(axis=0)), np.ceil(places.max(axis=0))
+    if (high < 0.0).any() or (low > (lens.width_px - 1, lens.height_px - 1)).any():
+        return None
+    width, height = (high - low + 1.0).tolist()
+    step = max(1, math.ceil(math.sqrt(width * height / _MOST_RAYS)))
+    columns: Array = np.arange(float(low[0]), float(high[0]) + 1.0, step)
+    rows: Array = np.arange(float(low[1]), float(high[1]) + 1.0, step)
+    across, down = np.meshgrid(columns, rows)
+    return np.column_stack((across.ravel(), down.ravel())), step

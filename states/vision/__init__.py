@@ -1,0 +1,1 @@
+"""States that ask what the cameras of a cell see."""
