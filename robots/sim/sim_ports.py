@@ -21,6 +21,7 @@ from robots.sim.sim_stream import SimStream
 from robots.sim.snapshot import ArmSummary
 
 _TWIST = 6
+_NOT_YET_TOLD = "it felt more from outside than it was told to bear"
 
 
 class SimArmPort:
@@ -50,8 +51,11 @@ class SimArmPort:
 
     @property
     def reflex_reason(self) -> str:
-        """Why the arm has stopped by itself; empty where it has not."""
-        return self._board.reflexes.get(self._arm.name, "") if self.sample().reflex else ""
+        """Why the arm has stopped by itself; empty where it has not.
+
+        That it has is seen in its state, the reason is told a moment later: until then it is said in general.
+        """
+        return self._board.reflexes.get(self._arm.name, _NOT_YET_TOLD) if self.sample().reflex else ""
 
     def when_reflex(self, tell: Callable[[str], None]) -> None:
         """Call `tell` with the reason whenever the arm stops by itself."""
@@ -122,6 +126,8 @@ class SimArmPort:
     def recover(self) -> None:
         """End a reflex; the arm holds itself where it stands."""
         self._host.send(Recover(arm=self._arm.name))
+        # Should it stop once more, the old reason is not the new one.
+        self._board.reflexes.pop(self._arm.name, None)
 
     def begin(self) -> None:
         """Know that the world is a new one, with settings as they are at first."""
@@ -130,9 +136,9 @@ class SimArmPort:
     def _next_number(self) -> int:
         number = self._one.number()
         if self.sample().reflex:
-            why = self.reflex_reason
+            why = self._board.reflexes.get(self._arm.name, _NOT_YET_TOLD)
             raise RobotError(
-                "the arm has stopped by itself" + (f": {why}" if why else ""),
+                f"the arm has stopped by itself: {why}",
                 where=self._arm.name,
                 hint="see that its way is free, then recover it",
             )

@@ -5,8 +5,10 @@ from __future__ import annotations
 import asyncio
 import inspect
 import logging
+import re
 import threading
 import time
+from collections.abc import Sequence
 from typing import ClassVar
 
 import pytest
@@ -34,7 +36,8 @@ root:
       wait: {state: test.Give, with: {after_s: 0.1}, transitions: {a: block, b: good, c: good}}
       block: {state: test.Sleep, with: {how: HOW}, transitions: {done: good}}
 """
-BLOCKED_S = 0.6
+# Long enough that it is noticed by a thread that gets its turn late.
+BLOCKED_S = 1.5
 
 
 class Sleep(State, frozen=True, kw_only=True):
@@ -74,27 +77,41 @@ async def _watched(how: str, *, watched: bool = True) -> tuple[list[Event], list
     return events, list(watchdog.blocks)
 
 
+def _blocked(events: Sequence[Event]) -> list[LoopBlocked]:
+    """Return when the state blocked; a busy machine may keep the loop waiting anywhere else too."""
+    return [event for event in events if isinstance(event, LoopBlocked) and event.path == "root/block"]
+
+
+def _where(blocks: Sequence[Block]) -> list[str]:
+    return [block.where for block in blocks if block.path == "root/block"]
+
+
+def _told(caplog: pytest.LogCaptureFixture) -> list[str]:
+    messages = [record.getMessage() for record in caplog.records if record.name == "flexcell.watchdog"]
+    return [message for message in messages if message.startswith("root/block has kept the event loop")]
+
+
 @pytest.mark.parametrize(
     ("how", "text"), [("itself", "time.sleep(BLOCKED_S)"), ("library", "threading.Event().wait(BLOCKED_S)")]
 )
 def test_a_state_that_blocks_is_named_with_its_line(how: str, text: str, caplog: pytest.LogCaptureFixture) -> None:
     """Logged while it blocks, recorded in its run as soon as the loop is back, before the run ends."""
     events, blocks = asyncio.run(_watched(how))
-    (blocked,) = (event for event in events if isinstance(event, LoopBlocked))
-    assert (blocked.path, blocked.where.endswith(_line_of(text))) == ("root/block", True)
+    (blocked,) = _blocked(events)
+    assert blocked.where.endswith(_line_of(text))
     assert ("threading.py" in blocked.where) == (how == "library")
-    assert 0.5 < blocked.blocked_s < 5.0
-    assert [(block.path, block.where) for block in blocks] == [(blocked.path, blocked.where)]
+    assert 0.5 < blocked.blocked_s < 60.0
+    assert _where(blocks) == [blocked.where]
     assert isinstance(events[-1], RunEnded)
-    messages = [record.getMessage() for record in caplog.records if record.name == "flexcell.watchdog"]
-    assert "root/block has kept the event loop from running for 0." in messages[0]
+    messages = _told(caplog)
+    assert re.search(r"from running for \d+\.\d\d s, at ", messages[0])
     assert messages[0].endswith(blocked.where)
 
 
 def test_a_state_that_waits_as_it_should_is_left_alone(caplog: pytest.LogCaptureFixture) -> None:
     """The loop sleeps for longer than the threshold, which is no block."""
     events, blocks = asyncio.run(_watched("clock"))
-    assert ([e for e in events if isinstance(e, LoopBlocked)], blocks, caplog.records) == ([], [], [])
+    assert (_blocked(events), _where(blocks), _told(caplog)) == ([], [], [])
 
 
 def test_in_virtual_time_a_block_is_logged_and_not_recorded(caplog: pytest.LogCaptureFixture) -> None:
@@ -102,8 +119,8 @@ def test_in_virtual_time_a_block_is_logged_and_not_recorded(caplog: pytest.LogCa
     caplog.set_level(logging.INFO, "flexcell.watchdog")
     events, blocks = run_virtual(_watched("itself"))
     unwatched, _ = run_virtual(_watched("itself", watched=False))
-    assert [(block.path, block.where) for block in blocks] == [("root/block", _line_of("time.sleep(BLOCKED_S)"))]
-    assert "root/block has kept the event loop" in caplog.text
+    assert _where(blocks) == [_line_of("time.sleep(BLOCKED_S)")]
+    assert _told(caplog)
     assert encode_event_log(events) == encode_event_log(unwatched)
 
 
@@ -116,6 +133,5 @@ def test_what_blocks_outside_the_states_is_logged(caplog: pytest.LogCaptureFixtu
             await asyncio.sleep(0)
         return list(watchdog.blocks)
 
-    (block,) = asyncio.run(main())
-    assert (block.path, block.where.startswith(__file__)) == ("", True)
+    assert [block.path for block in asyncio.run(main()) if block.where.startswith(__file__)] == [""]
     assert "something outside the states has kept the event loop" in caplog.text

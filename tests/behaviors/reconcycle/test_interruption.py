@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import signal
-import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from engine.errors import JournalError
 from engine.event import AnyEvent, Exited, GoalFinished, GoalSent, RunEnded
-from engine.journal import list_runs, read_events
-from tests.engine.cli.command import FLEXCELL
+from engine.journal import list_runs
+from tests.engine.cli.process import events_in, started, until
 
 BEHAVIOR = Path(__file__).resolve().parents[3] / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 
@@ -22,13 +21,13 @@ def test_both_arms_come_to_rest_in_mid_motion(tmp_path: Path, number: signal.Sig
 
     A goal ends as canceled only when the arm is measured at rest.
     """
-    command = [FLEXCELL, "run", BEHAVIOR, "--clock", "real", "-q"]
-    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
-        while len(_moving(_events(tmp_path))) < 2:
-            assert process.poll() is None, process.stderr
+    # So slow that both are still under way when the signal comes, however late that is.
+    slowly = ("-p", "speed=0.05", "-p", "line_speed_m_s=0.02")
+    with started("run", BEHAVIOR, "--clock", "real", "-q", *slowly, cwd=tmp_path) as process:
+        until(process, tmp_path, lambda events: len(_moving(events)) == 2)
         process.send_signal(number)
         _, errors = process.communicate(timeout=60)
-    events = _events(tmp_path)
+    events = events_in(tmp_path)
     ends = {event.goal: event.status for event in events if isinstance(event, GoalFinished)}
     cancelled = [goal for goal, status in ends.items() if status == "canceled"]
     preempted = [event.path for event in events if isinstance(event, Exited) and event.preempted]
@@ -40,15 +39,7 @@ def test_both_arms_come_to_rest_in_mid_motion(tmp_path: Path, number: signal.Sig
     assert list_runs(tmp_path / ".flexcell")[0].status == "stopped"
 
 
-def _events(folder: Path) -> tuple[AnyEvent, ...]:
-    try:
-        (run,) = list_runs(folder / ".flexcell")
-        return read_events(folder / ".flexcell", run.id)
-    except (JournalError, ValueError):
-        return ()  # not begun yet
-
-
-def _moving(events: tuple[AnyEvent, ...]) -> set[str]:
+def _moving(events: Sequence[AnyEvent]) -> set[str]:
     """Goals of arms that are under way, by the journal."""
     sent = {event.goal for event in events if isinstance(event, GoalSent) and "gripper" not in event.address}
     return sent - {event.goal for event in events if isinstance(event, GoalFinished)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 from pathlib import Path
 
 import pytest
@@ -35,10 +36,8 @@ root:
 """
 
 
-@pytest.fixture(scope="module")
-def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A project with three runs, each recorded; the last one was stopped."""
-    folder = tmp_path_factory.mktemp("project")
+def made(folder: Path) -> Path:
+    """Make a project with three runs, each recorded; the last one was stopped."""
     (folder / "behaviors").mkdir()
     texts = {
         "well": GOES_WELL,
@@ -51,6 +50,18 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
     run_virtual(_runs(folder))
     return folder
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Such a project, which nobody changes."""
+    return made(tmp_path_factory.mktemp("project"))
+
+
+@pytest.fixture
+def project(recorded: Path, tmp_path: Path) -> Path:
+    """A copy of it that the test may change."""
+    return Path(shutil.copytree(recorded, tmp_path / "project"))
 
 
 async def _runs(folder: Path) -> None:
@@ -90,16 +101,14 @@ def test_runs_are_listed_with_how_they_ended(archive: Archive) -> None:
     }
 
 
-def test_a_run_is_opened_with_the_behavior_as_it_was(archive: Archive, project: Path) -> None:
+def test_a_run_is_opened_with_the_behavior_as_it_was(tmp_path: Path) -> None:
     """Though its file says something else by now."""
+    project = made(tmp_path)
+    archive = Archive(project, CATALOGUE, project / ".flexcell")
     run = run_of(archive, "goes well")
     file = project / "behaviors/well.yaml"
-    before = file.read_text()
     file.write_text(GOES_WRONG)
-    try:
-        opened = archive.run(run.id)
-    finally:
-        file.write_text(before)
+    opened = archive.run(run.id)
     assert opened.behavior.id == "behaviors/well.yaml"
     assert opened.behavior.name == "goes well"
     assert opened.behavior.graph is not None
@@ -121,10 +130,10 @@ def test_a_recording_tells_the_same_as_the_journal(archive: Archive) -> None:
 
 def test_recordings_are_found_and_garbage_is_named(archive: Archive, project: Path) -> None:
     """What cannot be opened says why; what is no recording by its name is left out."""
-    (project / "sub").mkdir(exist_ok=True)
+    (project / "sub").mkdir()
     (project / "sub" / "garbage.mcap").write_bytes(b"\x00" * 300)
     (project / "sub" / "notes.txt").write_text("no recording")
-    (project / "node_modules").mkdir(exist_ok=True)
+    (project / "node_modules").mkdir()
     (project / "node_modules" / "not_ours.mcap").write_bytes(b"")
     files = {file.path: file for file in archive.recordings()}
     good = [file for file in files.values() if not file.problem]
@@ -154,9 +163,7 @@ def test_nothing_outside_of_the_project_is_opened(archive: Archive, project: Pat
     source = next((project / ".flexcell/recordings").glob("*.mcap"))
     outside.write_bytes(source.read_bytes())
     assert load_recording(outside).complete
-    link = project / "link.mcap"
-    if not link.is_symlink():
-        link.symlink_to(outside)
+    (project / "link.mcap").symlink_to(outside)
     assert "link.mcap" not in {file.path for file in archive.recordings()}
     with pytest.raises(RecordingError, match="no such recording"):
         archive.recording(name)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import IO
 
 import pytest
 
-from engine.event import Commanded, Event, GateReached, OperatorChanged, RunEnded, StopRequested
+from engine.event import AnyEvent, Commanded, GateReached, OperatorChanged, RunEnded, StopRequested
 from tests.engine.cli.command import FLEXCELL, Said, flexcell
 from tests.engine.cli.process import entered, events_in, started, until
 
@@ -213,22 +214,44 @@ def test_what_waits_for_ever_in_virtual_time_is_named_and_its_events_kept(nested
 
 
 @pytest.mark.parametrize(
-    ("script", "sign"), [("pause\n", Commanded), ("lock root/one\n", GateReached), ("autonomy off\n", GateReached)]
+    "script", ["", "lock root/one\nresume\n", "autonomy off\nresume\n"], ids=["pause", "lock", "question"]
 )
-def test_a_signal_beats_pause_lock_and_question(nested: Path, script: str, sign: type[Event]) -> None:
-    before, after = "duration_s: 1}, transitions: {done: two}", "duration_s: 0.3}, transitions: {done: two}"
+def test_a_signal_beats_pause_lock_and_question(nested: Path, script: str) -> None:
+    """The run waits at its beginning until the command has come."""
+    before, after = "duration_s: 1}, transitions: {done: two}", "duration_s: 0.1}, transitions: {done: two}"
     text = NESTED.replace(before, f"{after}, autonomy: {{done: low}}")
     nested.write_text(text, encoding="utf-8")
-    with started("run", nested, "--operator", "-q", cwd=nested.parent) as process:
+    with started("run", nested, "--operator", "--paused", "-q", cwd=nested.parent) as process:
         assert process.stdin is not None
-        process.stdin.write(script)
-        process.stdin.flush()
-        until(process, nested.parent, lambda events: any(isinstance(e, sign) for e in events))
+        until(process, nested.parent, waits())
+        if script:
+            process.stdin.write(script)
+            process.stdin.flush()
+            until(process, nested.parent, waits("after root/one"))
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     assert process.returncode == 130
     events = events_in(nested.parent)
     assert [e.reason for e in events if isinstance(e, StopRequested)] == ["interrupted by SIGINT"]
+
+
+def test_a_run_is_paused_while_it_goes_on(nested: Path) -> None:
+    nested.write_text(NESTED.replace("duration_s: 1", "duration_s: 20"), encoding="utf-8")
+    with started("run", nested, "--operator", "-q", cwd=nested.parent) as process:
+        assert process.stdin is not None
+        until(process, nested.parent, entered("root/one"))
+        process.stdin.write("pause\n")
+        process.stdin.flush()
+        until(process, nested.parent, lambda events: any(isinstance(e, Commanded) for e in events))
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert commanded(nested.parent) == ["pause"]
+
+
+def waits(at: str = "") -> Callable[[Sequence[AnyEvent]], bool]:
+    """Tell whether the run has come to a gate, or to this one."""
+    return lambda events: any(isinstance(e, GateReached) and f"{e.point} {e.path}".endswith(at) for e in events)
 
 
 def test_the_second_signal_says_what_is_waited_for_and_the_third_leaves(tmp_path: Path) -> None:

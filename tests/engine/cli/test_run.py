@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,8 @@ def test_a_signal_stops_the_run_and_closes_the_journal(behavior: Path, number: s
         journal = behavior.parent / "journal" / "journal.db"
         while not journal.exists() or not _running(journal):
             assert process.poll() is None
+            # Looking all the time would take the processor from the command that is looked at.
+            time.sleep(0.005)
         process.send_signal(number)
         _, errors = process.communicate(timeout=30)
     assert process.returncode == 130

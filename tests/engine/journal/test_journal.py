@@ -55,7 +55,7 @@ async def test_after_closing_a_commit_says_that_the_journal_is_closed(tmp_path: 
     journal.close()
     run.append(said(1))
     with pytest.raises(JournalError, match="the journal is closed"):
-        await asyncio.wait_for(run.commit(), 5)
+        await asyncio.wait_for(run.commit(), 30)
 
 
 async def test_branches_and_runs_commit_side_by_side_and_lose_nothing(tmp_path: Path) -> None:
@@ -221,7 +221,7 @@ async def test_a_defect_in_the_writer_reaches_the_waiting_commit(
         for seq in (1, 2):
             run.append(said(seq))
             with pytest.raises(JournalError, match="the journal writer broke: ZeroDivisionError: oops"):
-                await asyncio.wait_for(run.commit(), 5)
+                await asyncio.wait_for(run.commit(), 30)
 
 
 def test_a_run_begins_once(tmp_path: Path) -> None:

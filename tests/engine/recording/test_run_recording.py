@@ -7,6 +7,7 @@ import json
 import logging
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -19,10 +20,12 @@ from mcap.records import Channel, Message, Schema
 
 from engine.bus import SkillBus
 from engine.clock import run_virtual
+from engine.errors import RecordingError
 from engine.event import Entered, Logged, RunStarted
 from engine.journal import encode_event_log
 from engine.messages import FramePoses, JointState
 from engine.recording import load_recording, part_file, recovered_file
+from engine.recording.recording import RecordedEvent
 from engine.run import Run
 from tests.engine.recording.foxglove_rules import complaints
 from tests.engine.replay.bench import Tick, record_run, recorded
@@ -191,6 +194,14 @@ asyncio.run(record_run(WAIT, Path(sys.argv[1]), acts={0.2: lambda run: print("go
 """
 
 
+def events_left(target: Path) -> tuple[RecordedEvent, ...]:
+    """Return what there is of a recording under way; nothing while its head is being written."""
+    try:
+        return load_recording(target).events
+    except RecordingError:
+        return ()
+
+
 def test_what_a_killed_process_left_is_read_and_kept_beside_the_next_recording(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -198,6 +209,9 @@ def test_what_a_killed_process_left_is_read_and_kept_beside_the_next_recording(
     with subprocess.Popen([sys.executable, "-c", KILLED, target], stdout=subprocess.PIPE, cwd=PROJECT) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == b"going on\n"
+        # Its events go to the disk by a thread of its own.
+        while len(events_left(target)) < 3:
+            time.sleep(0.005)
         process.kill()
     left = load_recording(target)
     assert (left.path, left.complete) == (part_file(target), False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import platform
+import random
 import shutil
 import signal
 import socket
@@ -24,6 +25,8 @@ SHA256 = "268063f487a8ba75bf832d1f7938882b8bda1029825bb58d0611725f8fe16ce8"
 RUNS_HERE = sys.platform == "linux" and platform.machine() == "x86_64"
 START_S = 60.0
 _PR_SET_PDEATHSIG = 1
+# Below those that Linux gives to sockets without a port of their own.
+_NEVER_GIVEN = (15_000, 32_000)
 
 
 @lru_cache
@@ -125,6 +128,12 @@ def _die_with_parent() -> None:
 
 
 def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """Return a port that is free, and that the system gives to nobody who asks for any, until the server has it."""
+    chance = random.SystemRandom()
+    while True:
+        with socket.socket() as probe:
+            try:
+                probe.bind(("127.0.0.1", chance.randrange(*_NEVER_GIVEN)))
+            except OSError:
+                continue
+            return int(probe.getsockname()[1])

@@ -343,14 +343,14 @@ async def test_a_follower_hears_what_another_store_commits(opener: Opener, tmp_p
     async with opener(tmp_path) as mine, opener(tmp_path) as theirs:
         end = await mine.follow(heard.put_nowait)
         await mine.put("record", "mine", {"n": 1})
-        first = await asyncio.wait_for(heard.get(), 20)
+        first = await asyncio.wait_for(heard.get(), 60)
         await theirs.put("record", "theirs", {"n": 2}, by="them")
         if await _is_inline(mine):
             end()
             return
-        second = await asyncio.wait_for(heard.get(), 20)
+        second = await asyncio.wait_for(heard.get(), 60)
         await mine.put("record", "mine", {"n": 3})
-        third = await asyncio.wait_for(heard.get(), 20)
+        third = await asyncio.wait_for(heard.get(), 60)
         end()
         assert [(c.name, c.value, c.by) for c in (first, second, third)] == [
             ("mine", {"n": 1}, ""),

@@ -121,14 +121,14 @@ async def test_a_write_whose_answer_is_lost_is_made_once(
     async with Proxy(server.port) as proxy:
         opening = MongoStore.open
         async with await asyncio.to_thread(
-            opening, proxy.uri, database=database_of(tmp_path), patience_s=30.0
+            opening, proxy.uri, database=database_of(tmp_path), patience_s=60.0
         ) as store:
             await store.put("record", "a", {"n": 1})
             proxy.swallow_answer_to(request_name + b"\x00" + _length_of(lost) + lost.encode())
             writing = asyncio.create_task(store.put("record", "a", {"n": 2}, expected_revision=1))
-            await asyncio.wait_for(proxy.swallowed.wait(), 20)
+            await asyncio.wait_for(proxy.swallowed.wait(), 60)
             proxy.mend()
-            assert (await asyncio.wait_for(writing, 30)).revision == 2
+            assert (await asyncio.wait_for(writing, 60)).revision == 2
             assert [change.value for change in await store.history("record", "a")] == [{"n": 1}, {"n": 2}]
 
 
@@ -150,10 +150,10 @@ async def test_a_writer_that_is_late_shows_nothing_older_than_what_is_there(
             await late.put("record", "a", {"n": 1})
             proxy.hold_request(b"update\x00" + _length_of("entry") + b"entry")
             writing = asyncio.create_task(late.put("record", "a", {"n": 2}))
-            await asyncio.wait_for(proxy.held.wait(), 20)
+            await asyncio.wait_for(proxy.held.wait(), 60)
             assert (await quick.put("record", "a", {"n": 3})).revision == 3
             proxy.released.set()
-            assert (await asyncio.wait_for(writing, 20)).revision == 2
+            assert (await asyncio.wait_for(writing, 60)).revision == 2
             shown = await quick.get("record", "a")
     assert (shown.value, shown.revision) == ({"n": 3}, 3)
 
@@ -163,7 +163,7 @@ async def test_a_network_that_stays_cut_is_told_and_reading_goes_on_afterwards(
 ) -> None:
     """The message has the address, what to check, and that the write may have arrived."""
     async with Proxy(replicated_mongo.port) as proxy:
-        store = await asyncio.to_thread(MongoStore.open, proxy.uri, database=database_of(tmp_path), patience_s=1.5)
+        store = await asyncio.to_thread(MongoStore.open, proxy.uri, database=database_of(tmp_path), patience_s=3.0)
         async with store:
             await store.put("record", "a", {"n": 1})
             proxy.cut()
@@ -190,16 +190,16 @@ async def test_a_follower_misses_nothing_over_a_broken_network(replicated_mongo:
     heard: asyncio.Queue[EntryChange] = asyncio.Queue()
     database = database_of(tmp_path)
     async with Proxy(replicated_mongo.port) as proxy:
-        following = await asyncio.to_thread(MongoStore.open, proxy.uri, database=database, patience_s=30.0)
+        following = await asyncio.to_thread(MongoStore.open, proxy.uri, database=database, patience_s=60.0)
         async with following, MongoStore.open(replicated_mongo.uri, database=database) as writing:
             await following.follow(heard.put_nowait)
             await writing.put("record", "a", {"n": 1})
-            assert (await asyncio.wait_for(heard.get(), 20)).value == {"n": 1}
+            assert (await asyncio.wait_for(heard.get(), 60)).value == {"n": 1}
             proxy.cut()
             await writing.put("record", "a", {"n": 2})
             await writing.put("record", "a", {"n": 3})
             proxy.mend()
-            assert [(await asyncio.wait_for(heard.get(), 30)).value for _ in range(2)] == [{"n": 2}, {"n": 3}]
+            assert [(await asyncio.wait_for(heard.get(), 60)).value for _ in range(2)] == [{"n": 2}, {"n": 3}]
 
 
 async def test_a_change_that_nobody_showed_is_shown_by_the_next_who_comes(

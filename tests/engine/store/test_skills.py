@@ -55,7 +55,7 @@ async def test_changes_are_undone_told_and_published_over_the_bus(tmp_path: Path
             undone = await bus.call(UndoEntry(kind="record", name="a", by="bor"), to="store")
             assert (undone.revision, undone.deleted, undone.by) == (2, True, "bor")
             await other.put("record", "b", {}, by="another program")
-            told = [await asyncio.wait_for(changes.next(), 20) for _ in range(3)]
+            told = [await asyncio.wait_for(changes.next(), 60) for _ in range(3)]
         assert [(change.name, change.by, change.reason, change.tags) for change in told] == [
             ("a", "ana", "taught", ("x",)),
             ("a", "bor", "", ()),

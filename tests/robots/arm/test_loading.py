@@ -43,7 +43,7 @@ class Gate:
         self.opened = threading.Event()
 
         def prepare(_: InverseKinematics) -> None:
-            assert self.opened.wait(10.0)
+            assert self.opened.wait(60.0)
 
         monkeypatch.setattr(InverseKinematics, "prepare", prepare)
 

@@ -25,11 +25,11 @@ async def test_a_plan_waits_for_the_thread_of_a_plan_that_nobody_waits_for_any_m
     def slow(_: ArmKinematics) -> None:
         using.append(1)
         begun.set()
-        go_on.wait(5.0)
+        go_on.wait(30.0)
         using.remove(1)
 
     abandoned = asyncio.ensure_future(planner.make(slow))
-    assert await asyncio.to_thread(begun.wait, 5.0)
+    assert await asyncio.to_thread(begun.wait, 30.0)
     abandoned.cancel()
     with pytest.raises(asyncio.CancelledError):
         await abandoned

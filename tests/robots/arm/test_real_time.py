@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import asyncio
 from contextlib import AsyncExitStack
+
+import numpy as np
 
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
@@ -34,12 +35,15 @@ async def test_direct_control_jogging_guiding_reflex_and_recovery_follow_one_ano
         bus.topic("left/status", ArmStatus).subscribe(lambda status: modes.append(status.mode))
 
         await bus.call(SetSpeedOverride(share=1.0), to="left")
-        assert (await bus.call(SwitchDirectControl(on=True, watchdog_s=0.5), to="left")).success
+        assert (await bus.call(SwitchDirectControl(on=True, watchdog_s=2.0), to="left")).success
         turned = home()
         turned[0] += 0.1
-        for _ in range(20):
+
+        def turning() -> bool:
             bus.topic("left/direct_joints", JointCommand).publish(JointCommand(position_rad=tuple(turned.tolist())))
-            await asyncio.sleep(0.02)
+            return bool(cell.joints()[0] - home()[0] > 0.03)
+
+        await cell.until(turning, within_s=30.0)
         assert (await bus.call(SwitchDirectControl(on=False), to="left")).success
         assert cell.joints()[0] - home()[0] > 0.03
 
@@ -54,7 +58,8 @@ async def test_direct_control_jogging_guiding_reflex_and_recovery_follow_one_ano
             while (status := await told.next()).mode != "reflex":
                 pass
         assert "the tool feels" in status.error
-        await asyncio.sleep(0.5)
+        # The hand is gone when nothing is felt any more.
+        await cell.until(lambda: float(np.abs(cell.port.sample().wrench).max()) < 1.0, within_s=30.0)
         status = await bus.call(RecoverFromError(), to="left")
         after = await cell.perform(JogJoints(velocity_rad_s=(0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), duration_s=0.2))
     ends = [jogged.status, guided.status, after.status]

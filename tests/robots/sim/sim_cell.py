@@ -68,7 +68,15 @@ async def grasp(world: SimWorld, *, force_n: float = 20.0) -> None:
     assert report.end is MotionEnd.REACHED
 
 
-async def until(condition: Callable[[], bool], *, within_s: float = 10.0) -> None:
+def unhurried(host: str, duration_s: float) -> float:
+    """Return how long a motion takes that is looked at on its way.
+
+    In real time it does not wait for who looks, so there it lasts long enough for one who comes late.
+    """
+    return duration_s if host == "lockstep" else 4.0 * duration_s
+
+
+async def until(condition: Callable[[], bool], *, within_s: float = 30.0) -> None:
     """Return once `condition` holds, in the time of the loop; raises TimeoutError when it never does."""
     async with asyncio.timeout(within_s):
         # What is measured tells nobody that it has changed: it can only be looked at.

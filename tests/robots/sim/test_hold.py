@@ -10,7 +10,7 @@ import pytest
 from robots.port import MotionEnd, Tolerance
 from robots.sim.motion_board import SimMotion
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import HOME, one_arm, opened, smooth, until
+from tests.robots.sim.sim_cell import HOME, one_arm, opened, smooth, unhurried, until
 
 GOAL = HOME + np.array([0.6, 0.3, -0.3, 0.3, 0.2, -0.2, 0.4])
 DURATION_S = 1.2
@@ -21,9 +21,10 @@ OFF_PATH_RAD = 0.004
 both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
-def start(world: SimWorld) -> SimMotion:
+def start(world: SimWorld, host: str = "lockstep") -> SimMotion:
     """Send the arm to the goal."""
-    motion = world.arm("left").follow(smooth(HOME, GOAL, DURATION_S), tolerance=Tolerance())
+    way = smooth(HOME, GOAL, unhurried(host, DURATION_S))
+    motion = world.arm("left").follow(way, tolerance=Tolerance())
     assert isinstance(motion, SimMotion)
     return motion
 
@@ -65,11 +66,11 @@ async def check_arrived(world: SimWorld, motion: SimMotion) -> None:
 async def test_an_arm_is_held_on_its_path_and_goes_on_along_it(host: str) -> None:
     """Thrice, at different speeds."""
     async with opened(one_arm()) as world:
-        motion = start(world)
+        motion = start(world, host)
         watching = asyncio.create_task(watch_path(world, motion))
         for progress in (0.2, 0.5, 0.8):
             await until(lambda progress=progress: motion.progress > progress)
-            assert speed_rad_s(world) > 0.1
+            assert speed_rad_s(world) > 0.1 * DURATION_S / unhurried(host, DURATION_S)
             await motion.hold()
             assert speed_rad_s(world) < REST_RAD_S
             held, at = motion.progress, world.arm("left").sample()
@@ -84,7 +85,7 @@ async def test_an_arm_is_held_on_its_path_and_goes_on_along_it(host: str) -> Non
 @both_hosts
 async def test_a_hold_while_one_is_under_way_or_done_is_confirmed_as_well(host: str) -> None:
     async with opened(one_arm()) as world:
-        motion = start(world)
+        motion = start(world, host)
         await until(lambda: motion.progress > 0.5)
         first = asyncio.create_task(motion.hold())
         await until(lambda: motion.progress > 0.51)
@@ -100,7 +101,7 @@ async def test_a_hold_while_one_is_under_way_or_done_is_confirmed_as_well(host: 
 @both_hosts
 async def test_a_resume_while_the_arm_brakes_lets_it_go_on_at_once_and_answers_the_hold(host: str) -> None:
     async with opened(one_arm()) as world:
-        motion = start(world)
+        motion = start(world, host)
         watching = asyncio.create_task(watch_path(world, motion))
         await until(lambda: motion.progress > 0.5)
         full = speed_rad_s(world)
@@ -108,7 +109,7 @@ async def test_a_resume_while_the_arm_brakes_lets_it_go_on_at_once_and_answers_t
         await until(lambda: speed_rad_s(world) < 0.8 * full)
         await motion.resume()
         await holding
-        await until(lambda: speed_rad_s(world) > 0.3 * full, within_s=1.0)
+        await until(lambda: speed_rad_s(world) > 0.3 * full, within_s=1.0 if host == "lockstep" else 10.0)
         await check_arrived(world, motion)
         assert await watching < OFF_PATH_RAD
 
@@ -117,7 +118,7 @@ async def test_a_resume_while_the_arm_brakes_lets_it_go_on_at_once_and_answers_t
 async def test_a_hold_right_after_a_resume_is_confirmed_at_rest_only(host: str) -> None:
     """The answer to the resume, still on its way, is none to the hold."""
     async with opened(one_arm()) as world:
-        motion = start(world)
+        motion = start(world, host)
         await until(lambda: motion.progress > 0.4)
         await motion.hold()
         for _ in range(5):
@@ -134,7 +135,7 @@ async def test_a_hold_right_after_a_resume_is_confirmed_at_rest_only(host: str) 
 @pytest.mark.parametrize("when", ["while it brakes", "when it is held"])
 async def test_a_cancel_during_a_hold_ends_the_motion_at_rest(host: str, when: str) -> None:
     async with opened(one_arm()) as world:
-        motion = start(world)
+        motion = start(world, host)
         await until(lambda: motion.progress > 0.5)
         holding = asyncio.create_task(motion.hold())
         if when == "while it brakes":
@@ -182,12 +183,13 @@ async def test_holding_and_resuming_an_ended_motion_does_nothing() -> None:
 async def test_fingers_are_held_on_their_way_and_go_on(host: str) -> None:
     async with opened(one_arm()) as world:
         gripper = world.gripper("left")
-        motion = gripper.close_to(width_m=0.01, speed_m_s=0.05, force_n=30.0)
+        motion = gripper.close_to(width_m=0.01, speed_m_s=0.05 / unhurried(host, 1.0), force_n=30.0)
         await until(lambda: gripper.sample().width_m < 0.05)
+        asked_m = gripper.sample().width_m
         await motion.hold()
         held = gripper.sample()
         assert abs(held.velocity_m_s) < 0.002
-        assert held.width_m == pytest.approx(0.05, abs=0.003)
+        assert 0.02 < held.width_m == pytest.approx(asked_m, abs=0.003)
         await until(lambda: world.measured().time_s > held.time_s + 0.2)
         assert gripper.sample().width_m == pytest.approx(held.width_m, abs=0.0005)
         await motion.resume()

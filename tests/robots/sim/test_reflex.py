@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 
 import numpy as np
 import pytest
@@ -20,12 +21,14 @@ INTO_THE_TABLE = ABOVE_PART + np.array([0.0, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0])
 both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
-async def tripped(world: SimWorld) -> ArmPort:
-    """An arm at rest that a push of half a second has tripped."""
+async def tripped(world: SimWorld, *, push_s: float = 0.5) -> ArmPort:
+    """An arm at rest that a push of half a second has tripped, and that has told why."""
     arm = world.arm("left")
     arm.configure(FORCE)
-    world.push(TOOL, force_n=(0.0, 0.0, -40.0), duration_s=0.5)
-    await until(lambda: arm.sample().reflex)
+    told: list[str] = []
+    arm.when_reflex(told.append)
+    world.push(TOOL, force_n=(0.0, 0.0, -40.0), duration_s=push_s)
+    await until(lambda: bool(told))
     return arm
 
 
@@ -67,11 +70,13 @@ async def test_it_presses_less_and_shorter_than_without_a_reflex() -> None:
 @both_hosts
 async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str) -> None:
     async with opened(one_arm()) as world:
-        arm = await tripped(world)
+        arm = await tripped(world, push_s=100.0)
         at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 0.4)
         # Five times as soft as before: 40 N are 50 mm instead of 10.
         assert np.abs(arm.sample().position_rad - HOME).max() > 0.03
+        world.push(TOOL, force_n=(0.0, 0.0, 0.0), duration_s=0.0)
+        at = arm.sample()
         await until(lambda: arm.sample().time_s > at.time_s + 2.0)
         assert np.abs(arm.sample().position_rad - HOME).max() < 0.01
 
@@ -92,6 +97,26 @@ async def test_nothing_starts_before_it_is_told_to_recover(host: str) -> None:
         arm.recover()
         await until(lambda: not arm.sample().reflex)
         assert (await move(arm, HOME + 0.1, 0.6)).end is MotionEnd.REACHED
+
+
+async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_told_the_very_one() -> None:
+    """Its state is seen at once, what it tells when the loop turns; nor is the reason of an earlier stop given."""
+    async with opened(one_arm()) as world:
+        arm = await tripped(world)
+        assert "the tool feels" in arm.reflex_reason
+        await until(lambda: float(np.abs(arm.sample().wrench).max()) < 1.0)
+        arm.recover()
+        await until(lambda: not arm.sample().reflex)
+        arm.configure(TORQUE)
+        world.push(TOOL, force_n=(0.0, 60.0, 0.0), duration_s=100.0)
+        while not arm.sample().reflex:
+            os.sched_yield()
+        said = arm.reflex_reason
+        assert said
+        assert "the tool feels" not in said
+        with pytest.raises(RobotError, match=r"the arm has stopped by itself: .* from outside"):
+            arm.guide()
+        await until(lambda: arm.reflex_reason.startswith("panda_joint"))
 
 
 @pytest.mark.virtual

@@ -13,7 +13,18 @@ import pytest
 from engine.errors import RobotError
 from engine.robot import DeviceStatus
 from robots.port import MotionEnd, Tolerance
-from tests.robots.sim.sim_cell import ABOVE_PART, HOME, PANDA, move, one_arm, opened, smooth, two_arms, until
+from tests.robots.sim.sim_cell import (
+    ABOVE_PART,
+    HOME,
+    PANDA,
+    move,
+    one_arm,
+    opened,
+    smooth,
+    two_arms,
+    unhurried,
+    until,
+)
 
 both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
@@ -28,19 +39,35 @@ async def test_an_arm_reaches_its_goal(host: str) -> None:
         assert np.abs(arm.sample().position_rad - ABOVE_PART).max() < 0.005
 
 
-@both_hosts
-async def test_two_arms_move_at_the_same_time(host: str) -> None:
+@pytest.mark.virtual
+async def test_two_arms_move_at_the_same_time() -> None:
     async with opened(two_arms()) as world:
         reports = await asyncio.gather(*(move(world.arm(name), HOME + 0.2, 0.5) for name in ("left", "right")))
         assert [report.end for report in reports] == [MotionEnd.REACHED] * 2
         assert world.measured().time_s < 1.5
 
 
+async def test_two_arms_move_at_the_same_time_in_real_time_as_well() -> None:
+    """One measurement finds both on their way."""
+    async with opened(two_arms()) as world:
+        way = smooth(HOME, HOME + 1.0, 60.0)
+        motions = [world.arm(name).follow(way, tolerance=Tolerance()) for name in ("left", "right")]
+
+        def slower_rad_s() -> float:
+            measured = world.measured()
+            return min(float(np.abs(measured.arm(name).velocity_rad_s).max()) for name in ("left", "right"))
+
+        await until(lambda: slower_rad_s() > 0.002)
+        for motion in motions:
+            motion.cancel()
+        assert [(await motion.report()).end for motion in motions] == [MotionEnd.CANCELED] * 2
+
+
 @both_hosts
 async def test_a_cancelled_motion_ends_at_rest_on_its_path_and_the_next_is_accepted_at_once(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        motion = arm.follow(smooth(HOME, HOME + 0.6, 1.0), tolerance=Tolerance())
+        motion = arm.follow(smooth(HOME, HOME + 0.6, unhurried(host, 1.0)), tolerance=Tolerance())
         await until(lambda: motion.progress > 0.45)
         motion.cancel()
         report = await motion.report()
@@ -57,7 +84,7 @@ async def test_a_cancelled_motion_ends_at_rest_on_its_path_and_the_next_is_accep
 async def test_a_held_motion_rests_until_it_is_resumed_and_then_reaches_its_goal(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        motion = arm.follow(smooth(HOME, HOME + 0.3, 0.8), tolerance=Tolerance())
+        motion = arm.follow(smooth(HOME, HOME + 0.3, unhurried(host, 0.8)), tolerance=Tolerance())
         await until(lambda: motion.progress > 0.45)
         await motion.hold()
         held = motion.progress
@@ -81,7 +108,7 @@ async def test_a_second_motion_is_refused_while_one_runs(host: str) -> None:
 @both_hosts
 async def test_stopping_the_world_cancels_what_runs_and_leaves_it_at_rest(host: str) -> None:
     async with opened(one_arm()) as world:
-        motion = world.arm("left").follow(smooth(HOME, HOME + 0.5, 1.0), tolerance=Tolerance())
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.5, unhurried(host, 1.0)), tolerance=Tolerance())
         await until(lambda: motion.progress > 0.45)
         assert world.status is DeviceStatus.MOVING
         await world.stop()
