@@ -27,6 +27,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.large_document import large_document
 from benchmarks.page_probe import PROBE
+from benchmarks.page_tasks import start_recording, stop_recording
 
 ROOT = Path(__file__).parents[1]
 STATIC = ROOT / "editor_web" / "static"
@@ -164,7 +165,7 @@ def follow(trial: Trial, page: Page, words: str, bar: float, selector: str, at: 
     trial.add(f"{words}: main thread", spent_ms, "ms CPU a frame")
 
 
-def moving(trial: Trial, page: Page, words: str, bar: float, node: str) -> None:
+def moving(trial: Trial, page: Page, words: str, bar: float, node: str, *, what: str = "a node") -> None:
     """Frames a second while the canvas and a node follow the mouse."""
     drawn = page.locator(".react-flow__node").count()
     trial.add(f"{words}: elements drawn as nodes", drawn, "")
@@ -172,7 +173,7 @@ def moving(trial: Trial, page: Page, words: str, bar: float, node: str) -> None:
     assert pane is not None
     corner = [pane["x"] + pane["width"] * 0.5, pane["y"] + 8]
     follow(trial, page, f"{words}: panning", bar, ".react-flow__pane", corner)
-    follow(trial, page, f"{words}: dragging a node", bar, f".react-flow__node[data-id='{node}']", None)
+    follow(trial, page, f"{words}: dragging {what}", bar, f".react-flow__node[data-id='{node}']", None)
     idle(page)
     page.keyboard.press("Control+z")
     idle(page)
@@ -218,25 +219,28 @@ def idle(page: Page) -> None:
     expect(page.locator(".edit-canvas")).to_have_attribute("aria-busy", "false", timeout=_LIMIT_MS)
 
 
-def overview(trial: Trial, page: Page) -> None:
-    """Open everything: how long the layout takes, and for how long the page does not answer meanwhile."""
-    page.evaluate("() => { probe.layouts.length = 0; probe.tasks.length = 0 }")
-    page.evaluate(
-        "() => { const drawn = () => Number(document.querySelector('.edit-canvas').dataset.drawn)\n"
-        "probe.waited = probe.until('keydown', () => drawn() >= 1000) }"
-    )
+def open_all(page: Page) -> None:
+    """Open every container inside of what fills the canvas."""
     page.locator(".react-flow__node").first.focus()
     page.keyboard.press("Shift+O")
-    trial.add("open overview, key to paint", page.evaluate("() => probe.waited"), "ms")
+
+
+def overview(trial: Trial, page: Page) -> None:
+    """Open everything: how long the layout takes, and for how long the page does not answer meanwhile."""
+    page.evaluate(
+        "() => { const drawn = () => document.getElementsByClassName('react-flow__node').length\n"
+        "probe.waited = probe.until('keydown', () => drawn() >= 1000) }"
+    )
+    start_recording(trial.browser, page)
+    open_all(page)
+    trial.add("open overview, key to paint of all", page.evaluate("() => probe.waited"), "ms")
     idle(page)
-    page.wait_for_timeout(500)
-    layouts: list[list[float]] = page.evaluate("() => probe.layouts")
-    tasks: list[list[float]] = page.evaluate("() => probe.tasks")
-    trial.add("layout of all, in the worker", sum(length for _, length in layouts), "ms", 2000)
-    begin, end = layouts[0][0], layouts[-1][0] + layouts[-1][1]
-    gaps = [length for at, length in tasks if at < end and at + length > begin]
-    trial.add("longest task while it is laid out", max(gaps, default=0.0), "ms", 70)
-    trial.add("longest task until all is drawn", max((length for _, length in tasks), default=0.0), "ms")
+    recording = stop_recording(trial.browser, measure="flexcell:layout")
+    trial.add("layout of all, in the worker", sum(end - begin for begin, end in recording.measured) / 1e3, "ms", 2000)
+    for when, tasks, bar in (("it is laid out", recording.during(), 70), ("all is drawn", recording.tasks, None)):
+        longest = max(tasks, key=lambda task: task.wall_ms)
+        trial.add(f"longest task until {when}", longest.wall_ms, "ms", bar)
+        trial.add(f"most CPU of a task until {when}", max(task.cpu_ms for task in tasks), "ms CPU")
 
 
 def typing(trial: Trial, page: Page) -> None:
@@ -340,6 +344,13 @@ def measure(trial: Trial, *, only: str = "") -> None:
         moving(trial, page, "a container of 10", 50, f"{inner}/wait_3")
         editing(trial, page, "a container of 10", f"{inner}/wait_3")
         page.goto("about:blank")
+        page.goto(f"{trial.url}/edit/{ID}#{inner}")
+        in_place(page)
+        open_all(page)
+        page.locator(f".react-flow__node[data-id='{inner}/wait_3']").wait_for(timeout=_LIMIT_MS)
+        idle(page)
+        moving(trial, page, "an area, all open", 50, "root/area_1/step_1", what="an open container")
+        page.goto("about:blank")
         page.goto(f"{trial.url}/edit/{ID}")
         in_place(page)
         editing(trial, page, "collapsed", "root/area_1")
@@ -350,7 +361,7 @@ def measure(trial: Trial, *, only: str = "") -> None:
         editing(trial, page, "overview", "root/area_1/step_0/wait_3")
     if not only or "live" in only:
         live(trial, page)
-    if trial.use_s > 0:
+    if trial.use_s > 0 and (not only or "use" in only):
         page.goto(f"{trial.url}/edit/{ID}")
         in_place(page)
         heap(trial, page, "root/area_1")
@@ -364,7 +375,7 @@ def main() -> None:
     parser.add_argument("--states", type=int, default=1000)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--use-s", type=float, default=120.0, help="how long the page is used for its memory")
-    parser.add_argument("--only", default="", help="some of: open work over live")
+    parser.add_argument("--only", default="", help="some of: open work over live use")
     options = parser.parse_args()
     program = os.environ.get("FLEXCELL_CHROMIUM") or next(filter(None, map(shutil.which, _BROWSERS)), None)
     load = os.getloadavg()[0]

@@ -2,11 +2,7 @@
 
 PROBE = """
 (() => {
-  const probe = (globalThis.probe = { layouts: [], tasks: [], keys: [], seq: 0, run: '' })
-  new PerformanceObserver((list) => {
-    for (const { name, startTime, duration } of list.getEntries())
-      if (name === 'flexcell:layout') probe.layouts.push([startTime, duration])
-  }).observe({ type: 'measure', buffered: true })
+  const probe = (globalThis.probe = { tasks: [], keys: [], seq: 0, run: '' })
   new PerformanceObserver((list) => {
     for (const each of list.getEntries()) probe.tasks.push([each.startTime, each.duration])
   }).observe({ type: 'longtask', buffered: true })

@@ -48,6 +48,7 @@ router = APIRouter(prefix="/api/v1/teach", tags=["teaching"])
 PERIOD_S = 0.1
 MOST_WAITING = 200
 MOST_ENTRIES = 200
+PAGE_NAME = "^[0-9a-z]{0,40}$"
 _decoder: msgspec.json.Decoder[FromPage] = msgspec.json.Decoder(FromPage)
 
 
@@ -96,30 +97,35 @@ async def push_tool(body: PushBody, services: ServicesOf) -> None:
 
 
 @router.websocket("/live")
-async def teach_live(socket: WebSocket) -> None:
-    """Serve one page: arms and captures go out; jogging, buttons and ghosts come in, and end with the connection."""
+async def teach_live(socket: WebSocket, page: Annotated[str, Query(pattern=PAGE_NAME)] = "") -> None:
+    """Serve one page: arms and captures go out; jogging, buttons and ghosts come in, and end with the connection.
+
+    Ghosts are seen in the 3D view that was loaded with the name `page`, and nowhere else.
+    """
     services = services_of(socket)
     await socket.accept()
     joggers = cast("dict[str, Jogger]", socket.app.state.joggers)
-    page = _Page(services.backend, services.cell_view, joggers, may_operate=role_of(socket) == OPERATOR)
+    may_operate = role_of(socket) == OPERATOR
+    client = _Page(services.backend, services.cell_view, joggers, name=page, may_operate=may_operate)
     try:
-        await page.open()
+        await client.open()
         async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_receive(socket, page), name="teach-receive")
-            tasks.create_task(_stream(socket, page), name="teach-stream")
+            tasks.create_task(_receive(socket, client), name="teach-receive")
+            tasks.create_task(_stream(socket, client), name="teach-stream")
     except* Gone:
         pass
     finally:
-        await page.close()
+        await client.close()
 
 
 class _Page:
     """One page and what it holds."""
 
     def __init__(
-        self, backend: Backend, view: CellView | None, joggers: dict[str, Jogger], *, may_operate: bool
+        self, backend: Backend, view: CellView | None, joggers: dict[str, Jogger], *, name: str, may_operate: bool
     ) -> None:
         self._backend = backend
+        self._name = name
         self._view = view
         self._may_operate = may_operate
         self._waiting: deque[ToPage] = deque(maxlen=MOST_WAITING)
@@ -219,6 +225,7 @@ class _Page:
         if self._view is not None:
             self._looked_at.add((look.arm, look.place))
             self._view.show_ghost(
+                self._name,
                 PathPreview(
                     robot=look.arm,
                     state="proposed",
@@ -240,7 +247,7 @@ class _Page:
         self._looked_at -= gone
         for arm, at in gone:
             if self._view is not None:
-                self._view.show_ghost(PathPreview(robot=arm, state="none"), place=at)
+                self._view.show_ghost(self._name, PathPreview(robot=arm, state="none"), place=at)
 
 
 async def _receive(socket: WebSocket, page: _Page) -> None:

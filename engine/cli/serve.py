@@ -8,6 +8,7 @@ import signal
 import sys
 import webbrowser
 from collections.abc import Callable, Coroutine
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -86,12 +87,16 @@ async def _serve(
 
     def ready(dashboard: Any) -> None:
         _write_private(server_file, ServerRecord(url=dashboard.url, token=dashboard.token, pid=os.getpid()))
+        # What is late before is late for nobody.
+        watched.enter_context(Watchdog())
         sys.stdout.write(f"Dashboard: {dashboard.login_url}\nStop with Ctrl-C.\n")
         sys.stdout.flush()
         if open_page:
             webbrowser.open(dashboard.login_url)
 
-    with Journal.open(state) as journal, Watchdog():
+    if cell is not None:
+        sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
+    with Journal.open(state) as journal, ExitStack() as watched:
         async with (
             OpenCell(cell, seed=seed) as opened,
             HelpingHand(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Generator
+import time
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any, Literal
 
@@ -12,6 +13,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
 
 import hatch_build
 from editor_web.server import Dashboard
+from tests.editor_web.limits import GUARD_S
 
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -51,10 +53,13 @@ def opened_page(
 
     page.on("console", listen)
     page.on("pageerror", lambda error: said.append(str(error)))
-    page.goto(login or running.login_url)
-    page.goto(running.url.rstrip("/") + path)
-    yield page
-    context.close()
+    try:
+        page.goto(login or running.login_url)
+        page.goto(running.url.rstrip("/") + path)
+        yield page
+    finally:
+        # Nothing of a page that failed disturbs the next one.
+        context.close()
     assert not (said and quiet), said
 
 
@@ -66,6 +71,23 @@ def require_accessible(page: Page, what: str, *, part: str = "") -> None:
     result: dict[str, Any] = page.evaluate("(part) => axe.run(part || document)", part)
     found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
     assert found == [], f"{what}: {found}"
+
+
+def require_fit(page: Page, width: int, height: int | None = None) -> None:
+    """Nothing reaches beyond the screen, sideways, or at all where a height is given."""
+    page.wait_for_function(
+        "([width, height]) => document.documentElement.scrollWidth <= width"
+        " && document.documentElement.scrollHeight <= height",
+        arg=[width, 1e9 if height is None else height],
+    )
+
+
+def until(page: Page, condition: Callable[[], bool]) -> None:
+    """Let the page go on until something outside of it is so, as what it asked the server for."""
+    end_s = time.monotonic() + GUARD_S
+    while not condition():
+        assert time.monotonic() < end_s, "it has never been so"
+        page.wait_for_timeout(20)
 
 
 def switch(box: Locator, *, on: bool = True) -> None:

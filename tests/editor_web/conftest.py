@@ -15,6 +15,7 @@ from editor_web.access import load_access
 from editor_web.server import Dashboard, dashboard
 from tests.editor_web.browsing import browser_program
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served
 from tests.editor_web.workshop import Workshop
 
@@ -68,4 +69,5 @@ def serve(tmp_path: Path, loopback: str) -> Serve:
 
 
 def _client(running: Dashboard, token: str) -> httpx.AsyncClient:
-    return httpx.AsyncClient(base_url=running.url, headers={"Authorization": f"Bearer {token}"}, trust_env=False)
+    headers = {"Authorization": f"Bearer {token}"}
+    return httpx.AsyncClient(base_url=running.url, headers=headers, trust_env=False, timeout=GUARD_S)

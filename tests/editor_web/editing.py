@@ -9,6 +9,7 @@ from pathlib import Path
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from tests.editor_web.browsing import Scheme, Size, opened_page
+from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.workshop import Workshop
 
 LAPTOP: Size = (1280, 800)
@@ -30,7 +31,8 @@ def at_editor(
         browser, shop.running, f"/edit/{behavior_id}", size=size, scheme=scheme, quiet=quiet, login=login
     ) as page:
         # The first look at a project reads and checks all of its behaviors.
-        expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=20_000)
+        expect(page.locator(".react-flow.is-in-place .react-flow__node").first).to_be_visible(timeout=GUARD_MS)
+        idle(page)
         yield page
 
 
@@ -50,9 +52,10 @@ def pill(page: Page, path: str, outcome: str) -> Locator:
 
 
 def drag(page: Page, source: Locator, target: Locator, *, at: tuple[float, float] | None = None) -> None:
-    """Drag with the mouse, in steps as a hand does; to the middle of the target, or a place in it."""
+    """Drag with the mouse, in steps as a hand does, once all rests; to the middle of the target, or a place in it."""
     expect(source).to_be_visible()
     expect(target).to_be_visible()
+    idle(page)
     start, end = source.bounding_box(), target.bounding_box()
     assert start is not None
     assert end is not None
@@ -64,13 +67,14 @@ def drag(page: Page, source: Locator, target: Locator, *, at: tuple[float, float
 
 
 def save(page: Page) -> None:
-    """Save by the keyboard and see it done."""
+    """Save by the keyboard, after every edit is done, and see it done."""
+    idle(page)
     page.keyboard.press("Control+s")
     expect(page.locator(".dirty-mark")).to_have_count(0)
 
 
 def idle(page: Page) -> None:
-    """Wait until the server has answered every edit, and the canvas shows it."""
+    """Wait until the server has answered every edit, and the canvas shows it and rests."""
     expect(page.locator(".editor")).to_have_attribute("aria-busy", "false")
     expect(page.locator(".edit-canvas")).to_have_attribute("aria-busy", "false")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import AsyncGenerator, Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -81,6 +82,7 @@ class FakeBackend:
         self.documents = documents or Documents(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
         self.step_s = step_s
+        self._ended = asyncio.Event()
         self.recorded: dict[str, tuple[Path, ...]] = {}
         self._behaviors = {b.id: b for b in behaviors}
         self._runs: dict[str, Run] = {}
@@ -215,6 +217,11 @@ class FakeBackend:
         callbacks.remove(callback)
         self.listeners_changed.set()
 
+    async def end_step(self) -> None:
+        """End every leaf that is active now, before its time."""
+        ended, self._ended = self._ended, asyncio.Event()
+        ended.set()
+
     def listeners(self, topic: str) -> int:
         """How many are called back with the messages of a topic."""
         return len(self._topic_callbacks.get(topic, ()))
@@ -330,7 +337,9 @@ class FakeBackend:
             address=f"{side}/{node.title.rsplit('.', 1)[-1]}",
             request={"speed": 0.5},
         )
-        await asyncio.sleep(self.step_s * (1.25 if side == "right" else 1.0))
+        ended = self._ended
+        with suppress(TimeoutError):
+            await asyncio.wait_for(ended.wait(), self.step_s * (1.25 if side == "right" else 1.0))
         fails = node.path == "root/grasp"
         status = "aborted" if fails else "succeeded"
         self._emit(run_id, GoalFinished, path=node.path, goal=goal, status=status)

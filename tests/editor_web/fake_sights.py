@@ -1,4 +1,4 @@
-"""What there is to see in the fake cell beside its bodies: ways, obstacles, voxels, a camera, a person."""
+"""What there is to see in the fake cell beside its bodies: ways, obstacles, voxels, a camera, detections, a person."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from engine.sensing import CameraInfo, CameraIntrinsics, DepthImage, OccupancyGr
 from engine.shapes import Box, Capsule, Cylinder, Hull, Obstacle, Shape, Solid, Sphere
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
+from engine.skills.vision import Detection, Detections
 from tests.editor_web.fake_scene import frames_at, new_scene
 
 JOINTS: tuple[str, ...] = ("yaw", "lean", "elbow")
@@ -164,4 +165,40 @@ def depth(name: str = "above", *, time_s: float = 0.0) -> DepthImage:
     depth_m[:40, :60] = 0.0
     return DepthImage(
         time_s=time_s, camera=name, intrinsics=LENS, pose=CAMERA_POSE, depth_m=depth_m.astype(np.float32).tobytes()
+    )
+
+
+def detections(
+    name: str = "above",
+    *,
+    time_s: float = 0.0,
+    at: Vector3 = (0.15, -0.1, 0.05),
+    score: float = 0.92,
+    only: Literal["cup", "plate", ""] = "",
+) -> Detections:
+    """A cup, turned a little and seen at 100, 80 to 180, 160 px, and a plate of which half is hidden."""
+    turn = (0.0, 0.0, math.sin(0.3), math.cos(0.3))
+    both = (
+        Detection(
+            label="cup",
+            score=score,
+            pose=Pose(xyz=at, xyzw=turn),
+            size_m=(0.08, 0.06, 0.1),
+            rectangle_px=(100.0, 80.0, 180.0, 160.0),
+        ),
+        Detection(
+            label="plate",
+            score=0.47,
+            pose=Pose(xyz=(-0.1, 0.0, 0.01)),
+            size_m=(0.2, 0.2, 0.02),
+            rectangle_px=(200.0, 100.0, 260.0, 190.0),
+        ),
+    )
+    return Detections(
+        camera=name,
+        frame="world",
+        time_s=time_s,
+        detections=tuple(each for each in both if only in ("", each.label)),
+        image_px=(LENS.width_px, LENS.height_px),
+        fresh_s=1.0,
     )

@@ -22,11 +22,11 @@ from schemathesis.specs.openapi import checks
 from editor_web.access import OPERATOR, VIEWER
 from editor_web.app import api
 from engine.supervision import Supervision
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT, SHIFT_ID, Workshop
 
 EXAMPLES = int(os.environ.get("FLEXCELL_FUZZ_EXAMPLES", "5"))
 """Requests of each kind for each operation; set the variable to fuzz for longer."""
-ANSWER_LIMIT_S = 10.0
 Operation = tuple[str, str]
 # Streams for as long as somebody listens.
 ENDLESS: Operation = ("GET", "/api/v1/bus/echo")
@@ -147,7 +147,7 @@ class Target:
 
     def send(self, case: Any, *, role: str) -> Any:
         """Send a request; whatever the answer is, it is no traceback and comes in time."""
-        answer = case.call(base_url=self.base, headers=self.headers(role), session=self.http, timeout=ANSWER_LIMIT_S)
+        answer = case.call(base_url=self.base, headers=self.headers(role), session=self.http, timeout=GUARD_S)
         self.require_calm(f"{case.method} {case.path}", int(answer.status_code), bytes(answer.content))
         return answer
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from editor_web.server import Dashboard, dashboard
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 
 T = TypeVar("T")
 
@@ -35,7 +36,7 @@ class Site:
 
     def call(self, work: Coroutine[Any, Any, T]) -> T:
         """Run a coroutine on the server's loop."""
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=20)
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=GUARD_S)
 
     def up(self) -> None:
         """Serve, on the same port as before."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Coroutine
 from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any, Self, TypeVar
+from unittest.mock import patch
 
 import numpy as np
 import websockets.asyncio.client
@@ -15,6 +16,7 @@ import websockets.asyncio.client
 from editor_web.access import OPERATOR, Access, load_access
 from editor_web.security import cookie_name
 from editor_web.server import Dashboard, dashboard
+from editor_web.teaching import jogging
 from engine.bus import SkillBus
 from engine.bus.access import VISITOR
 from engine.cell import OpenCell
@@ -29,6 +31,7 @@ from engine.skills.motion import JointTrapVel
 from engine.skills.teaching import Trigger
 from engine.teaching import HelpingHand, teachable
 from robots.port import Array
+from tests.editor_web.limits import GUARD_S
 from tests.robots.panda_arm import home
 
 T = TypeVar("T")
@@ -57,7 +60,11 @@ def fastest(state: JointState) -> float:
 
 
 class TeachSite:
-    """`with TeachSite(…) as site`: the page is at `site.running.url`; the arm stands at home."""
+    """`with TeachSite(…) as site`: the page is at `site.running.url`; the arm stands at home.
+
+    The arm rests whenever it hears nothing for the time of its watchdog. Only what is beyond that is longer here than
+    elsewhere: a page that a busy machine keeps from speaking for a second has not let go of its arm for good.
+    """
 
     def __init__(self, *, host: str, project: Path, triggers: tuple[Trigger, ...] = (), view: bool = False) -> None:
         self.project = project
@@ -92,7 +99,7 @@ class TeachSite:
         """Its tokens."""
         return load_access(self.project / "tokens")
 
-    def call(self, work: Coroutine[Any, Any, T], *, within_s: float = 20) -> T:
+    def call(self, work: Coroutine[Any, Any, T], *, within_s: float = GUARD_S) -> T:
         """Run a coroutine on the server's loop."""
         return asyncio.run_coroutine_threadsafe(work, self.loop).result(timeout=within_s)
 
@@ -114,7 +121,7 @@ class TeachSite:
         """Wait, on any loop, for a measurement."""
         return await asyncio.wrap_future(asyncio.run_coroutine_threadsafe(self._until(condition), self.loop))
 
-    async def _until(self, condition: Callable[[JointState], bool], *, within_s: float = 15.0) -> JointState:
+    async def _until(self, condition: Callable[[JointState], bool], *, within_s: float = GUARD_S) -> JointState:
         topic = self.bus.find_topic("left/joint_state")
         async with asyncio.timeout(within_s):
             with topic.stream() as stream:
@@ -156,6 +163,11 @@ class TeachSite:
         await self.seen(rests_still)
         return moving[-1]
 
+    async def let_go(self) -> None:
+        """Wait until no goal is under way: a page that is gone is missed a moment after the arm rests."""
+        for goal in self.bus.goals():
+            await goal.result()
+
     async def hear_jogs(self) -> list[float]:
         """Return a list that gets the time of the simulated world of every command that moves the arm."""
         state = self.bus.find_topic("left/joint_state")
@@ -183,11 +195,11 @@ class TeachSite:
         await self.bus.send_goal(goal, to="left", holder=VISITOR).result()
         self.bus.leases.release_run(VISITOR.run)
 
-    def socket(self, role: str = OPERATOR) -> websockets.asyncio.client.connect:
-        """Connect as the page does."""
+    def socket(self, role: str = OPERATOR, *, page: str = "") -> websockets.asyncio.client.connect:
+        """Connect as the page does, which calls itself so."""
         origin = self.running.url.rstrip("/")
         return websockets.asyncio.client.connect(
-            f"{origin.replace('http', 'ws', 1)}/api/v1/teach/live",
+            f"{origin.replace('http', 'ws', 1)}/api/v1/teach/live?page={page}",
             additional_headers={"Cookie": f"{cookie_name(self.running.port)}={self.access.session(role)}"},
             origin=websockets.Origin(origin),
             compression=None,
@@ -195,12 +207,13 @@ class TeachSite:
         )
 
     def __enter__(self) -> Self:
+        self._open.enter_context(patch.object(jogging, "IDLE_S", GUARD_S))
         self._thread.start()
-        self.call(self._up(), within_s=60)
+        self.call(self._up())
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.call(self._open.aclose(), within_s=60)
+        self.call(self._open.aclose())
         self.loop.call_soon_threadsafe(self.loop.stop)
         self._thread.join()
         self.loop.close()

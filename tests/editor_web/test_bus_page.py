@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
@@ -185,7 +186,7 @@ def test_viewers_see_the_bus_and_cannot_send(browser: Browser, shop: Workshop) -
 
 
 def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> None:
-    """A new rate of all of them is drawn within two frames' worth of script."""
+    """What is found among all of them is drawn with little work."""
     bus = shop.session.cell.bus
 
     def fill() -> None:
@@ -195,18 +196,29 @@ def test_three_hundred_entries_stay_fast(browser: Browser, shop: Workshop) -> No
     shop.on_loop(fill)
     with at_bus(browser, shop) as page:
         expect(page.locator(".bus-row")).to_have_count(305)
-        spent_ms = page.evaluate(
+        session: Any = page.context.new_cdp_session(page)
+        send = session.send
+        # What the page itself works, whatever else the machine does.
+        send("Performance.enable", {"timeDomain": "threadTicks"})
+        before_s = worked_s(send)
+        page.evaluate(
             """() => new Promise((done) => {
                 const find = document.querySelector('.bus-find input')
                 const write = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set
-                const began = performance.now()
                 write.call(find, 'sensor29')
                 find.dispatchEvent(new Event('input', { bubbles: true }))
-                requestAnimationFrame(() => setTimeout(() => done(performance.now() - began)))
+                requestAnimationFrame(() => setTimeout(done))
             })"""
         )
+        spent_s = worked_s(send) - before_s
         expect(page.locator(".bus-row")).to_have_count(11)
-        assert spent_ms < 400
+        assert spent_s < 0.4
+
+
+def worked_s(send: Any) -> float:
+    """How long the page has worked since its begin."""
+    found: list[dict[str, Any]] = send("Performance.getMetrics")["metrics"]
+    return next(each["value"] for each in found if each["name"] == "TaskDuration")
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -28,12 +28,14 @@ from tests.editor_web.fake_sights import (
     camera,
     depth,
     description,
+    detections,
     frames_with_a_person,
     occupancy,
     planning_scene,
     scene_with_a_person,
     way,
 )
+from tests.editor_web.limits import GUARD_S
 
 VISER = Subprotocol("viser-v1.1.1")
 
@@ -54,7 +56,7 @@ async def opened(backend: FakeBackend) -> AsyncGenerator[CellView]:
 async def read(socket: websockets.asyncio.client.ClientConnection, *wanted: str) -> None:
     """Read what viser sends until every wanted text has come."""
     missing = set(wanted)
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(GUARD_S):
         while missing:
             data = unpacked(await socket.recv())
             missing -= {text for text in missing if text.encode() in data}
@@ -71,7 +73,7 @@ async def test_the_port_of_the_view_refuses_everybody_without_the_key() -> None:
     """Page 403, websocket 403, wrong key 403; with the key both open."""
     async with opened(FakeBackend()) as view:
         page, socket = f"http://127.0.0.1:{view.port}/", f"ws://127.0.0.1:{view.port}/"
-        async with httpx.AsyncClient(trust_env=False) as http:
+        async with httpx.AsyncClient(trust_env=False, timeout=GUARD_S) as http:
             assert (await http.get(page)).status_code == 403
             assert (await http.get(page, headers={KEY_HEADER: "wrong"})).status_code == 403
             assert (await http.get(page, headers={KEY_HEADER: view.key})).status_code == 200
@@ -171,7 +173,7 @@ async def test_a_viewer_that_was_away_gets_the_newest_poses_and_not_all_that_it_
             served.backend.publish("cell/frames", frames_at(3.0 + number * 1e-3))
         last, missed = frames_at(7.999), 0
         newest = struct.pack(">d", last.xyz[last.names.index("left/fore")][0])
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(GUARD_S):
             while newest not in (data := unpacked(await socket.recv())):
                 missed += data.count(b"/cell/left.fore")
         assert missed < 500
@@ -189,6 +191,7 @@ def sighted() -> FakeBackend:
     backend.publish("left/planned_path", way("left"))
     backend.publish("above/camera_info", camera())
     backend.publish("above/depth", depth())
+    backend.publish("above/detections", detections())
     return backend
 
 
@@ -228,7 +231,7 @@ CAMERA = camera_message()
 
 async def until(backend: FakeBackend, condition: Callable[[], bool]) -> None:
     """Wait until the topics of a backend are followed so."""
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(GUARD_S):
         while not condition():
             await backend.listeners_changed.wait()
             backend.listeners_changed.clear()
@@ -246,6 +249,7 @@ async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
             "/people/anna.hand/",
             "/cell/left.fore/",
             "/cameras/above",
+            "/detections/above/cup.0/body",
             "/frames/world",
         )
 
@@ -253,22 +257,22 @@ async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
 async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them() -> None:
     """For cameras take images only while somebody does."""
     backend = sighted()
-    costly = ("cell/occupancy", "above/depth")
+    costly = ("cell/occupancy", "above/depth", "above/detections")
 
     def followed() -> list[bool]:
         return [backend.listeners(topic) > 0 for topic in costly]
 
     async with opened(backend) as view:
-        assert followed() == [False, False]
+        assert followed() == [False, False, False]
         async with looking(view, page="one"):
-            await until(backend, lambda: followed() == [True, False])
+            await until(backend, lambda: followed() == [True, False, True])
             view.show("one", frozenset[Group]({"cameras"}))
-            await until(backend, lambda: followed() == [False, True])
+            await until(backend, lambda: followed() == [False, True, False])
             async with looking(view, page="two"):
-                await until(backend, lambda: followed() == [True, True])
+                await until(backend, lambda: followed() == [True, True, True])
                 view.show("two", frozenset())
-                await until(backend, lambda: followed() == [False, True])
-        await until(backend, lambda: followed() == [False, False])
+                await until(backend, lambda: followed() == [False, True, False])
+        await until(backend, lambda: followed() == [False, False, False])
         assert view.shown == frozenset()
     assert [backend.listeners(topic) for topic in ("cell/frames", "left/planned_path")] == [0, 0]
 

@@ -16,6 +16,7 @@ from engine.registry import load_states
 from tests.editor_web.browsing import PHONE, Scheme, require_accessible
 from tests.editor_web.demonstrating import furnish, teach
 from tests.editor_web.editing import LAPTOP, at_editor, card
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
 MADE = "behaviors/gear_to_bin.yaml"
@@ -42,7 +43,7 @@ def taught(tmp_path: Path, loopback: str) -> Generator[Workshop]:
 def asked(shop: Workshop, body: dict[str, Any], *, token: str = "") -> httpx.Response:
     """What the route answers."""
     headers = {"Authorization": f"Bearer {token or shop.access.operator}"}
-    with httpx.Client(base_url=shop.running.url, headers=headers, trust_env=False, timeout=30.0) as http:
+    with httpx.Client(base_url=shop.running.url, headers=headers, trust_env=False, timeout=GUARD_S) as http:
         return http.post("/api/v1/teach/proposal", json=body)
 
 
@@ -141,7 +142,7 @@ def test_entries_are_chosen_in_their_order_and_the_behavior_opens_in_the_editor(
         expect(page.get_by_role("alert")).to_have_text("It needs a name")
         page.get_by_label("Name", exact=True).fill("gear_to_bin")
         page.get_by_role("button", name="Create and open").click()
-        expect(card(page, "root/pick_lid")).to_be_visible(timeout=10_000)
+        expect(card(page, "root/pick_lid")).to_be_visible()
         expect(page).to_have_url(f"{taught.running.url.rstrip('/')}/edit/{MADE}")
     assert load_behavior(taught.project / MADE).root.children.keys() == {"to_home", "pick_lid", "place_lid_at_bin"}
 
@@ -163,7 +164,6 @@ def test_on_a_phone_the_dialog_is_as_wide_as_the_page(browser: Browser, taught: 
         opened_dialog(page)
         choose_all(page)
         expect(page.get_by_role("region", name="What it will do").get_by_role("listitem")).to_have_text(WORDS)
-        wide = page.evaluate(
-            "() => document.querySelector('dialog').scrollWidth - document.querySelector('dialog').clientWidth"
+        page.wait_for_function(
+            "() => document.querySelector('dialog').scrollWidth <= document.querySelector('dialog').clientWidth"
         )
-        assert wide <= 0

@@ -13,6 +13,7 @@ from engine.editing import Documents, hash_of
 from tests.editor_web.conftest import Serve
 from tests.editor_web.editing_client import SHIFT, SHIFT_ID
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 
 
 def test_a_look_tells_what_has_changed_since_the_last_one(tmp_path: Path) -> None:
@@ -35,7 +36,7 @@ async def test_an_open_page_hears_of_a_change_on_disk(serve: Serve, tmp_path: Pa
         address = f"ws://{served.running.url.removeprefix('http://')}api/v1/live"
         headers = {**served.cookie, "Origin": served.origin}
         async with (
-            asyncio.timeout(8),
+            asyncio.timeout(GUARD_S),
             websockets.asyncio.client.connect(address, additional_headers=headers, proxy=None) as page,
         ):
             frame = json.loads(await page.recv())

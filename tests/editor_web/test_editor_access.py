@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 import hatch_build
-from tests.editor_web.browsing import PHONE, Scheme, require_accessible
+from tests.editor_web.browsing import PHONE, Scheme, require_accessible, require_fit
 from tests.editor_web.editing import at_editor, card, file_text, idle
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
@@ -50,8 +50,7 @@ def test_it_fits_the_screen(browser: Browser, shop: Workshop, width: int, height
         for name in ("Save", "Run"):
             expect(page.get_by_role("button", name=name, exact=True)).to_be_in_viewport()
         expect(card(page, "root/first")).to_be_in_viewport()
-        assert page.evaluate("() => document.documentElement.scrollWidth") <= width
-        assert page.evaluate("() => document.documentElement.scrollHeight") <= height
+        require_fit(page, width, height)
 
 
 def test_a_behavior_is_edited_by_touch(browser: Browser, shop: Workshop) -> None:
@@ -63,7 +62,8 @@ def test_a_behavior_is_edited_by_touch(browser: Browser, shop: Workshop) -> None
     )
     page = context.new_page()
     page.goto(f"{shop.running.url}edit/{SHIFT_ID}")
-    expect(card(page, "root/set")).to_be_visible(timeout=20_000)
+    expect(card(page, "root/set")).to_be_visible()
+    idle(page)
     card(page, "root/set").tap()
     page.get_by_role("toolbar").get_by_role("button", name="Add a state").tap()
     page.get_by_role("option", name="flow.Log").tap()

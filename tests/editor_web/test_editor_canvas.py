@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from engine.document import Behavior, load_behavior
@@ -40,6 +41,7 @@ def on_edge(page: Page, arrow: str, share: float) -> tuple[float, float]:
     """A point on an arrow, on the screen."""
     line = page.locator(f".react-flow__edge[data-id='{arrow}'] .way-line")
     expect(line).to_have_count(1)
+    idle(page)
     at = line.evaluate(
         """(path, share) => {
             const point = path.getPointAtLength(path.getTotalLength() * share).matrixTransform(path.getScreenCTM())
@@ -94,6 +96,7 @@ def test_a_state_is_inserted_on_an_arrow_by_its_plus_and_by_dropping(browser: Br
         expect(card(page, "root/log")).to_be_visible()
         idle(page)
         page.keyboard.press("f")
+        idle(page)
         canvas = page.locator(".edit-canvas").bounding_box()
         assert canvas is not None
         x, y = on_edge(page, "root|log|done", 0.5)
@@ -189,6 +192,7 @@ def test_a_node_that_is_dragged_stays_where_it_was_put(browser: Browser, shop: W
         assert abs(there["y"] - start["y"]) > 50
         page.reload()
         expect(card(page, "root/rest")).to_be_visible()
+        idle(page)
         page.keyboard.press("l")
         idle(page)
         assert saved(page, shop).document.view == {}
@@ -328,3 +332,43 @@ def test_every_command_is_in_the_palette_and_every_node_can_be_gone_to(browser: 
         expect(card(page, "root/both/right_2")).to_be_visible()
         page.keyboard.press("?")
         expect(page.get_by_role("dialog", name="Keyboard")).to_contain_text("Ctrl+Shift+Z")
+
+
+PLACES = """() => JSON.stringify(
+    [...document.querySelectorAll('.react-flow__node')].map((each) => {
+        const { x, y, width } = each.getBoundingClientRect()
+        return [each.dataset.id, x, y, width]
+    }))"""
+# Where the nodes are when the canvas says for the first time that it is busy no more.
+WATCH = f"""() => {{
+    const canvas = document.querySelector('.edit-canvas')
+    window.wasBusy = false
+    new MutationObserver(() => {{
+        if (canvas.ariaBusy === 'true') window.wasBusy = true
+        else window.rested ??= ({PLACES})()
+    }}).observe(canvas, {{ attributeFilter: ['aria-busy'] }})
+}}"""
+
+
+@pytest.mark.parametrize("keys", [("-", "f"), ("Control+d",), ("Enter",)])
+def test_the_canvas_is_busy_until_all_that_is_on_it_rests(
+    browser: Browser, shop: Workshop, keys: tuple[str, ...]
+) -> None:
+    """While all of it is brought into view, after an edit, and on the way into a container."""
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        card(page, "root/both").locator(".frame-head").click()
+        for key in keys[:-1]:
+            page.keyboard.press(key)
+            idle(page)
+        page.evaluate(WATCH)
+        page.keyboard.press(keys[-1])
+        page.wait_for_function("() => window.wasBusy && window.rested")
+        # As many frames as the longest animation could take.
+        page.evaluate(
+            """() => new Promise((done) => {
+                let left = 30
+                const look = () => (--left ? requestAnimationFrame(look) : done())
+                look()
+            })"""
+        )
+        assert page.evaluate("() => window.rested") == page.evaluate(PLACES)

@@ -156,7 +156,7 @@ def test_what_is_seen_in_place_follows_its_file(browser: Browser, shop: Workshop
         expect(card(page, "root/nap/root/only")).to_be_visible()
         nap = shop.project / NAP_ID
         nap.write_text(nap.read_text(encoding="utf-8").replace("only", "later"), encoding="utf-8")
-        expect(card(page, "root/nap/root/later")).to_be_visible(timeout=15_000)
+        expect(card(page, "root/nap/root/later")).to_be_visible()
 
 
 @pytest.mark.parametrize(("scheme", "canvas"), [("light", "#f8f9fb"), ("dark", "#13161b")])
@@ -280,7 +280,8 @@ def test_two_fingers_zoom_the_canvas_and_a_long_press_asks_what_to_add(browser: 
     )
     page = context.new_page()
     page.goto(f"{shop.running.url}edit/{SHIFT_ID}")
-    expect(page.locator(".react-flow.is-in-place")).to_be_visible(timeout=20_000)
+    expect(page.locator(".react-flow.is-in-place")).to_be_visible()
+    idle(page)
     fingers: Any = context.new_cdp_session(page)
 
     def touch(kind: str, *points: tuple[float, float]) -> None:
@@ -301,6 +302,7 @@ def test_two_fingers_zoom_the_canvas_and_a_long_press_asks_what_to_add(browser: 
         f"(before) => ({zoom})(document.querySelector('.react-flow__viewport')) > 1.5 * before", arg=before
     )
     page.get_by_role("button", name="Show all (F)").tap()
+    idle(page)
     expect(card(page, "root/first")).to_be_in_viewport()
     touch("touchStart", (canvas["x"] + 12, canvas["y"] + canvas["height"] - 12))
     expect(page.get_by_role("dialog").get_by_role("option").first).to_be_visible()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from playwright.sync_api import Browser, Route, expect
 
+from tests.editor_web.browsing import until
 from tests.editor_web.editing import at_editor, card, idle
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
@@ -19,6 +20,7 @@ def test_the_first_change_is_taken_back_before_the_server_has_answered(browser: 
         with page.expect_request("**/edits"):
             page.keyboard.press("Control+d")
         page.keyboard.press("Control+z")
+        until(page, lambda: bool(held))
         with page.expect_response("**/edits"):
             held[0].continue_()
         expect(page.get_by_role("button", name="Redo")).to_be_enabled()
@@ -40,3 +42,24 @@ def test_a_node_whose_move_does_not_reach_the_server_goes_back_to_its_place(brow
         page.mouse.up()
         expect(page.locator(".edit-note.is-refused")).to_contain_text("Move")
         expect(card(page, "root/set")).to_have_css("transform", before)
+
+
+def test_a_rule_that_is_changed_while_another_change_is_on_its_way_keeps_both(browser: Browser, shop: Workshop) -> None:
+    """The table is sent as a whole; what has changed meanwhile is in it."""
+    held: list[Route] = []
+
+    def hold_the_first(route: Route) -> None:
+        if held:
+            route.continue_()
+        else:
+            held.append(route)
+
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        card(page, "root/both").locator(".frame-head").click()
+        page.route("**/edits", hold_the_first)
+        page.get_by_label("right in rule 1").select_option("b")
+        until(page, lambda: bool(held))
+        page.get_by_role("button", name="Delete rule 3").click()
+        held[0].continue_()
+        expect(page.get_by_role("region", name="Rules").get_by_role("row")).to_have_count(5)
+        expect(page.get_by_label("right in rule 1")).to_have_value("b")

@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, expect
 from benchmarks.large_document import large_document
 from engine.document import load_behavior
 from tests.editor_web.editing import at_editor, card, file_text, idle, save
+from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.workshop import Workshop
 
 LARGE_ID = "behaviors/large.yaml"
@@ -33,7 +34,9 @@ def test_a_thousand_states_open_closed_and_an_edit_deep_inside_changes_its_lines
     with at_editor(browser, large, LARGE_ID) as page:
         expect(card(page, "root/area_0")).to_contain_text("State machine of")
         card(page, "root/area_1").dblclick(position={"x": 60, "y": 14})
+        idle(page)
         card(page, INNER).dblclick(position={"x": 60, "y": 14})
+        idle(page)
         card(page, f"{INNER}/wait_3").click()
         page.keyboard.press("Control+d")
         expect(card(page, f"{INNER}/wait_3_2")).to_be_visible()
@@ -50,10 +53,10 @@ def test_all_of_it_is_seen_from_far_away_as_plain_boxes_and_in_full_near_by(brow
     with at_editor(browser, large, LARGE_ID) as page:
         card(page, "root/area_1").click()
         page.keyboard.press("Shift+O")
-        expect(page.locator(".edit-canvas")).to_have_attribute("data-drawn", DRAWN_ALL, timeout=30_000)
+        expect(page.locator(".edit-canvas")).to_have_attribute("data-drawn", DRAWN_ALL, timeout=GUARD_MS)
         expect(page.locator(".far-lines path")).to_have_attribute("d", re.compile("M.*L"))
         expect(card(page, f"{INNER}/wait_3")).to_have_accessible_name(re.compile("State wait_3, runs flow.Wait"))
-        assert page.locator(".plain-box").count() > STATES
+        page.wait_for_function(f"() => document.querySelectorAll('.plain-box').length > {STATES}")
         # One node asked for by the palette is gone to, and there everything can be read.
         page.keyboard.press("Control+k")
         page.keyboard.type("wait_5")
@@ -62,6 +65,6 @@ def test_all_of_it_is_seen_from_far_away_as_plain_boxes_and_in_full_near_by(brow
         expect(found.locator(".card-name")).to_have_text("wait_5")
         expect(found).to_be_focused()
         expect(page.locator(".far-lines")).to_have_count(0)
-        assert page.locator(".react-flow__node").count() < STATES / 2
+        page.wait_for_function(f"() => document.querySelectorAll('.react-flow__node').length < {STATES / 2}")
         page.keyboard.press("Shift+O")
         expect(page.locator(".edit-canvas")).not_to_have_attribute("data-drawn", DRAWN_ALL)

@@ -83,7 +83,7 @@ def test_a_named_entry_is_chosen_from_those_of_its_kind_and_added_from_the_libra
     with at_editor(browser, shop, NAP_ID) as page:
         page.route("**/api/v1/catalogue", with_entries)
         page.reload()
-        expect(card(page, "root/only")).to_be_visible(timeout=20_000)
+        expect(card(page, "root/only")).to_be_visible()
         page.get_by_role("button", name="Entries").click()
         page.get_by_role("button", name="Add above_tray").click()
         expect(card(page, "root/above_tray")).to_contain_text("motion.MoveLinear")

@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from engine.document import load_behavior
 from tests.editor_web.browsing import opened_page
 from tests.editor_web.editing import card, idle
+from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.real_server import dashboard_of
 from tests.engine.cli.process import started
 
@@ -170,6 +171,8 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
+# Some hundred edits, one after the other, and two arms in physics in real time: a busy machine takes minutes.
+@pytest.mark.timeout(600)
 def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and_looked_at(
     browser: Browser, project: Path, loopback: str
 ) -> None:
@@ -195,7 +198,7 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
         choose(page, "root/transfer")
         lead(page, "placed", "expect_north_part")
         lead(page, "failed", "failed")
-        expect(page.locator(".problem-count")).to_have_text("No problems", timeout=20_000)
+        expect(page.locator(".problem-count")).to_have_text("No problems", timeout=GUARD_MS)
         page.get_by_role("button", name="Run", exact=True).click()
         behavior = load_behavior(project / MADE)
         assert len(behavior.root.children) == 3
@@ -217,17 +220,17 @@ def run(page: Page) -> None:
     state = page.get_by_role("status", name="State of the run")
     expect(state).to_contain_text("Paused")
     page.get_by_role("button", name="Resume", exact=True).click()
-    expect(badge).to_have_text("finished", timeout=120_000)
+    expect(badge).to_have_text("finished", timeout=5 * GUARD_MS)
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
     page.get_by_role("tab", name="Timeline").click()
     moment = page.get_by_role("slider", name="Moment of the run")
     box = moment.bounding_box()
     assert box is not None
-    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 8)
+    moment.click(position={"x": 0.5 * box["width"], "y": 8})
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
     page.get_by_role("button", name="Back to live").click()
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "done")
     page.get_by_role("button", name="Start", exact=True).click()
     expect(node(page, "root/transfer")).to_have_attribute("data-status", "active")
     page.get_by_role("button", name="Stop", exact=True).click()
-    expect(badge).to_have_text("stopped", timeout=30_000)
+    expect(badge).to_have_text("stopped", timeout=GUARD_MS)

@@ -23,6 +23,7 @@ from editor_web.routes.sockets import REFUSED, UNAVAILABLE
 from editor_web.security import SAFE_METHODS
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fuzzing import Operation, Target, opened_target, operations
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import NAP_ID
 
 UNSAFE = [each for each in operations() if each[0] not in SAFE_METHODS]
@@ -39,7 +40,7 @@ def target(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator
 def connected(target: Target) -> socket.socket:
     """A connection to the server."""
     host, port = target.base.removeprefix("http://").split(":")
-    return socket.create_connection((host, int(port)), timeout=10)
+    return socket.create_connection((host, int(port)), timeout=GUARD_S)
 
 
 def head(target: Target, operation: Operation, *lines: str) -> bytes:
@@ -100,15 +101,16 @@ def test_a_flood_that_is_not_announced_is_cut_off(target: Target, operation: Ope
 def test_nothing_that_comes_compressed_is_unpacked(target: Target) -> None:
     """A bomb of 100 MB in 100 kB is 100 kB of no JSON."""
     bomb = gzip.compress(b"[" * 100_000_000)
-    started_s = time.monotonic()
+    began_s = time.process_time()
     answer = target.http.post(
         f"{target.base}/api/v1/runs",
         data=bomb,
         headers={**target.headers("operator"), "Content-Encoding": "gzip", "Content-Type": "application/json"},
-        timeout=10,
+        timeout=GUARD_S,
     )
     assert answer.status_code in (400, 422)
-    assert time.monotonic() - started_s < 2.0
+    # Of this process, which is the server too: what else the machine does takes no part.
+    assert time.process_time() - began_s < 2.0
     assert target.log.said == []
 
 
@@ -117,26 +119,29 @@ def test_nothing_that_comes_compressed_is_unpacked(target: Target) -> None:
 )
 def test_json_that_is_hard_to_read_is_refused_soon(target: Target, text: str) -> None:
     """Depth, escapes and numbers that others choke on."""
-    started_s = time.monotonic()
+    began_s = time.process_time()
     body = f'{{"behavior": "{NAP_ID}", "parameters": {{"a": {text}}}}}'.encode()
     headers = {**target.headers("operator"), "Content-Type": "application/json"}
-    answer = target.http.post(f"{target.base}/api/v1/runs", data=body, headers=headers, timeout=10)
+    answer = target.http.post(f"{target.base}/api/v1/runs", data=body, headers=headers, timeout=GUARD_S)
     target.require_calm(text[:20], answer.status_code, answer.content)
     assert answer.status_code in (400, 422)
-    assert time.monotonic() - started_s < 5.0
+    assert time.process_time() - began_s < 5.0
 
 
 def test_a_request_that_drips_is_closed_and_holds_nobody_up(target: Target, monkeypatch: pytest.MonkeyPatch) -> None:
     """A head without an end, a body without an end; 200 at once, and the page is served meanwhile."""
-    monkeypatch.setattr(connection, "HEAD_LIMIT_S", 0.5)
+    # Long enough for a head to come in, also on a machine that does much else.
+    monkeypatch.setattr(connection, "HEAD_LIMIT_S", 3.0)
     monkeypatch.setattr(bodies, "BODY_LIMIT_S", 0.5)
-    dripping = [connected(target) for _ in range(200)]
-    for number, wire in enumerate(dripping):
+    dripping: list[socket.socket] = []
+    for number in range(200):
+        wire = connected(target)
+        dripping.append(wire)
         if number % 2:
             wire.sendall(b"GET / HTTP/1.1\r\nHost: x\r\nX-")
         else:
             wire.sendall(head(target, ("POST", "/api/v1/runs"), "Content-Length: 100") + b"{")
-    answer = target.http.get(f"{target.base}/api/v1/session", headers=target.headers("viewer"), timeout=5)
+    answer = target.http.get(f"{target.base}/api/v1/session", headers=target.headers("viewer"), timeout=GUARD_S)
     assert answer.status_code == 200
     for number, wire in enumerate(dripping):
         told = read_answer(wire)
@@ -167,7 +172,7 @@ async def test_no_frame_hurts_a_websocket(
         ) as wire:
             with suppress(ConnectionClosed):  # it may be refused before all of it is sent
                 await wire.send(message)
-            async with asyncio.timeout(5):
+            async with asyncio.timeout(GUARD_S):
                 await wire.wait_closed()
         assert (await served.http.get("/api/v1/session")).status_code == 200
         await other.send({"k": "watch", "run": ""})
@@ -191,7 +196,7 @@ async def test_what_a_websocket_does_not_know_ends_it(
             proxy=None,
         ) as wire:
             await wire.send(message)
-            async with asyncio.timeout(5):
+            async with asyncio.timeout(GUARD_S):
                 await wire.wait_closed()
         assert wire.close_code == REFUSED
     assert [record for record in caplog.records if record.exc_info or record.levelname == "ERROR"] == []
@@ -199,10 +204,10 @@ async def test_what_a_websocket_does_not_know_ends_it(
 
 async def test_a_page_that_answers_no_ping_counts_as_gone(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its socket is open, yet nobody is there: a cable was pulled, a laptop sleeps."""
-    monkeypatch.setattr(live_route, "PING_S", 0.1)
-    monkeypatch.setattr(live_route, "SILENCE_S", 0.4)
+    monkeypatch.setattr(live_route, "PING_S", 0.3)
+    monkeypatch.setattr(live_route, "SILENCE_S", 2.0)
     async with serve() as served, served.live() as silent, served.live() as alive:
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(GUARD_S):
             while silent.socket.close_code is None:
                 await alive.until("ping")
                 await alive.send({"k": "pong"})

@@ -12,6 +12,7 @@ import pytest
 from editor_web.access import OPERATOR
 from editor_web.security import SAFE_METHODS, cookie_name
 from tests.editor_web.fuzzing import HOSTILE_PATHS, Operation, Target, opened_target, operations
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID
 
 EVIL = "evil.example"
@@ -37,7 +38,7 @@ def ask(target: Target, operation: Operation, path: str, body: bytes, **headers:
     lines = {"Host": f"{host}:{port}", "Content-Type": "application/json", "Connection": "close", **headers}
     head = "".join(f"{name.replace('_', '-')}: {value}\r\n" for name, value in lines.items())
     text = f"{operation[0]} {path} HTTP/1.1\r\n{head}Content-Length: {len(body)}\r\n\r\n".encode() + body
-    with socket.create_connection((host, int(port)), timeout=10) as wire:
+    with socket.create_connection((host, int(port)), timeout=GUARD_S) as wire:
         wire.sendall(text)
         answer = b"".join(iter(lambda: wire.recv(65536), b""))
     return int(answer.split(b" ", 2)[1]), answer
@@ -106,7 +107,9 @@ def test_no_new_document_lies_outside_of_the_project(target: Target) -> None:
             (f"/{SHIFT_ID}/duplicate", {"id": hostile}),
             (f"/{SHIFT_ID}/rename", {"id": hostile}),
         ):
-            answer = target.http.post(f"{target.base}/api/v1/documents{path}", json=body, headers=bearer, timeout=10)
+            answer = target.http.post(
+                f"{target.base}/api/v1/documents{path}", json=body, headers=bearer, timeout=GUARD_S
+            )
             target.require_calm(f"{path} {hostile}", answer.status_code, answer.content)
         target.restore()
     target.require_untouched_surroundings()

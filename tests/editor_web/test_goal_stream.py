@@ -14,6 +14,7 @@ from engine.bus.desk import BusDesk
 from engine.clock import LoopClock
 from engine.messages import Message
 from engine.skill import Action
+from tests.editor_web.limits import GUARD_S
 
 
 class Done(Message, frozen=True, kw_only=True):
@@ -50,7 +51,7 @@ async def test_a_goal_ends_when_its_listener_cannot_be_told(told: int) -> None:
         bus.advertise_action(Go, go, namespace="arm")
         desk = BusDesk(bus)
         handle = desk.send("arm/go", {})
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(GUARD_S):
             with suppress(OSError):
                 await GoalStream(desk, handle)({"type": "http"}, silence, send)
         assert handle.finished

@@ -18,6 +18,7 @@ from editor_web.security import cookie_name
 from engine.bus.access import VISITOR
 from engine.messages import FramePoses, JointState, Vector3
 from engine.skills.guiding import FinishGuiding, GuideArm
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.teach_site import TeachSite
 from tests.editor_web.viser_page import VISER, ViserPage
 
@@ -46,7 +47,7 @@ class Hand:
         await self.grip.send(json.dumps(message))
 
     async def told(self, kind: str, **fields: object) -> dict[str, Any]:
-        async with asyncio.timeout(15):
+        async with asyncio.timeout(GUARD_S):
             while True:
                 news = json.loads(await self.grip.recv())
                 if news["k"] == kind and all(news[name] == value for name, value in fields.items()):
@@ -149,7 +150,7 @@ async def seen(site: TeachSite, topic: str, condition: Callable[[Any], bool]) ->
 
     async def until() -> None:
         found = site.bus.find_topic(topic)
-        async with asyncio.timeout(15):
+        async with asyncio.timeout(GUARD_S):
             with found.stream() as stream:
                 while found.latest is None or not condition(found.latest):
                     await stream.next()

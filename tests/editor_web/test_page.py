@@ -9,10 +9,13 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_accessible
+from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_accessible, require_fit
 from tests.editor_web.fake_behaviors import BROKEN, SINGLE, TRANSFER
+from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.site import Site
 
+# Longer than any test: what is active stays so.
+LASTING_S = 3600.0
 Visit = Callable[..., AbstractContextManager[Page]]
 
 
@@ -48,15 +51,16 @@ def node(page: Page, path: str) -> Locator:
 
 def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, site: Site) -> None:
     """Log in, pick, fill the form, start, two branches lit at once, stop."""
+    site.backend.step_s = LASTING_S
     with visit() as page:
         page.get_by_role("link", name="two_arm_transfer").click()
         page.get_by_label("Speed").fill("0.3")
         page.get_by_role("button", name="Start").click()
         for arm in ("left", "right"):
             expect(node(page, f"root/approach/{arm}")).to_have_attribute("data-status", "active")
-        lit = "() => document.querySelectorAll('.leaf.is-active').length"
-        assert page.evaluate(lit) == 2
+        expect(page.locator(".leaf.is-active")).to_have_count(2)
         expect(page.get_by_role("button", name="Start")).to_be_disabled()
+        site.call(site.backend.end_step())
         for arm in ("left", "right"):
             expect(node(page, f"root/pick/{arm}/descend")).to_have_attribute("data-status", "active")
         expect(node(page, "root/approach/left")).to_contain_text("reached")
@@ -77,30 +81,31 @@ def test_an_operator_runs_a_behavior_and_sees_both_arms_at_work(visit: Visit, si
 
 def test_a_reload_in_mid_run_shows_what_is_running(visit: Visit, site: Site) -> None:
     """Nodes, times and log come back at once."""
-    site.backend.step_s = 30.0
+    site.backend.step_s = LASTING_S
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
     with visit(address(TRANSFER.id)) as page:
-        for _ in range(2):
+        for is_reloaded in (False, True):
+            if is_reloaded:
+                page.reload()
             expect(page.locator(".leaf.is-active")).to_have_count(2)
             expect(page.locator(".page-head .badge")).to_have_text("running")
             expect(page.get_by_role("log")).to_contain_text("run started")
-            page.reload()
 
 
 def test_a_restarted_server_is_found_again(visit: Visit, site: Site) -> None:
     """The page says so meanwhile, and goes on by itself."""
-    site.backend.step_s = 30.0
+    site.backend.step_s = LASTING_S
     with visit(address(TRANSFER.id), quiet=False) as page:
         page.get_by_label("Speed").fill("0.7")
         expect(page.locator(".connection")).to_have_text("Live")
         site.down()
         expect(page.get_by_role("alert")).to_contain_text("The server does not answer")
         site.up()
-        expect(page.locator(".connection")).to_have_text("Live", timeout=10_000)
+        expect(page.locator(".connection")).to_have_text("Live")
         expect(page.get_by_role("alert")).to_have_count(0)
         expect(page.get_by_label("Speed")).to_have_value("0.7")
         page.get_by_role("button", name="Start", exact=True).click()
-        expect(page.locator(".leaf.is-active")).to_have_count(2, timeout=20_000)
+        expect(page.locator(".leaf.is-active")).to_have_count(2)
 
 
 def test_new_keys_of_the_server_ask_for_a_new_log_in(visit: Visit, site: Site) -> None:
@@ -109,7 +114,7 @@ def test_new_keys_of_the_server_ask_for_a_new_log_in(visit: Visit, site: Site) -
         expect(page.locator(".connection")).to_have_text("Live")
         site.down(forget=True)
         site.up()
-        expect(page.get_by_role("alert")).to_contain_text("You are logged out", timeout=10_000)
+        expect(page.get_by_role("alert")).to_contain_text("You are logged out")
         page.get_by_role("link", name="log in").click()
         page.get_by_label("Token").fill("wrong")
         page.get_by_role("button", name="Log in").click()
@@ -155,7 +160,7 @@ def test_a_broken_document_shows_where_and_cannot_be_started(visit: Visit) -> No
 
 def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: Site) -> None:
     """The way in for keyboard and screen reader."""
-    site.backend.step_s = 30.0
+    site.backend.step_s = LASTING_S
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
     with visit(address(TRANSFER.id)) as page:
         page.get_by_role("tab", name="Outline").click()
@@ -173,7 +178,7 @@ def test_the_outline_is_worked_by_keys_and_tells_the_state(visit: Visit, site: S
 
 def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> None:
     """axe-core finds nothing on any page, idle, running, failed, and while logging in."""
-    site.backend.step_s = 30.0
+    site.backend.step_s = LASTING_S
     with visit("/", scheme="dark") as page:
         require_accessible(page, "home without runs")
     site.call(site.backend.start(TRANSFER.id, parameters={}, seed=1))
@@ -203,8 +208,7 @@ def test_it_fits_every_screen(visit: Visit, width: int, height: int) -> None:
     """Nothing to scroll sideways, the start button in view, the graph drawn large enough to see."""
     with visit(address(TRANSFER.id), size=(width, height)) as page:
         expect(page.get_by_role("button", name="Start")).to_be_in_viewport()
-        assert page.evaluate("() => document.documentElement.scrollWidth") <= width
-        assert page.evaluate("() => document.documentElement.scrollHeight") <= height
+        require_fit(page, width, height)
         if width < 992:
             page.get_by_role("tab", name="Graph").click()
         expect(page.locator(".leaf").first).to_be_visible()
@@ -220,8 +224,8 @@ def test_the_cell_is_drawn_in_three_dimensions(visit: Visit, tmp_path: Path, loo
         page.goto(site.running.login_url)
         cell = page.frame_locator("iframe[title='3D view of the cell']")
         drawn = cell.locator("canvas[data-engine]")
-        expect(drawn).to_be_visible(timeout=20_000)
+        expect(drawn).to_be_visible(timeout=GUARD_MS)
         expect(drawn).not_to_have_attribute("width", "0")
-        for hidden in cell.locator("[data-testid=floating-panel], .mantine-Paper-root").all():
-            expect(hidden).to_be_hidden()
+        panels = cell.locator("[data-testid=floating-panel], .mantine-Paper-root").filter(visible=True)
+        expect(panels).to_have_count(0)
         context.close()

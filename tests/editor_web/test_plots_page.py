@@ -20,6 +20,7 @@ LAPTOP: Size = (1280, 800)
 # How many pixels of the canvas are of a curve and not of text or grid.
 PAINTED = """() => {
     const canvas = document.querySelector('.plot-canvas canvas')
+    if (!canvas?.width || !canvas.height) return 0
     const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data
     let painted = 0
     for (let at = 0; at < data.length; at += 4) {

@@ -182,7 +182,8 @@ def test_a_cut_wire_is_noticed_on_both_sides(
 ) -> None:
     """Both sockets stay open, yet the page says so after 12 s of silence, and the run has lost its operator."""
     monkeypatch.setattr(live_route, "PING_S", 0.1)
-    monkeypatch.setattr(live_route, "SILENCE_S", 0.5)
+    # Longer than a page that is there takes for its answer, much shorter than the 12 s of the page.
+    monkeypatch.setattr(live_route, "SILENCE_S", 2.0)
     run = shop.start(supervision=Supervision(loss_policy="hold", loss_timeout_s=0.1))
     port = shop.running.port
     with Wire(loopback, port) as wire, opened_page(browser, shop.running, f"/runs/{run}") as watching:

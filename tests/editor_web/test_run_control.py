@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from editor_web.access import VIEWER
 from engine.event import Commanded, GateReached, OperatorChanged
 from engine.supervision import Supervision
-from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, switch
+from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit, switch, until
 from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
 
 LAPTOP: Size = (1280, 800)
@@ -128,7 +128,7 @@ def test_autonomy_is_a_slider_that_says_what_it_means(browser: Browser, shop: Wo
         slider.focus()
         page.keyboard.press("ArrowLeft")
         expect(page.get_by_text("Autonomy high: outcomes that require high or full ask.")).to_be_visible()
-        assert shop.on_loop(lambda: shop.session.control(run).view().autonomy) == "high"
+        until(page, lambda: shop.on_loop(lambda: shop.session.control(run).view().autonomy) == "high")
         box = slider.bounding_box()
         assert box is not None
         page.mouse.click(box["x"] + 3, box["y"] + box["height"] / 2)
@@ -269,8 +269,7 @@ def test_an_operated_run_is_accessible_and_fits(browser: Browser, shop: Workshop
     shop.on_loop(lambda: shop.arm.become("reflex", error="external torque of joint 4 above 20 N m"))
     with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=size, scheme=scheme) as page:
         expect(page.get_by_role("region", name="The run asks")).to_be_visible()
-        assert page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-        assert page.evaluate("() => document.documentElement.scrollHeight") <= size[1]
+        require_fit(page, *size)
         if size == PHONE:
             page.get_by_role("tab", name="Graph").click()
         node(page, "root/rest").click()

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 from engine.bus import Holder
 from engine.event import OperatorChanged, RunStarted
 from engine.supervision import Supervision
-from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, switch
+from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, require_fit, switch
 from tests.editor_web.workshop import NAP_ID, SHIFT, SHIFT_ID, Workshop
 
 ASKS = Supervision(autonomy="low", demand_operator=True)
@@ -244,11 +244,11 @@ def test_on_a_phone_nothing_stands_out_to_the_side(browser: Browser, shop: Works
         for path, shown in (("/runs", "article"), (f"/beside/{runs['shift']}/{runs['nap']}", ".run-column .step")):
             page.goto(shop.running.url.rstrip("/") + path)
             expect(page.locator(shown).first).to_be_visible()
-            assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
-        boxes = [column(page, side).bounding_box() for side in ("left", "right")]
-        assert boxes[0] is not None
-        assert boxes[1] is not None
-        assert boxes[0]["y"] + boxes[0]["height"] <= boxes[1]["y"]
+            require_fit(page, PHONE[0])
+        page.wait_for_function(
+            "([left, right]) => left.getBoundingClientRect().bottom <= right.getBoundingClientRect().top",
+            arg=[column(page, side).element_handle() for side in ("left", "right")],
+        )
 
 
 def test_a_card_whose_connection_is_lost_comes_back(browser: Browser, shop: Workshop) -> None:

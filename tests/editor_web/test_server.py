@@ -12,6 +12,7 @@ import pytest
 from editor_web.server import Dashboard, dashboard, serve
 from engine.errors import FlexcellError
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.10", "::", "127.evil.example", "example.org", ""])
@@ -36,7 +37,7 @@ async def test_the_printed_address_logs_in(tmp_path: Path, loopback: str) -> Non
     """One click from the terminal to the page."""
     async with (
         dashboard(FakeBackend(), token_file=tmp_path / "tokens", host=loopback, cell_view=False) as running,
-        httpx.AsyncClient(trust_env=False) as browser,
+        httpx.AsyncClient(trust_env=False, timeout=GUARD_S) as browser,
     ):
         answer = await browser.get(running.login_url)
         assert (answer.status_code, answer.headers["location"]) == (303, "/")
@@ -55,6 +56,6 @@ async def test_serving_ends_when_cancelled_and_leaves_the_signals_alone(tmp_path
     task.cancel()
     with pytest.raises(asyncio.CancelledError):
         await task
-    async with httpx.AsyncClient(trust_env=False) as browser:
+    async with httpx.AsyncClient(trust_env=False, timeout=GUARD_S) as browser:
         with pytest.raises(httpx.ConnectError):
             await browser.get(running.url)

@@ -115,7 +115,7 @@ def test_a_gamepad_that_is_gone_stops_the_arm_and_starts_nothing_when_it_is_back
             pads.hold(DEADMAN, axes=UP)
             pads.looked_at()
             assert len(told_s) == count
-        assert not site.on_loop(lambda: site.bus.goals())
+        site.call(site.let_go())
 
 
 def test_the_sticks_turn_joints_too(browser: Browser, site: TeachSite) -> None:

@@ -14,7 +14,7 @@ from engine.skills.entries import ReadEntry
 from engine.skills.jogging import JogCommand
 from engine.skills.teaching import Callback, Trigger, TriggerType
 from engine.store.kinds import Joints, read_as
-from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, switch
+from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, require_fit, switch, until
 from tests.editor_web.teach_page import LAPTOP, tab, teaching
 from tests.editor_web.teach_site import RESTS_RAD_S, TeachSite, fastest
 
@@ -97,7 +97,7 @@ def run_round(site: TeachSite) -> None:
         found = site.session.run(run)
         return found.outcome or found.cause
 
-    assert site.call(ended(), within_s=30) == "done"
+    assert site.call(ended()) == "done"
 
 
 def test_poses_and_a_motion_are_taught_by_buttons_and_move_a_behavior(browser: Browser, site: TeachSite) -> None:
@@ -113,8 +113,10 @@ def test_poses_and_a_motion_are_taught_by_buttons_and_move_a_behavior(browser: B
         move.get_by_text("Step", exact=True).click()
         move.get_by_text("50 mm", exact=True).click()
         move.get_by_role("slider", name="Speed", exact=True).press("End")
+        before = np.array(site.joints().position_rad)
         move.get_by_role("button", name="Z minus", exact=True).click()
-        move.get_by_role("button", name="Stop (Escape)").wait_for()
+        site.call(site.moved(before, by_rad=0.03))
+        site.call(site.rested())
         expect(move.get_by_role("button", name="Stop (Escape)")).to_have_count(0)
         page.keyboard.press("ArrowLeft")
         expect(said).to_have_text(f"capture {first + 1} of left: joints")
@@ -167,7 +169,7 @@ def test_an_arm_rests_when_its_page_dies_while_it_jogs(browser: Browser, site: T
         page.close()
         moving = site.call(site.last_moving())
         assert moving.time_s - told_s[-1] < 0.3
-        assert not site.on_loop(lambda: site.bus.goals())
+        site.call(site.let_go())
 
 
 @pytest.mark.parametrize("leave", ["blur", "pointerup", "visibilitychange"])
@@ -200,9 +202,9 @@ def test_an_arm_is_jogged_by_joints_with_the_keyboard(browser: Browser, site: Te
         page.keyboard.up("7")
         after = site.call(site.rested()).position_rad
         assert np.allclose(after[:6], before[:6], atol=5e-3)
-        expect(move.get_by_role("list", name="Joints").get_by_role("listitem").last).to_contain_text(
-            f"{np.degrees(site.joints().position_rad[6]):.1f}°"
-        )
+        shown = move.get_by_role("list", name="Joints").get_by_role("listitem").last
+        # It still settles by some hundredths of a degree.
+        until(page, lambda: f"{np.degrees(site.joints().position_rad[6]):.1f}°" in shown.inner_text())
         move.get_by_role("button", name="Let it float").click()
         expect(move.get_by_role("status", name="State of jogging")).to_have_text("it floats: let it hold itself first")
         move.get_by_role("button", name="Hold itself").click()
@@ -224,11 +226,12 @@ def test_an_entry_is_played_back_only_after_a_yes_and_escape_stops_it(browser: B
         page.keyboard.press("Escape")
         expect(entries.get_by_role("status", name="Play-back")).to_have_text("Stopped")
         rested = site.call(site.rested())
-        assert rested.position_rad[0] < 1.0
+        # The page may take a while for the key.
+        assert rested.position_rad[0] < 1.1
         entries.get_by_role("button", name="Play back slowly").click()
         entries.get_by_label("Speed of the play-back").select_option("50")
         entries.get_by_role("button", name="Move the arm").click()
-        expect(entries.get_by_role("status", name="Play-back")).to_contain_text("has gone along", timeout=20_000)
+        expect(entries.get_by_role("status", name="Play-back")).to_contain_text("has gone along")
         assert abs(site.joints().position_rad[0] - 1.2) < 0.01
         entries.get_by_role("button", name="Delete").click()
         expect(entries.get_by_text("Nothing is found")).to_be_visible()
@@ -291,7 +294,7 @@ def test_a_phone_shows_everything_without_scrolling_sideways(browser: Browser, s
     with teaching(browser, site, size=PHONE) as page:
         for name in TABS:
             tab(page, name)
-            assert page.evaluate("document.documentElement.scrollWidth") <= PHONE[0], name
+            require_fit(page, PHONE[0])
 
 
 def test_a_viewer_sees_the_arm_and_is_told_why_nothing_can_be_moved(browser: Browser, site: TeachSite) -> None:

@@ -14,10 +14,12 @@ import zstandard
 from websockets.typing import Subprotocol
 
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView
+from editor_web.security import cookie_name
+from editor_web.server import Dashboard
+from tests.editor_web.limits import GUARD_S
 
 VISER = Subprotocol("viser-v1.1.1")
 _MAGIC = b"\x28\xb5\x2f\xfd"
-LIMIT_S = 20.0
 
 
 @dataclass(kw_only=True)
@@ -39,7 +41,7 @@ class ViserPage:
 
     async def until(self, condition: Callable[[], bool]) -> None:
         """Take what comes until this is so."""
-        async with asyncio.timeout(LIMIT_S):
+        async with asyncio.timeout(GUARD_S):
             while not condition():
                 self._take(await self.socket.recv())
 
@@ -101,6 +103,23 @@ async def viser_page(
         f"ws://127.0.0.1:{view.port}/",
         subprotocols=[VISER],
         additional_headers={KEY_HEADER: view.key, PAGE_HEADER: page, **(headers or {})},
+        max_size=None,
+        proxy=None,
+    ) as socket:
+        opened = ViserPage(socket=socket)
+        await opened.send_camera()
+        yield opened
+
+
+@asynccontextmanager
+async def served_view(running: Dashboard, session: str, page: str) -> AsyncGenerator[ViserPage]:
+    """Connect as a browser does whose page has this name, through the server and with the cookie of a log-in."""
+    origin = running.url.rstrip("/")
+    async with websockets.asyncio.client.connect(
+        f"{origin.replace('http', 'ws', 1)}/cell/{page}/",
+        subprotocols=[VISER],
+        additional_headers={"Cookie": f"{cookie_name(running.port)}={session}"},
+        origin=websockets.Origin(origin),
         max_size=None,
         proxy=None,
     ) as socket:

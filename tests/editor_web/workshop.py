@@ -20,6 +20,7 @@ from engine.session import Session
 from engine.session_recordings import RECORDINGS, SessionRecordings
 from engine.state import State
 from tests.editor_web.fake_arm import FakeArm
+from tests.editor_web.limits import GUARD_S
 from tests.engine.fake_states import CATALOGUE
 
 T = TypeVar("T")
@@ -116,7 +117,7 @@ class Workshop:
 
     def call(self, work: Coroutine[Any, Any, T]) -> T:
         """Run a coroutine on the server's loop."""
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=20)
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout=GUARD_S)
 
     def on_loop(self, work: Callable[[], T]) -> T:
         """Call a function on the server's loop."""

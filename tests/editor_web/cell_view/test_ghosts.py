@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
 
 import viser
 
@@ -15,22 +17,21 @@ from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.fake_sights import description, way
 from tests.editor_web.viser_page import viser_page
 
+NOBODY_LOOKS = PathPreview(robot="left", state="none")
+
 
 def test_a_ghost_stands_beside_the_planned_way_and_goes_when_nobody_looks(server: viser.ViserServer) -> None:
     newest = Newest()
     for name, message in (("left", description("left")), ("cell", new_scene()), ("cell", frames_at(0.0))):
         newest.put(name, message)
     newest.put("left", way("left", "moving"))
-    newest.put_ghost(way("left"))
-    newest.put_ghost(way("left"), place=2)
     planned, ghosts = Ways(server), Ghosts(server)
     planned.draw(newest, 0.0, is_shown=True)
-    ghosts.draw(newest, 0.0)
+    ghosts.draw({("left", 0): way("left"), ("left", 2): way("left")}, newest, 0.0)
     for node in ("/ways/left", "/taught/left.0", "/taught/left.2"):
         assert server.scene.get_handle_by_name(f"{node}/line") is not None
         assert server.scene.get_handle_by_name(f"{node}/ghost") is not None
-    newest.put_ghost(PathPreview(robot="left", state="none"))
-    ghosts.draw(newest, 1.0)
+    ghosts.draw({("left", 0): NOBODY_LOOKS}, newest, 1.0)
     assert server.scene.get_handle_by_name("/taught/left.0/line") is None
     assert server.scene.get_handle_by_name("/taught/left.2/line") is not None
     ghost, planned_ghost = (
@@ -42,8 +43,9 @@ def test_a_ghost_stands_beside_the_planned_way_and_goes_when_nobody_looks(server
     assert planned_ghost.visible
 
 
-async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
-    """Somebody wants to see it just now."""
+@asynccontextmanager
+async def opened() -> AsyncGenerator[CellView]:
+    """The view of a cell in which one arm has planned a way."""
     backend = FakeBackend()
     for topic, message in (
         ("cell/scene", new_scene()),
@@ -56,12 +58,47 @@ async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
     await asyncio.to_thread(view.open)
     await view.subscribe()
     try:
-        view.show("mine", frozenset({"voxels"}))
-        async with viser_page(view, "mine") as page:
-            view.show_ghost(way("left"), place=1)
-            await page.until(lambda: page.is_seen("/taught/left.1/line") and not page.is_seen("/ways/left/line"))
-            view.show_ghost(PathPreview(robot="left", state="none"), place=1)
-            await page.until(lambda: not page.is_seen("/taught/left.1/line"))
+        yield view
     finally:
         await view.unsubscribe()
         await asyncio.to_thread(view.close)
+
+
+async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
+    """Somebody wants to see it just now."""
+    async with opened() as view:
+        view.show("mine", frozenset({"voxels"}))
+        async with viser_page(view, "mine") as page:
+            view.show_ghost("mine", way("left"), place=1)
+            await page.until(lambda: page.is_seen("/taught/left.1/line") and not page.is_seen("/ways/left/line"))
+            view.show_ghost("mine", NOBODY_LOOKS, place=1)
+            await page.until(lambda: not page.is_seen("/taught/left.1/line"))
+
+
+async def test_only_the_page_that_asked_sees_a_ghost() -> None:
+    """Each has its own, of the same arm at the same time; the one that asked nothing has none."""
+    async with (
+        opened() as view,
+        viser_page(view, "mine") as mine,
+        viser_page(view, "yours") as yours,
+        viser_page(view, "theirs") as theirs,
+    ):
+        view.show_ghost("mine", way("left"))
+        view.show_ghost("yours", way("left"), place=3)
+        await mine.until(lambda: mine.is_seen("/taught/left.0/ghost"))
+        await yours.until(lambda: yours.is_seen("/taught/left.3/ghost"))
+        view.show_ghost("mine", NOBODY_LOOKS)
+        await mine.until(lambda: not mine.is_seen("/taught/left.0/ghost"))
+        await theirs.idle()
+        assert yours.is_seen("/taught/left.3/ghost")
+        assert not any(name.startswith("/taught/left.0") for name in yours.nodes)
+        assert not any(name.startswith("/taught/") for name in theirs.nodes)
+
+
+async def test_a_page_that_loads_its_view_again_still_sees_its_ghost() -> None:
+    """As it does when the colours of the page change."""
+    async with opened() as view:
+        view.show_ghost("mine", way("left"))
+        for _ in range(2):
+            async with viser_page(view, "mine") as page:
+                await page.until(lambda page=page: page.is_seen("/taught/left.0/ghost"))

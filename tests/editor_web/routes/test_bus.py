@@ -20,6 +20,7 @@ from engine.messages import Message
 from engine.skill import Action, Service
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 
 
 class Number(Message, frozen=True, kw_only=True):
@@ -124,7 +125,7 @@ async def test_a_goal_is_cancelled_when_its_client_goes(serve: Serve) -> None:
             asking = asyncio.create_task(RemoteBus(served.http).perform("left/rest", {}))
             await device.started.wait()
             asking.cancel()
-            async with asyncio.timeout(5):
+            async with asyncio.timeout(GUARD_S):
                 await device.rested.wait()
             with pytest.raises(asyncio.CancelledError):
                 await asking
@@ -132,7 +133,10 @@ async def test_a_goal_is_cancelled_when_its_client_goes(serve: Serve) -> None:
 
 async def test_the_bus_is_closed_to_who_is_not_logged_in(serve: Serve) -> None:
     """It moves robots."""
-    async with serve() as served, httpx.AsyncClient(base_url=served.running.url, trust_env=False) as stranger:
+    async with (
+        serve() as served,
+        httpx.AsyncClient(base_url=served.running.url, trust_env=False, timeout=GUARD_S) as stranger,
+    ):
         assert (await stranger.get("/api/v1/bus")).status_code == 401
         for path in ("call", "goal", "publish"):
             assert (await stranger.post(f"/api/v1/bus/{path}", json={"address": "left/rest"})).status_code == 403
@@ -213,7 +217,7 @@ async def test_a_goal_whose_page_goes_is_cancelled_and_one_of_a_run_is_not_for_t
             async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:
                 await anext(_lines(response))
                 await device.started.wait()
-            async with asyncio.timeout(5):
+            async with asyncio.timeout(GUARD_S):
                 await device.rested.wait()
                 await bus.cancel_goals()
             device.rested.clear()
@@ -227,7 +231,8 @@ async def test_viewers_see_the_bus_and_change_nothing(serve: Serve) -> None:
     """Every change is refused to them."""
     async with serve() as served:
         headers = {"Authorization": f"Bearer {served.access.viewer}"}
-        async with httpx.AsyncClient(base_url=served.running.url, headers=headers, trust_env=False) as viewer:
+        url = served.running.url
+        async with httpx.AsyncClient(base_url=url, headers=headers, trust_env=False, timeout=GUARD_S) as viewer:
             for path in ("board", "fields"):
                 assert (await viewer.get(f"/api/v1/bus/{path}")).status_code == 200
             for path in ("goals", "goals/g1/cancel", "call", "publish"):

@@ -18,6 +18,7 @@ from editor_web.security import cookie_name
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.past_recording import write_recording
 from tests.editor_web.served import Served
 from tests.editor_web.viser_page import VISER, ViserPage
@@ -73,7 +74,7 @@ async def ask(socket: websockets.asyncio.client.ClientConnection, time_s: float 
 
 async def told(socket: websockets.asyncio.client.ClientConnection, time_s: float) -> dict[str, Any]:
     """What the page is told of a moment."""
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(GUARD_S):
         while (state := json.loads(await socket.recv()))["time_s"] != time_s:
             pass
     return state

@@ -20,6 +20,7 @@ from engine.journal import Journal
 from engine.registry import load_states
 from engine.session import Session
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served
 from tests.engine.cli.process import entered, run_id_in, started, until
 
@@ -104,7 +105,9 @@ async def site(project: Path, host: str) -> AsyncGenerator[Site]:
         ):
             access = load_access(tokens)
             headers = {"Authorization": f"Bearer {access.operator}"}
-            async with httpx.AsyncClient(base_url=running.url, headers=headers, trust_env=False) as http:
+            async with httpx.AsyncClient(
+                base_url=running.url, headers=headers, trust_env=False, timeout=GUARD_S
+            ) as http:
                 served = Served(backend=FakeBackend(), running=running, access=access, http=http)
                 yield Site(session=session, served=served, project=project)
 
@@ -179,7 +182,8 @@ async def test_a_viewer_may_look_and_not_touch(project: Path, loopback: str) -> 
     async with site(project, loopback) as there:
         run = await there.start(supervision={"start_paused": True})
         headers = {"Authorization": f"Bearer {there.served.access.viewer}"}
-        async with httpx.AsyncClient(base_url=there.served.running.url, headers=headers, trust_env=False) as viewer:
+        url = there.served.running.url
+        async with httpx.AsyncClient(base_url=url, headers=headers, trust_env=False, timeout=GUARD_S) as viewer:
             assert (await viewer.get(f"/api/v1/runs/{run}/control")).status_code == 200
             assert (await viewer.post(f"/api/v1/runs/{run}/control/resume")).status_code == 403
             assert (await viewer.get(f"/api/v1/breakpoints/{STEPS_ID}")).status_code == 200

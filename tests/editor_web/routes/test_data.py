@@ -21,6 +21,7 @@ from engine.messages import JointState, Message
 from engine.skill import Action
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served
 
 
@@ -164,7 +165,7 @@ async def test_what_is_no_look_ends_the_connection(serve: Serve) -> None:
                 proxy=None,
             ) as socket:
                 await socket.send(nonsense)
-                async with asyncio.timeout(5):
+                async with asyncio.timeout(GUARD_S):
                     await socket.wait_closed()
                 assert socket.close_code == 1008
 

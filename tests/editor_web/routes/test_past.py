@@ -14,6 +14,7 @@ from engine.clock import run_virtual
 from engine.recording import part_file
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_behaviors import TRANSFER
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 from tests.engine.archive.test_archive import GOES_WRONG
 from tests.engine.replay.bench import record_run
@@ -58,7 +59,7 @@ def http(restarted: tuple[Workshop, str]) -> Generator[httpx.Client]:
 def client_of(shop: Workshop) -> httpx.Client:
     """The operator of a server."""
     headers = {"Authorization": f"Bearer {shop.access.operator}"}
-    return httpx.Client(base_url=f"{shop.running.url}api/v1", headers=headers, trust_env=False)
+    return httpx.Client(base_url=f"{shop.running.url}api/v1", headers=headers, trust_env=False, timeout=GUARD_S)
 
 
 def got(http: httpx.Client, path: str, **query: object) -> Any:
@@ -202,7 +203,8 @@ def test_a_viewer_may_look(restarted: tuple[Workshop, str]) -> None:
     """At everything; and nobody without a token."""
     shop, run = restarted
     for headers, status in (({"Authorization": f"Bearer {shop.access.viewer}"}, 200), ({}, 401)):
-        with httpx.Client(base_url=f"{shop.running.url}api/v1", headers=headers, trust_env=False) as client:
+        url = f"{shop.running.url}api/v1"
+        with httpx.Client(base_url=url, headers=headers, trust_env=False, timeout=GUARD_S) as client:
             for path in ("/past-runs", "/recordings", f"/runs/{run}/timeline", f"/runs/{run}/at", f"/runs/{run}/past"):
                 assert client.get(path).status_code == status
 

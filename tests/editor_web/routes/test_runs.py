@@ -9,11 +9,12 @@ import httpx
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import SINGLE, TRANSFER
+from tests.editor_web.limits import GUARD_S
 
 
 async def ended(http: httpx.AsyncClient, run: str) -> dict[str, object]:
     """Wait for the end of a run."""
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(GUARD_S):
         while True:
             body = (await http.get(f"/api/v1/runs/{run}")).json()
             if body["status"] not in ("running", "stopping"):

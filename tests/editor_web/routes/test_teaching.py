@@ -14,6 +14,7 @@ from engine.demonstration import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import WriteEntry
 from engine.skills.teaching import TeachNow
+from tests.editor_web.limits import GUARD_S
 from tests.editor_web.teach_site import TeachSite
 from tests.robots.panda_arm import home
 
@@ -42,7 +43,8 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
 def http(site: TeachSite) -> Generator[httpx.Client]:
     """The operator."""
     headers = {"Authorization": f"Bearer {site.running.token}"}
-    with httpx.Client(base_url=f"{site.running.url}api/v1/teach", headers=headers, trust_env=False, timeout=30) as made:
+    url = f"{site.running.url}api/v1/teach"
+    with httpx.Client(base_url=url, headers=headers, trust_env=False, timeout=GUARD_S) as made:
         yield made
 
 
@@ -113,7 +115,9 @@ def test_an_arm_that_holds_itself_is_not_pushed(http: httpx.Client) -> None:
 def test_a_viewer_moves_nothing(site: TeachSite) -> None:
     headers = {"Authorization": f"Bearer {site.access.viewer}"}
     body = {"arm": "left", "kind": "dmp", "name": "turn", "speed": 0.1}
-    answer = httpx.post(f"{site.running.url}api/v1/teach/play", json=body, headers=headers, trust_env=False)
+    answer = httpx.post(
+        f"{site.running.url}api/v1/teach/play", json=body, headers=headers, trust_env=False, timeout=GUARD_S
+    )
     assert answer.status_code == 403
 
 

@@ -25,6 +25,7 @@ import type {
   TeachStatus,
   Trigger,
 } from './types'
+import { PAGE } from './shown'
 import { openSocket } from './socket'
 
 type FromServer = ArmCards | ArmsNow | HandNews | EntriesChanged | Jogging | Refused
@@ -86,7 +87,7 @@ export function connectTeach(): () => void {
   let retry: ReturnType<typeof setTimeout> | undefined
 
   function open(): void {
-    const opened = openSocket('/teach/live')
+    const opened = openSocket(`/teach/live?page=${PAGE}`)
     socket = opened
     opened.onopen = () => useTeach.setState({ isOpen: true })
     opened.onmessage = (message: MessageEvent<string>) => take(JSON.parse(message.data) as FromServer)

@@ -26,6 +26,7 @@ const PastRunsPage = lazy(async () => ({ default: (await import('./PastRunsPage'
 const RunsPage = lazy(async () => ({ default: (await import('./RunsPage')).RunsPage }))
 const BesidePage = lazy(async () => ({ default: (await import('./BesidePage')).BesidePage }))
 const EditorPage = lazy(async () => ({ default: (await import('../features/editor/EditorPage')).EditorPage }))
+const EditorPreview = lazy(async () => ({ default: (await import('./EditorPreview')).EditorPreview }))
 const Tour = lazy(async () => ({ default: (await import('../features/tour/Tour')).Tour }))
 
 export function App() {
@@ -113,6 +114,12 @@ export function App() {
               onRun={() => open(behaviorHref(route.id))}
               onOpen={(id, node) => open(editHref(id, node))}
               onGone={() => open('/')}
+              hasCellView={session.value?.has_cell_view ?? false}
+              preview={
+                <Suspense fallback={null}>
+                  <EditorPreview isNarrow={isNarrow ?? false} />
+                </Suspense>
+              }
               libraryTools={session.value?.role === 'operator' ? <FromDemonstration onMade={(id) => open(editHref(id))} /> : undefined}
             />
           </Suspense>

@@ -1,14 +1,12 @@
 /** The canvas: what is drawn, what dragging, dropping and wiring on it mean. */
 import '@xyflow/react/dist/style.css'
-import { useElementSize } from '@mantine/hooks'
-import { IconPlus } from '@tabler/icons-react'
+import { useCallbackRef, useElementSize } from '@mantine/hooks'
 import {
   applyNodeChanges,
   Background,
   BackgroundVariant,
   ConnectionMode,
   MiniMap,
-  Panel,
   ReactFlow,
   SelectionMode,
   useReactFlow,
@@ -25,17 +23,20 @@ import { add, choose, chooseArrow, moveInto, place, type Addition } from './acti
 import { askAdd, askFrom } from './asking'
 import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onReconnect } from './canvasActs'
 import { setCanvasPlaces } from './canvasPlaces'
+import { giveBySteps } from './bySteps'
+import { Beginning } from './Beginning'
 import { BranchLine, EditArrowHeads, WayLine } from './Lines'
 import { FAR, FarLines, fromFar, MANY, setFar } from './Far'
 import { FrameCard, LeafCard, PillCard, RulesCard, TwigCard } from './Cards'
 import { canvasEdges, canvasNodes, type CanvasEdge, type CanvasNode } from './elements'
 import { ADDITION } from './dragging'
+import { movingNextFrame } from './moving'
 import { isAllSeen, LEAST, viewportFor } from './viewport'
 import { FlowOverlay } from './FlowOverlay'
 import { NoteOverlay } from './NoteOverlay'
 import { SelectionBar } from './SelectionBar'
 import { editor, refused, rootOf, setEditor, useEditor } from './store'
-import { useArrangement, type Arranged } from './useArrangement'
+import { useArrangement, useIsBusy, type Arranged } from './useArrangement'
 import { useKept } from './useKept'
 
 const NODE_TYPES = {
@@ -53,12 +54,15 @@ export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: bo
   const { ref, width, height } = useElementSize()
   const pane = width > 0 && height > 0 ? { width, height } : undefined
   const { arranged, problem } = useArrangement(pane)
-  const root = useEditor(rootOf)
+  const [drawn, setDrawn] = useState<Arranged>()
+  const isBusy = useIsBusy(drawn)
   return (
-    <div className="edit-canvas" ref={ref} aria-busy={arranged?.root !== root} data-drawn={arranged?.arrangement.boxes.size}>
+    <div className="edit-canvas" ref={ref} aria-busy={isBusy} data-drawn={drawn?.arrangement.boxes.size}>
       <EditArrowHeads />
       {problem && <Empty title="The graph could not be laid out">{problem}</Empty>}
-      {arranged && <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} />}
+      {arranged && (
+        <Drawn arranged={arranged} pane={`${width}x${height}`} hasMap={hasMap} boxSelects={boxSelects} onDrawn={setDrawn} />
+      )}
     </div>
   )
 }
@@ -68,9 +72,11 @@ interface DrawnProps {
   readonly pane: string
   readonly hasMap: boolean
   readonly boxSelects: boolean
+  /** This is on the canvas, with each node in its place. */
+  readonly onDrawn: (drawn: Arranged) => void
 }
 
-function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
+function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const { fitView, getViewport, setViewport, screenToFlowPosition, getInternalNode, getZoom } = useReactFlow<
     CanvasNode,
     CanvasEdge
@@ -81,6 +87,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
   const isStale = useEditor((s) => s.history.steps[s.history.at]?.draft.isStale ?? false)
   const computed = useKept(useMemo(() => canvasNodes(arranged), [arranged]))
   const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
+  const [given, setGiven] = useState<Arranged>()
   const [isWiring, setWiring] = useState(false)
   const [isInPlace, setInPlace] = useState(false)
   const [lookedFor, setLookedFor] = useState<typeof shown>()
@@ -91,8 +98,12 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
   useEffect(() => {
     setCanvasPlaces(arranged.arrangement)
     const chosen = new Set(selection)
-    setNodes(computed.map((node) => (chosen.has(node.id) ? { ...node, selected: true } : node)))
-  }, [arranged, computed, selection])
+    const all = computed.map((node) => (chosen.has(node.id) ? { ...node, selected: true } : node))
+    const isThere = (id: string) => getInternalNode(id) !== undefined
+    return giveBySteps(all, { isThere, give: setNodes, done: () => setGiven(arranged) })
+  }, [arranged, computed, selection, getInternalNode])
+  // React Flow moves its nodes a turn after they were given to it.
+  useEffect(() => given && onDrawn(given), [given, onDrawn])
 
   const edges = useKept(
     useMemo(
@@ -107,12 +118,11 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
   useEffect(() => () => setFar(undefined), [])
 
   useEffect(() => {
-    const frame = requestAnimationFrame(() => {
+    return movingNextFrame(() => {
       const [width = 0, height = 0] = pane.split('x').map(Number)
-      void setViewport(viewportFor(arranged.arrangement, { width, height })).then(() => setInPlace(true))
       isFitted.current = true
+      return setViewport(viewportFor(arranged.arrangement, { width, height })).then(() => setInPlace(true))
     })
-    return () => cancelAnimationFrame(frame)
     // eslint-disable-next-line react-hooks/exhaustive-deps -- what is edited does not move the view
   }, [arranged.view, pane, setViewport])
 
@@ -140,15 +150,15 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       setEditor({ scope: parentPath(shown.path) })
       return
     }
-    const frame = requestAnimationFrame(() => {
+    if (given !== arranged) return
+    return movingNextFrame(() => {
       const target = element.current?.querySelector<HTMLElement>(
         `.react-flow__node[data-id="${CSS.escape(shown.path)}"]`,
       )
       if (!target) {
         // Of many, only those in view are drawn: go there first.
-        if (computed.some((node) => node.id === shown.path))
-          void fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1 }).then(() => setLookedFor(shown))
-        return
+        if (!computed.some((node) => node.id === shown.path)) return undefined
+        return fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1 }).then(() => setLookedFor(shown))
       }
       handled.current = shown
       const around = element.current?.getBoundingClientRect()
@@ -159,17 +169,16 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
         own.right <= around.right &&
         own.top >= around.top &&
         own.bottom <= around.bottom
-      if (!isInView || getZoom() < 0.4)
-        void fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1, duration: 200 })
       if (
         !document.activeElement ||
         document.activeElement === document.body ||
         element.current?.contains(document.activeElement)
       )
         target.focus({ preventScroll: true })
+      if (isInView && getZoom() >= 0.4) return undefined
+      return fitView({ nodes: [{ id: shown.path }], padding: 0.9, maxZoom: 1, duration: 200 })
     })
-    return () => cancelAnimationFrame(frame)
-  }, [shown, computed, arranged, fitView, getZoom, lookedFor])
+  }, [shown, computed, arranged, given, fitView, getZoom, lookedFor])
 
   const onNodesChange = useCallback((changes: NodeChange<CanvasNode>[]) => {
     const picks = changes.filter((change) => change.type === 'select')
@@ -185,7 +194,8 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
     if (others.length > 0) setNodes((before) => applyNodeChanges(others, before))
   }, [])
 
-  function onDragStop(_event: unknown, _node: CanvasNode, dragged: CanvasNode[]): void {
+  // What is given to React Flow stays the same function: all it draws is looked through for each new one.
+  const onDragStop = useCallbackRef((_event: unknown, _node: CanvasNode, dragged: CanvasNode[]): void => {
     const root = rootOf(editor())
     const moved = dragged.filter((node) => node.type !== 'pill' && node.type !== 'rules')
     if (!root || moved.length === 0) return
@@ -208,7 +218,15 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
         if (!isThere) setNodes([...computed])
       })
     if (free.length < changed.length) setNodes([...computed])
-  }
+  })
+
+  const onSelectionDragStop = useCallbackRef((event: unknown, moved: CanvasNode[]) =>
+    onDragStop(event, moved[0] as CanvasNode, moved),
+  )
+  const onConnectStart = useCallbackRef(() => setWiring(true))
+  const onMoveStart = useCallbackRef((event: unknown) => {
+    if (event) isFitted.current = false
+  })
 
   /** The container under the middle of what was dragged, where it is another one than before. */
   function holderUnder(moved: readonly CanvasNode[]): string | undefined {
@@ -249,7 +267,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
     return { x: at.x - (box?.x ?? 0) - origin.x, y: at.y - (box?.y ?? 0) - origin.y }
   }
 
-  function onConnectEnd(event: MouseEvent | TouchEvent, state: FinalConnectionState): void {
+  const onConnectEnd = useCallbackRef((event: MouseEvent | TouchEvent, state: FinalConnectionState): void => {
     setWiring(false)
     if (state.isValid || !state.fromNode || !state.fromHandle?.id || state.fromHandle.type !== 'source') return
     const point = 'changedTouches' in event ? event.changedTouches[0] : event
@@ -261,7 +279,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       screen,
       positionIn(parentPath(state.fromNode.id), screenToFlowPosition(screen)),
     )
-  }
+  })
 
   function onDrop(event: DragEvent): void {
     const given = event.dataTransfer.getData(ADDITION)
@@ -319,11 +337,9 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
         chooseArrow(undefined)
       }}
       onNodeDragStop={onDragStop}
-      onSelectionDragStop={(event, moved) => onDragStop(event, moved[0] as CanvasNode, moved)}
-      onMoveStart={(event) => {
-        if (event) isFitted.current = false
-      }}
-      onConnectStart={() => setWiring(true)}
+      onSelectionDragStop={onSelectionDragStop}
+      onMoveStart={onMoveStart}
+      onConnectStart={onConnectStart}
       onConnect={onConnect}
       onConnectEnd={onConnectEnd}
       isValidConnection={isAllowed}
@@ -375,19 +391,5 @@ function Drawn({ arranged, pane, hasMap, boxSelects }: DrawnProps) {
       <SelectionBar />
       {arranged.scope.children.length === 0 && <Beginning />}
     </ReactFlow>
-  )
-}
-
-/** What to do where there is nothing yet. */
-function Beginning() {
-  return (
-    <Panel position="top-center" className="beginning">
-      <p>
-        <strong>Nothing here yet.</strong> Drag a state from the library, or add one by its name.
-      </p>
-      <button type="button" className="command is-strong" onClick={() => askAdd()}>
-        <IconPlus size={15} aria-hidden /> Add a state <kbd>A</kbd>
-      </button>
-    </Panel>
   )
 }

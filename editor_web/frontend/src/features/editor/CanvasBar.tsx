@@ -16,6 +16,7 @@ import { useMemo, type ReactNode } from 'react'
 import { nodeOf, pathsTo } from '../../document/editing/model'
 import { focusNode, layOutAnew } from './actions'
 import { askAdd } from './asking'
+import { moving } from './moving'
 import { openOther } from './pageActs'
 import { toggleNotes, useNotes } from './notes'
 import { cameFrom } from './references'
@@ -62,13 +63,13 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       <Tool label="Overview" isPressed={hasMap} onPress={onMap}>
         <IconMap size={17} />
       </Tool>
-      <Tool label="Zoom out (-)" onPress={() => void zoomOut({ duration: 120 })}>
+      <Tool label="Zoom out (-)" onPress={() => moving(zoomOut({ duration: 120 }))}>
         <IconMinus size={17} />
       </Tool>
-      <Tool label="Zoom in (+)" onPress={() => void zoomIn({ duration: 120 })}>
+      <Tool label="Zoom in (+)" onPress={() => moving(zoomIn({ duration: 120 }))}>
         <IconPlus size={17} />
       </Tool>
-      <Tool label="Show all (F)" onPress={() => void setViewport(wholeCanvas(), { duration: 200 })}>
+      <Tool label="Show all (F)" onPress={() => moving(setViewport(wholeCanvas(), { duration: 200 }))}>
         <IconArrowsMaximize size={17} />
       </Tool>
     </div>

@@ -21,9 +21,11 @@ import { KeySheet } from './KeySheet'
 import { keepDraftNow } from './kept'
 import { LibraryPanel } from './LibraryPanel'
 import { NoticeLine } from './NoticeLine'
+import { moving } from './moving'
 import { Palettes } from './Palettes'
 import { forgetReferences, refreshReferences } from './references'
 import { lookAtDisk, openDocument, save } from './session'
+import { CellViewContext } from './ShowEntry'
 import { draftOf, editor, isDirty, refused, setEditor, useEditor } from './store'
 import { useLongPress } from './useLongPress'
 import { useEditorKeys } from './useEditorKeys'
@@ -43,6 +45,9 @@ export interface EditorPageProps {
   readonly onOpen: (id: string, node: string) => void
   /** What else a behavior can be begun from. */
   readonly libraryTools?: ReactNode
+  readonly hasCellView: boolean
+  /** Named entries as they are seen in 3D, over the canvas. */
+  readonly preview: ReactNode
   /** The behavior was deleted. */
   readonly onGone: () => void
 }
@@ -67,7 +72,9 @@ export function EditorPage(props: EditorPageProps) {
   if (phase === 'loading') return <div className="page-wait" role="status" aria-label="Loading" />
   return (
     <ReactFlowProvider>
-      <Loaded {...props} />
+      <CellViewContext value={props.hasCellView}>
+        <Loaded {...props} />
+      </CellViewContext>
     </ReactFlowProvider>
   )
 }
@@ -92,7 +99,7 @@ function useLeaving(): void {
   }, [])
 }
 
-function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: EditorPageProps) {
+function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, preview }: EditorPageProps) {
   const isTextShown = useEditor((s) => s.isTextShown)
   const isBusy = useEditor((s) => s.isBusy)
   const hasVersions = useFileDialog((s) => s.open === 'versions')
@@ -116,8 +123,8 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: Edit
   useEffect(() =>
     setPageActs({
       run: () => void run(),
-      fit: () => void setViewport(wholeCanvas(), { duration: 200 }),
-      zoom: (factor) => void zoomTo(getZoom() * factor, { duration: 120 }),
+      fit: () => moving(setViewport(wholeCanvas(), { duration: 200 })),
+      zoom: (factor) => moving(zoomTo(getZoom() * factor, { duration: 120 })),
       open: (id, node) => {
         keepDraftNow()
         onOpen(id, node)
@@ -173,7 +180,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: Edit
             {hasFlow ? <DataFlowPanel /> : <LibraryPanel tools={libraryTools} />}
           </Pane>
           <Separator className="splitter" aria-label="Width of the library" />
-          <Pane id="middle" defaultSize="57%" minSize="30%">
+          <Pane id="middle" defaultSize="57%" minSize="30%" className="editor-middle">
             <Group orientation="vertical">
               <Pane id="canvas" defaultSize={isTextShown ? '56%' : '100%'} minSize="20%">
                 {canvas}
@@ -187,6 +194,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: Edit
                 </>
               )}
             </Group>
+            {preview}
           </Pane>
           <Separator className="splitter" aria-label="Width of the form" />
           <Pane id="inspector" defaultSize="26%" minSize="20%" maxSize="50%">
@@ -194,6 +202,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools }: Edit
           </Pane>
         </Group>
       )}
+      {isNarrow && preview}
       <Palettes />
       <ConflictDialog />
       <FileDialogs onGone={onGone} />

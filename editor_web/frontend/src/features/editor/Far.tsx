@@ -24,7 +24,23 @@ export function fromFar<P extends NodeProps<CanvasNode>>(Near: ComponentType<P>)
   return memo(function Levelled(props: P) {
     const isFar = useFar((s) => s.scope !== undefined)
     return isFar ? <PlainBox {...props} /> : <Near {...props} />
-  })
+  }, looksAlike)
+}
+
+interface Looks {
+  readonly id: string
+  readonly type: string
+  readonly data: unknown
+  readonly selected: boolean
+  readonly width?: number | undefined
+  readonly height?: number | undefined
+}
+
+const LOOKS = ['id', 'type', 'data', 'selected', 'width', 'height'] as const
+
+/** Where a node stands is not drawn by itself: what moves with its container stays as it is. */
+function looksAlike(a: Looks, b: Looks): boolean {
+  return LOOKS.every((name) => a[name] === b[name])
 }
 
 function PlainBox(props: NodeProps<CanvasNode>) {

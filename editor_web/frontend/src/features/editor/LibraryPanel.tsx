@@ -4,11 +4,13 @@ import { IconChevronDown, IconChevronRight, IconInfoCircle, IconMapPin, IconSear
 import { useMemo, useState, type ReactNode } from 'react'
 import type { CatalogueBody } from '../../api/types'
 import { Panel } from '../../components/Panel'
+import { PLACED } from '../../document/editing/preview'
 import { found } from '../../document/editing/search'
 import { add, type Addition } from './actions'
 import { entryAddition, itemIcon, itemsOf, type Item } from './additions'
 import { placeForNew } from './asking'
 import { ADDITION } from './dragging'
+import { LibraryPreview } from './ShowEntry'
 import { refused, useEditor } from './store'
 
 export function LibraryPanel({ tools }: { tools?: ReactNode }) {
@@ -66,6 +68,7 @@ function entryItems(catalogue: CatalogueBody): readonly Item[] {
         kind: 'entry',
         onlyInTree: false,
         addition,
+        entry,
       },
     ]
   })
@@ -128,6 +131,7 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
           </span>
           <span className="library-name">{short}</span>
         </button>
+        {item.entry && item.entry.kind in PLACED && <LibraryPreview entry={item.entry} />}
         <button
           type="button"
           className="library-info"

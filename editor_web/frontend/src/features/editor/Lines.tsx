@@ -1,21 +1,26 @@
 /** The arrows of machines and the lines of trees on the editor's canvas. */
 import { getSmoothStepPath, Position, type EdgeProps } from '@xyflow/react'
-import { memo } from 'react'
+import { memo, useMemo } from 'react'
+import { shiftOf } from '../../document/editing/shift'
 import { roundedPath, type Point } from '../../document/geometry'
 import type { BranchEdge, WayEdge } from './elements'
 import { askInsert } from './asking'
 import { useWayFindings } from './marks'
 import { ArrowHeads } from './ArrowHeads'
 
-const TOLERANCE = 3
-
 export const WayLine = memo(function WayLine(props: EdgeProps<WayEdge>) {
   const { id, source, data, selected } = props
   const findings = useWayFindings(source, data?.outcome ?? '')
-  const { path, middle } = courseOf(props, data?.points)
+  const points = data?.points
+  const laidOut = useMemo(() => points && { path: roundedPath(points, 7), middle: middleOf(points) }, [points])
+  const from = { x: props.sourceX, y: props.sourceY }
+  const to = { x: props.targetX, y: props.targetY }
+  const shift = points && shiftOf(points, from, to)
+  // As laid out while both its ends are where they were, or have moved together; from port to port otherwise.
+  const { path, middle } = shift && laidOut ? laidOut : straight(props)
   const classes = `${selected ? ' is-selected' : ''}${findings.length > 0 ? ' has-finding' : ''}${data?.isQuiet ? ' is-quiet' : ''}`
   return (
-    <>
+    <g transform={shift && (shift.x !== 0 || shift.y !== 0) ? `translate(${shift.x} ${shift.y})` : undefined}>
       {!data?.isQuiet && (
         <path d={path} className="react-flow__edge-interaction" fill="none" strokeOpacity={0} strokeWidth={18} />
       )}
@@ -37,25 +42,12 @@ export const WayLine = memo(function WayLine(props: EdgeProps<WayEdge>) {
           <path d="M -4 0 H 4 M 0 -4 V 4" />
         </g>
       )}
-    </>
+    </g>
   )
 })
 
-/** Along the laid-out points while they fit the ends; from port to port while a node is dragged. */
-function courseOf(
-  { sourceX, sourceY, targetX, targetY }: EdgeProps<WayEdge>,
-  points: readonly Point[] | undefined,
-): { path: string; middle: Point } {
-  const first = points?.[0]
-  const last = points?.at(-1)
-  const fits =
-    first &&
-    last &&
-    Math.abs(first.y - sourceY) < TOLERANCE &&
-    Math.abs(last.y - targetY) < TOLERANCE &&
-    Math.abs(first.x - sourceX) < 12 &&
-    Math.abs(last.x - targetX) < 12
-  if (points && fits) return { path: roundedPath(points, 7), middle: middleOf(points) }
+/** While a node at one end of it is dragged. */
+function straight({ sourceX, sourceY, targetX, targetY }: EdgeProps<WayEdge>): { path: string; middle: Point } {
   const [path, x, y] = getSmoothStepPath({
     sourceX,
     sourceY,

@@ -16,6 +16,7 @@ import {
 import type { EditNode } from '../../document/editing/model'
 import { perform } from './apply'
 import { EntryDetails } from './EntryDetails'
+import { FieldPreview } from './ShowEntry'
 import { TemplateInput } from './TemplateInput'
 import { useEditor } from './store'
 
@@ -50,6 +51,7 @@ function setParameter(node: EditNode, name: string, value: unknown): void {
 function ParameterRow({ node, field, entries }: { node: EditNode; field: EditField; entries: readonly EntryBody[] }) {
   const value = node.parameters[field.name]
   const [asTemplate, setAsTemplate] = useState(isTemplate(value))
+  const [pointed, setPointed] = useState<string>()
   const problem = fieldProblem(field, value)
   const hintId = useId()
   const limits = limitsText(field)
@@ -100,7 +102,11 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
         hintId={limits ? `${hintId} ${hintId}-limits` : hintId}
         isInvalid={problem !== undefined}
         onSet={set}
+        onPoint={setPointed}
       />
+      {field.kind === 'entry' && (
+        <FieldPreview node={node} field={field} value={value} entries={entries} pointed={pointed} />
+      )}
       <div className="edit-hint" id={hintId}>
         {problem ? <span className="is-failed">{problem}</span> : field.description}
       </div>
@@ -116,9 +122,11 @@ interface InputProps {
   readonly hintId: string
   readonly isInvalid: boolean
   readonly onSet: (value: unknown) => void
+  /** A choice of the opened list is pointed at. */
+  readonly onPoint: (option: string | undefined) => void
 }
 
-function FieldInput({ field, value, isFree, entries, hintId, isInvalid, onSet }: InputProps) {
+function FieldInput({ field, value, isFree, entries, hintId, isInvalid, onSet, onPoint }: InputProps) {
   const label = field.name
   const fallback = shownValue(field.fallback)
   const shared = { label, describedBy: hintId, isInvalid, placeholder: field.required ? '' : fallback || 'not given' }
@@ -164,7 +172,7 @@ function FieldInput({ field, value, isFree, entries, hintId, isInvalid, onSet }:
     case 'vector':
       return <VectorInput field={field} value={value} onSet={onSet} />
     case 'entry':
-      return <EntryInput field={field} value={value} entries={entries} shared={shared} onSet={onSet} />
+      return <EntryInput field={field} value={value} entries={entries} shared={shared} onSet={onSet} onPoint={onPoint} />
     default:
       return (
         <TemplateInput
@@ -209,10 +217,11 @@ interface EntryProps {
     readonly placeholder: string
   }
   readonly onSet: (value: unknown) => void
+  readonly onPoint: (option: string | undefined) => void
 }
 
 /** A named entry of the store, to be chosen from those of its kind; or the whole value as data. */
-function EntryInput({ field, value, entries, shared, onSet }: EntryProps) {
+function EntryInput({ field, value, entries, shared, onSet, onPoint }: EntryProps) {
   const named = nameIn(value)
   const fitting = entries
     .filter((entry) => !field.entryKind || entry.kind === field.entryKind)
@@ -235,6 +244,7 @@ function EntryInput({ field, value, entries, shared, onSet }: EntryProps) {
         {...shared}
         placeholder={fitting.length > 0 ? 'choose an entry' : 'name of an entry'}
         options={fitting}
+        onPoint={onPoint}
         value={named ?? ''}
         onCommit={(typed) => {
           if (typed === '') onSet(undefined)

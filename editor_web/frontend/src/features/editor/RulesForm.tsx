@@ -1,15 +1,19 @@
 /** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
-import type { EditNode } from '../../document/editing/model'
+import { nodeOf, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { added, conditionsOf, moved, renamedOutcome, withChild, without, type Rule } from '../../document/editing/rules'
 import { perform } from './apply'
 import { Section } from './Section'
+import { editor, rootOf } from './store'
 import { TemplateInput } from './TemplateInput'
 
 export function RulesForm({ node }: { node: EditNode }) {
-  const set = (rules: readonly Rule[], words: string) =>
-    void perform(words, [setField(node.path, 'conditions', conditionsOf(rules))])
+  const set = (change: (rules: readonly Rule[]) => readonly Rule[], words: string) =>
+    void perform(words, () => {
+      const now = nodeOf(rootOf(editor()), node.path)
+      return now ? [setField(node.path, 'conditions', conditionsOf(change(now.rules)))] : []
+    })
   return (
     <Section title="Ends with" note="the first line that holds">
       <div className="rules-scroll" role="region" aria-label="Rules" tabIndex={0}>
@@ -34,7 +38,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                   <TemplateInput
                     label={`Outcome of rule ${index + 1}`}
                     value={rule.outcome}
-                    onCommit={(typed) => typed && set(renamedOutcome(node.rules, index, typed), `Rule ${index + 1}`)}
+                    onCommit={(typed) => typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)}
                   />
                 </td>
                 {node.children.map((child) => (
@@ -43,8 +47,8 @@ export function RulesForm({ node }: { node: EditNode }) {
                       className="plain-input"
                       aria-label={`${child.name} in rule ${index + 1}`}
                       value={rule.when[child.name] ?? ''}
-                      onChange={(event) =>
-                        set(withChild(node.rules, index, child.name, event.currentTarget.value), `Rule ${index + 1}`)
+                      onChange={({ currentTarget: { value } }) =>
+                        set((rules) => withChild(rules, index, child.name, value), `Rule ${index + 1}`)
                       }
                     >
                       <option value="">any</option>
@@ -67,7 +71,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     className="mini"
                     aria-label={`Move rule ${index + 1} up`}
                     disabled={index === 0}
-                    onClick={() => set(moved(node.rules, index, -1), 'Order of rules')}
+                    onClick={() => set((rules) => moved(rules, index, -1), 'Order of rules')}
                   >
                     <IconArrowUp size={13} aria-hidden />
                   </button>
@@ -76,7 +80,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     className="mini"
                     aria-label={`Move rule ${index + 1} down`}
                     disabled={index === node.rules.length - 1}
-                    onClick={() => set(moved(node.rules, index, 1), 'Order of rules')}
+                    onClick={() => set((rules) => moved(rules, index, 1), 'Order of rules')}
                   >
                     <IconArrowDown size={13} aria-hidden />
                   </button>
@@ -84,7 +88,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     type="button"
                     className="mini"
                     aria-label={`Delete rule ${index + 1}`}
-                    onClick={() => set(without(node.rules, index), 'Delete a rule')}
+                    onClick={() => set((rules) => without(rules, index), 'Delete a rule')}
                   >
                     <IconTrash size={13} aria-hidden />
                   </button>
@@ -99,7 +103,7 @@ export function RulesForm({ node }: { node: EditNode }) {
           type="button"
           className="command"
           disabled={node.children.length === 0}
-          onClick={() => set(added(node.rules, node.children), 'Add a rule')}
+          onClick={() => set((rules) => added(rules, node.children), 'Add a rule')}
         >
           <IconPlus size={14} aria-hidden /> Add a rule
         </button>

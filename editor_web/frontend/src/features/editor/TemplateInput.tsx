@@ -16,6 +16,8 @@ export interface TemplateInputProps {
   /** More to choose from than names, when the field is empty or holds no `${`. */
   readonly options?: readonly string[]
   readonly inputMode?: 'decimal' | 'text'
+  /** One of the options is pointed at, before it is taken; undefined when none is any more. */
+  readonly onPoint?: (option: string | undefined) => void
 }
 
 interface Offer {
@@ -26,15 +28,21 @@ interface Offer {
 const MOST = 30
 
 export function TemplateInput(props: TemplateInputProps) {
-  const { label, value, onCommit, placeholder, describedBy, isInvalid, isMono, isLong, options, inputMode } = props
+  const { label, value, onCommit, placeholder, describedBy, isInvalid, isMono, isLong, options, inputMode, onPoint } = props
   const [text, setText] = useState(value)
   const [offer, setOffer] = useState<Offer>()
   const field = useRef<HTMLInputElement & HTMLTextAreaElement>(null)
   const names = useNames()
   const id = useId()
   useEffect(() => setText(value), [value])
+  // What the mouse is over is not taken by a key.
+  const [hovered, setHovered] = useState(-1)
+  const at = offer?.items[hovered] ?? offer?.items[offer.index]
+  const pointed = at?.name ? undefined : at?.text
+  useEffect(() => onPoint?.(pointed), [onPoint, pointed])
 
   function look(next: string, cursor: number): void {
+    setHovered(-1)
     const opening = openingAt(next, cursor, names)
     if (opening) {
       setOffer({
@@ -137,13 +145,20 @@ export function TemplateInput(props: TemplateInputProps) {
         />
       )}
       {offer && (
-        <ul className="offer" role="listbox" id={`${id}-offer`} aria-label={`Choices for ${label}`}>
+        <ul
+          className="offer"
+          role="listbox"
+          id={`${id}-offer`}
+          aria-label={`Choices for ${label}`}
+          onPointerLeave={() => setHovered(-1)}
+        >
           {offer.items.map((item, index) => (
             <li
               key={item.text}
               id={`${id}-${index}`}
               role="option"
               aria-selected={index === offer.index}
+              onPointerEnter={() => setHovered(index)}
               onPointerDown={(event) => {
                 event.preventDefault()
                 take(index)

@@ -17,6 +17,8 @@ export interface Item {
   readonly kind: string
   readonly onlyInTree: boolean
   readonly addition: Addition
+  /** The named entry that it goes to. */
+  readonly entry?: EntryBody
 }
 
 /** States first, then containers, then other behaviors. */

@@ -29,16 +29,23 @@ export function inTurn<T>(work: () => Promise<T>): Promise<T> {
   return done
 }
 
-/** Apply edits to the text as it then is; undefined with the reason on the page where the server refuses. */
-export function perform(label: string, edits: readonly Edit[]): Promise<EditedBody | undefined> {
-  if (edits.length === 0) return Promise.resolve(undefined)
+/**
+ * Apply edits to the text as it then is; undefined with the reason on the page where the server refuses.
+ * Edits that say anew what is there already are made of what is there then.
+ */
+export function perform(
+  label: string,
+  edits: readonly Edit[] | (() => readonly Edit[]),
+): Promise<EditedBody | undefined> {
   const { id } = editor()
   return inTurn(async () => {
     try {
       // What was typed, or came from the disk, while the server was asked is edited in its turn.
       while (editor().id === id) {
         const before = draftOf(editor())
-        const answer = await documents.edit(id, before.text, edits)
+        const wanted = typeof edits === 'function' ? edits() : edits
+        if (wanted.length === 0) return undefined
+        const answer = await documents.edit(id, before.text, wanted)
         if (editor().id !== id) break
         if (draftOf(editor()).text !== before.text) continue
         if (answer.refused) {

@@ -1,11 +1,12 @@
 /** Lays out what fills the canvas, again whenever the document or what is open changes; until done, the one before stays. */
 import { useEffect, useRef, useState } from 'react'
-import { layOutByElk } from '../../components/elk'
+import { layOutByElk, warmUpElk } from '../../components/elk'
 import { arrange, type Arrangement } from '../../document/editing/arrange'
-import type { EditNode } from '../../document/editing/model'
+import { allNodes, type EditNode } from '../../document/editing/model'
 import { drawnNodes, openness } from '../../document/editing/opening'
 import { zoom, type Size } from '../../document/geometry'
-import { draftOf, scopeOf, setOpensByItself, useEditor } from './store'
+import { useIsMoving } from './moving'
+import { draftOf, rootOf, scopeOf, setOpensByItself, useEditor } from './store'
 import type { LayoutCall } from '../../document/layout'
 import { layOutRoughly } from '../../document/roughLayout'
 import type { DrawnInput } from './elements'
@@ -23,6 +24,8 @@ const MANY = 300
 export interface Arranged extends DrawnInput {
   /** Another one than before: what fills the canvas was changed, not only edited. */
   readonly view: string
+  /** Which containers had been opened and closed by hand. */
+  readonly opened: ReadonlyMap<string, boolean>
 }
 
 /** Outcomes of a machine that nothing inside leads to yet: those of the behavior, and those used outside. */
@@ -61,8 +64,10 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
       const isSame = chosen.current?.scope === filling.path && chosen.current.isMany === isMany
       const known = isSame ? chosen.current : undefined
       const widths = (isMany ? WIDE_ROWS : ROWS).map((factor) => factor * area.width)
-      const bestOf = async (opens: boolean) =>
-        (await Promise.all(widths.map((limit) => laidOut({ limit, opens }, first)))).reduce(better(area))
+      const bestOf = async (opens: boolean) => {
+        const look = (limit: number) => laidOut({ limit, opens }, first)
+        return (await (isMany ? inTurn(widths, look) : Promise.all(widths.map(look)))).reduce(better(area))
+      }
       let best = known ? await laidOut(known, layOutByElk) : await bestOf(true)
       // Where everything at once is too small to be read, what is inside is shown on demand.
       if (!known && !isMany && zoom(best.arrangement.size, area) < READABLE) best = await bestOf(false)
@@ -78,8 +83,10 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
         isOpen: best.isOpen,
         declared,
         view: filling.path,
+        opened,
       })
       setProblem('')
+      if (allNodes(whole).length > SOME) warmUpElk()
     }
     run(root, scope, pane ?? { width: 1, height: 1 }).catch((error: unknown) => {
       if (current) setProblem(error instanceof Error ? error.message : String(error))
@@ -99,7 +106,26 @@ interface Chosen {
   readonly opens: boolean
 }
 
+/** One look at a thousand nodes takes a moment: what the user does comes in between. */
+async function inTurn<A, B>(all: readonly A[], look: (each: A) => Promise<B>): Promise<readonly B[]> {
+  const seen: B[] = []
+  for (const each of all) {
+    await new Promise((proceed) => setTimeout(proceed))
+    seen.push(await look(each))
+  }
+  return seen
+}
+
 function better(area: Size) {
   return <T extends { arrangement: Arrangement }>(a: T, b: T): T =>
     zoom(b.arrangement.size, area) > zoom(a.arrangement.size, area) * 1.06 ? b : a
+}
+
+/** Is what is drawn another than what is to be seen, or on its way? */
+export function useIsBusy(drawn: Arranged | undefined): boolean {
+  const isDrawn = useEditor(
+    (s) => drawn !== undefined && drawn.root === rootOf(s) && drawn.scope === scopeOf(s) && drawn.opened === s.opened,
+  )
+  const isMoving = useIsMoving()
+  return isMoving || !isDrawn
 }

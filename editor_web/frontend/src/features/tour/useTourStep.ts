@@ -33,6 +33,8 @@ export function useTourStep(page: string, id: string): Seen {
         times = 0
         // The document that is made in it is known once its editor is open.
         setTour({ step: at + 1, document: page === 'edit' && made === '' ? id : made })
+        // At once: the words of a step beside what the one before was about would cover what is to be done.
+        look()
         return
       }
       const target = step && targetOf(step)

@@ -1,0 +1,136 @@
+/** A named entry as an arm would be there, in 3D and in numbers; it is seen by this page only, until it is closed. */
+import './preview.css'
+import { CloseButton } from '@mantine/core'
+import { useEffect, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
+import type { Previewed } from '../../api/preview'
+import { connectTeach, lookAt, lookAway, useTeach } from '../../api/teaching'
+import type { ArmCard } from '../../api/types'
+import { PLACED } from '../../document/editing/preview'
+import { EntryFacts } from './EntryFacts'
+import { useEntryCourse } from './useEntryCourse'
+
+export interface EntryPreviewProps {
+  readonly shown: Previewed
+  /** The 3D view of this page. */
+  readonly view: ReactNode
+  readonly tools: ReactNode
+  /** It comes up from below, over everything else. */
+  readonly isSheet: boolean
+  readonly onClose: () => void
+}
+
+export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPreviewProps) {
+  useEffect(connectTeach, [])
+  const arms = useTeach((s) => s.arms)
+  const isOpen = useTeach((s) => s.isOpen)
+  const { arm, choose } = useArm(shown, arms)
+  const isHere = arms?.some((each) => each.name === arm) ?? false
+  const course = useEntryCourse(shown.kind, shown.name, isHere ? arm : '')
+  useGhost(shown, isOpen && isHere ? arm : '')
+  const close = useReturn(shown.by, onClose)
+  const said = obstacle(shown, arms, arm, isOpen) || course.problem || course.trace?.remark || ''
+  const title = shown.name || 'No entry'
+  const body = (
+    <>
+      <header className="preview-head">
+        <h2>
+          {title} <span className="quiet">{PLACED[shown.kind]}</span>
+        </h2>
+        <span className="spacer" />
+        {arms && arms.length > 0 && <ArmChoice arms={arms} arm={arm} onChoose={choose} />}
+        {tools}
+        <CloseButton size="sm" aria-label="Close the preview" onClick={close} />
+      </header>
+      <div className="preview-view">{view}</div>
+      <div className="preview-words">
+        <p role="status" className={said ? 'preview-problem' : 'visually-hidden'}>
+          {said || (course.trace && `${arm} is shown at ${shown.name}`)}
+        </p>
+        <EntryFacts course={course} />
+      </div>
+    </>
+  )
+  if (isSheet) return <Sheet label={`Preview of ${title}`} onClose={close}>{body}</Sheet>
+  const onKeyDown = (event: KeyboardEvent) => {
+    // A menu that is open over it closes first.
+    if (event.key !== 'Escape' || event.defaultPrevented) return
+    event.stopPropagation()
+    close()
+  }
+  return (
+    <section className="entry-preview" aria-label={`Preview of ${title}`} onKeyDown={onKeyDown}>
+      {body}
+    </section>
+  )
+}
+
+function obstacle(shown: Previewed, arms: readonly ArmCard[] | undefined, arm: string, isOpen: boolean): string {
+  if (arms === undefined) return ''
+  if (!isOpen) return 'The server does not answer; nothing is shown until it does.'
+  if (arms.length === 0) return 'This cell has no arm that could be shown.'
+  if (!shown.name) return 'No entry is chosen.'
+  return arms.some((each) => each.name === arm) ? '' : `This cell has no arm ${arm}; choose another one.`
+}
+
+/** The arm that the entry is meant for, or the first one, until somebody chooses another. */
+function useArm({ by, arm: meant }: Previewed, arms: readonly ArmCard[] | undefined) {
+  const [chosen, setChosen] = useState({ of: '', arm: '' })
+  // The library says of no entry for which arm it is: the choice stays from one to the next.
+  const of = meant ? `${by} ${meant}` : ''
+  const arm = (chosen.of === of && chosen.arm) || meant || (arms?.[0]?.name ?? '')
+  return { arm, choose: (next: string) => setChosen({ of, arm: next }) }
+}
+
+function useGhost({ kind, name }: Previewed, arm: string): void {
+  const changed = useTeach((s) => s.entries)
+  useEffect(() => {
+    if (!arm || !name) return
+    lookAt(arm, { kind, name, capture: 0 })
+    return lookAway
+  }, [kind, name, arm, changed])
+}
+
+/** Closing goes back to what opened it. */
+function useReturn(by: string, onClose: () => void): () => void {
+  const opener = useRef<Element>(null)
+  // Before a sheet takes the keyboard.
+  useLayoutEffect(() => {
+    opener.current = document.activeElement
+  }, [by])
+  return () => {
+    onClose()
+    if (opener.current instanceof HTMLElement && opener.current.isConnected) opener.current.focus()
+  }
+}
+
+interface ArmChoiceProps {
+  readonly arms: readonly ArmCard[]
+  readonly arm: string
+  readonly onChoose: (arm: string) => void
+}
+
+function ArmChoice({ arms, arm, onChoose }: ArmChoiceProps) {
+  const isHere = arms.some((each) => each.name === arm)
+  if (arms.length === 1 && isHere) return <span className="quiet">{arm}</span>
+  return (
+    <select className="preview-arm" aria-label="Arm that is shown" value={isHere ? arm : ''} onChange={(event) => onChoose(event.currentTarget.value)}>
+      {!isHere && <option value="">Choose an arm</option>}
+      {arms.map((each) => (
+        <option key={each.name}>{each.name}</option>
+      ))}
+    </select>
+  )
+}
+
+/** The browser's own dialog: it keeps the keyboard inside, and closes with Escape. */
+function Sheet({ label, onClose, children }: { readonly label: string; readonly onClose: () => void; readonly children: ReactNode }) {
+  const element = useRef<HTMLDialogElement>(null)
+  useEffect(() => {
+    if (!element.current?.open) element.current?.showModal()
+  }, [])
+  return (
+    <dialog ref={element} className="entry-preview is-sheet" aria-label={label} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
+      {children}
+    </dialog>
+  )
+}
