@@ -26,10 +26,10 @@ NOT_SOURCE = {"node_modules", "dist", "coverage"}
 
 
 def source_digest() -> str:
-    """Return the SHA-256 of every file the page is made from; empty where there are no sources."""
+    """Return the SHA-256 of every file the page is made from, this one too; empty where there are no sources."""
     if not (SOURCE / "package.json").exists():
         return ""
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(Path(__file__).read_bytes())
     for file in sorted(SOURCE.rglob("*")):
         relative = file.relative_to(SOURCE)
         if file.is_file() and not NOT_SOURCE.intersection(relative.parts):
@@ -60,8 +60,8 @@ def npm(*arguments: str) -> None:
     # The wheel's bin/npm is a copied link that does not find its library; the script itself works.
     script = home / ("node_modules" if windows else "lib/node_modules") / "npm" / "bin" / "npm-cli.js"
     path = os.pathsep.join([str(program.parent), os.environ.get("PATH", "")])
-    # NODE_ENV=production would leave out the build tools.
-    environment = {**os.environ, "PATH": path, "NODE_ENV": "development"}
+    # Each command knows what it is for: the build is for production, whatever the user's own work is.
+    environment = {name: value for name, value in os.environ.items() if name != "NODE_ENV"} | {"PATH": path}
     done = subprocess.run([str(program), str(script), *arguments], cwd=SOURCE, env=environment, check=False)
     if done.returncode != 0:
         raise RuntimeError(f"npm {' '.join(arguments)} failed with code {done.returncode}; its output is above")
@@ -73,7 +73,7 @@ def install() -> None:
     stamp = SOURCE / "node_modules" / ".lock-digest"
     locked = hashlib.sha256(lock).hexdigest()
     if not stamp.exists() or stamp.read_text(encoding="ascii") != locked:
-        npm("ci", "--no-fund", "--no-audit")
+        npm("ci", "--include=dev", "--no-fund", "--no-audit")
         stamp.write_text(locked, encoding="ascii")
 
 

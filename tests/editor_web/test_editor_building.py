@@ -52,6 +52,7 @@ def test_two_states_are_built_from_nothing_by_mouse_checked_saved_and_run(browse
         expect(page.locator(".way.is-loose")).to_have_count(0)
         expect(page.locator(".problem-count")).not_to_contain_text("error")
         page.get_by_role("button", name="Run", exact=True).click()
+        expect(page.get_by_role("button", name="Start", exact=True)).to_be_visible()
         require_two_steps(shop)
         require_run_finishes(page)
 

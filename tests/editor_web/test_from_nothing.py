@@ -200,6 +200,7 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
         lead(page, "failed", "failed")
         expect(page.locator(".problem-count")).to_have_text("No problems", timeout=GUARD_MS)
         page.get_by_role("button", name="Run", exact=True).click()
+        expect(page.get_by_role("button", name="Start", exact=True)).to_be_visible()
         behavior = load_behavior(project / MADE)
         assert len(behavior.root.children) == 3
         run(page)

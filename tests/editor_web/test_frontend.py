@@ -62,6 +62,13 @@ def test_exports_are_named_and_types_are_known(file: Path) -> None:
     assert text.startswith(("/**", "// Made by", "/// <reference"))
 
 
+def test_what_is_built_is_for_use_and_not_for_development() -> None:
+    """There every element looks whether it is used rightly: half as fast, and larger."""
+    scripts = [file.read_text(encoding="utf-8") for file in (hatch_build.STATIC / "assets").glob("*.js")]
+    assert len(scripts) > 20
+    assert not [text[:80] for text in scripts if "jsxDEV" in text or 'a unique "key" prop' in text]
+
+
 def test_the_first_page_is_light() -> None:
     """All scripts that it loads at once, compressed."""
     manifest = json.loads((hatch_build.STATIC / ".vite" / "manifest.json").read_text(encoding="utf-8"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,8 @@ root:
 
 @pytest.fixture
 def documents(tmp_path: Path) -> Documents:
-    made = Documents(tmp_path, STATES)
+    # Every look at the clock is a second later.
+    made = Documents(tmp_path, STATES, now_s=count(1_800_000_000.0).__next__)
     (tmp_path / "behaviors/parts").mkdir(parents=True)
     for behavior_id, text in ((INNER_ID, INNER), (OUTER_ID, OUTER), (OTHER_ID, INNER.replace("inner", "inner.yaml"))):
         (tmp_path / behavior_id).write_text(text)

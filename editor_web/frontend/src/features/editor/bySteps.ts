@@ -3,7 +3,7 @@ import { growing } from '../../document/editing/growing'
 import type { CanvasNode } from './elements'
 
 /** So many nodes are drawn anew in well under the time of a few frames. */
-const MOST = 90
+const MOST = 45
 
 export interface Taker {
   /** Is a node on the canvas already? */
