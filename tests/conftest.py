@@ -21,6 +21,18 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "virtual: run this async test on a virtual event loop")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Give a second try to what runs against wall time; see docs/decisions/0020-second-try.md."""
+    for item in items:
+        if isinstance(item, pytest.Function) and _is_against_wall_time(item):
+            item.add_marker(pytest.mark.flaky(reruns=1))
+
+
+def _is_against_wall_time(item: pytest.Function) -> bool:
+    arguments = item.callspec.params.values() if hasattr(item, "callspec") else ()
+    return "browser" in item.fixturenames or "process" in arguments
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
     """Run coroutine tests: on the virtual loop when marked so, else on a real one."""
