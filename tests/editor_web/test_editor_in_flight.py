@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playwright.sync_api import Browser, Route, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from tests.editor_web.browsing import until
 from tests.editor_web.editing import at_editor, card, idle
@@ -44,22 +44,44 @@ def test_a_node_whose_move_does_not_reach_the_server_goes_back_to_its_place(brow
         expect(card(page, "root/set")).to_have_css("transform", before)
 
 
-def test_a_rule_that_is_changed_while_another_change_is_on_its_way_keeps_both(browser: Browser, shop: Workshop) -> None:
-    """The table is sent as a whole; what has changed meanwhile is in it."""
+def first_held(page: Page) -> list[Route]:
+    """From now on the first edit is held, and stands here once it was sent; those after it pass."""
     held: list[Route] = []
 
-    def hold_the_first(route: Route) -> None:
+    def hold(route: Route) -> None:
         if held:
             route.continue_()
         else:
             held.append(route)
 
+    page.route("**/edits", hold)
+    return held
+
+
+def test_a_rule_that_is_changed_while_another_change_is_on_its_way_keeps_both(browser: Browser, shop: Workshop) -> None:
+    """The table is sent as a whole; what has changed meanwhile is in it."""
     with at_editor(browser, shop, SHIFT_ID) as page:
         card(page, "root/both").locator(".frame-head").click()
-        page.route("**/edits", hold_the_first)
+        held = first_held(page)
         page.get_by_label("right in rule 1").select_option("b")
         until(page, lambda: bool(held))
         page.get_by_role("button", name="Delete rule 3").click()
         held[0].continue_()
         expect(page.get_by_role("region", name="Rules").get_by_role("row")).to_have_count(5)
         expect(page.get_by_label("right in rule 1")).to_have_value("b")
+
+
+def test_what_is_declared_while_another_change_is_on_its_way_is_declared_as_well(
+    browser: Browser, shop: Workshop
+) -> None:
+    """Keys are sent all together: those of before, and those that come in between."""
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        page.get_by_role("tab", name="Behavior").click()
+        held = first_held(page)
+        for name in ("first_key", "second_key"):
+            page.get_by_label("New key", exact=True).fill(name)
+            page.get_by_role("button", name="Add: New key").click()
+            until(page, lambda: bool(held))
+        held[0].continue_()
+        expect(page.get_by_label("Value of second_key")).to_be_visible()
+        expect(page.get_by_label("Value of first_key")).to_be_visible()

@@ -3,13 +3,11 @@ import type { ReactNode } from 'react'
 import { isFailure, isMachine, isTreePart, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { looseValue, shownValue } from '../../document/editing/fields'
-import { perform } from './apply'
+import { perform, performOn } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { declaredOutcomes } from './useArrangement'
 import { draftOf, rootOf, useEditor } from './store'
-
-type Measure = Readonly<Record<string, unknown>>
 
 export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode | undefined }) {
   const root = useEditor(rootOf)
@@ -18,19 +16,16 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
   const targets = targetsOf(node, parent, root, outcomes)
   const set = (field: string, value: unknown) =>
     void perform(`${field} of ${node.name}`, [setField(node.path, field, value)])
-  const measure = (field: 'guard' | 'timeout' | 'retry', present: Measure | null, key: string, value: unknown) => {
-    const next = Object.fromEntries(
-      Object.entries({ ...present, [key]: value }).filter(([, each]) => each !== undefined && each !== ''),
-    )
-    // A measure without what makes it one is no measure.
-    const main = { guard: 'when', timeout: 'after', retry: 'times' }[field]
-    set(
-      field,
-      main in next
-        ? { ...(field !== 'retry' && !('to' in next) && targets[0] ? { to: worst(targets, success) } : {}), ...next }
-        : null,
-    )
-  }
+  const measure = (field: 'guard' | 'timeout' | 'retry', key: string, value: unknown) =>
+    void performOn(node.path, `${field} of ${node.name}`, (now) => {
+      const next = Object.fromEntries(
+        Object.entries({ ...now[field], [key]: value }).filter(([, each]) => each !== undefined && each !== ''),
+      )
+      // A measure without what makes it one is no measure.
+      if (!({ guard: 'when', timeout: 'after', retry: 'times' }[field] in next)) return [setField(node.path, field, null)]
+      const leads = field !== 'retry' && !('to' in next) && targets[0] ? { to: worst(targets, success) } : {}
+      return [setField(node.path, field, { ...leads, ...next })]
+    })
   const isSet = [node.guard, node.timeout, node.retry, node.on_error, node.resume].some((each) => each !== null)
   return (
     <Section title="Guard, timeout, retry" isClosed={!isSet} note={isSet ? 'set' : undefined}>
@@ -40,7 +35,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           isMono
           placeholder="${…}"
           value={shownValue(node.guard?.['when'])}
-          onCommit={(typed) => measure('guard', node.guard, 'when', typed || undefined)}
+          onCommit={(typed) => measure('guard', 'when', typed || undefined)}
         />
       </Line>
       {node.guard && (
@@ -49,7 +44,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           name="Guard leads to"
           value={shownValue(node.guard['to'])}
           targets={targets}
-          onSet={(to) => measure('guard', node.guard, 'to', to)}
+          onSet={(to) => measure('guard', 'to', to)}
         />
       )}
       <Line label="Stop it after">
@@ -57,7 +52,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           label="Timeout"
           placeholder="such as 30 s"
           value={shownValue(node.timeout?.['after'])}
-          onCommit={(typed) => measure('timeout', node.timeout, 'after', typed === '' ? undefined : looseValue(typed))}
+          onCommit={(typed) => measure('timeout', 'after', typed === '' ? undefined : looseValue(typed))}
         />
       </Line>
       {node.timeout && (
@@ -66,7 +61,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           name="Timeout leads to"
           value={shownValue(node.timeout['to'])}
           targets={targets}
-          onSet={(to) => measure('timeout', node.timeout, 'to', to)}
+          onSet={(to) => measure('timeout', 'to', to)}
         />
       )}
       <Line label="Run again up to">
@@ -75,7 +70,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           inputMode="decimal"
           placeholder="times"
           value={shownValue(node.retry?.['times'])}
-          onCommit={(typed) => measure('retry', node.retry, 'times', typed === '' ? undefined : looseValue(typed))}
+          onCommit={(typed) => measure('retry', 'times', typed === '' ? undefined : looseValue(typed))}
         />
       </Line>
       {node.retry && (
@@ -86,7 +81,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
               placeholder="0 s"
               value={shownValue(node.retry['backoff'])}
               onCommit={(typed) =>
-                measure('retry', node.retry, 'backoff', typed === '' ? undefined : looseValue(typed))
+                measure('retry', 'backoff', typed === '' ? undefined : looseValue(typed))
               }
             />
           </Line>
@@ -98,7 +93,6 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
               onCommit={(typed) =>
                 measure(
                   'retry',
-                  node.retry,
                   'outcomes',
                   typed === '' ? undefined : typed.split(/[\s,]+/).filter(Boolean),
                 )

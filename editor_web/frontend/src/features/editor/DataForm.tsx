@@ -2,7 +2,7 @@
 import type { KeyBody } from '../../api/types'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
-import { perform } from './apply'
+import { performOn } from './apply'
 import { inputLabel, outputLabel } from './dataFlow'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
@@ -21,13 +21,13 @@ export function DataForm({
   const ins = [...new Set([...inputs.map((key) => key.name), ...Object.keys(node.inputs)])]
   const outs = [...new Set([...outputs.map((key) => key.name), ...Object.keys(node.outputs)])]
   if (ins.length + outs.length === 0) return null
-  const set = (field: 'in' | 'out', present: Readonly<Record<string, string>>, key: string, to: string) => {
-    const { [key]: _, ...rest } = present
-    const next = to ? { ...present, [key]: to } : rest
-    void perform(`${field === 'in' ? 'Input' : 'Output'} ${key} of ${node.name}`, [
-      setField(node.path, field, Object.keys(next).length > 0 ? next : null),
-    ])
-  }
+  const set = (field: 'in' | 'out', key: string, to: string) =>
+    void performOn(node.path, `${field === 'in' ? 'Input' : 'Output'} ${key} of ${node.name}`, (now) => {
+      const present = field === 'in' ? now.inputs : now.outputs
+      const { [key]: _, ...rest } = present
+      const next = to ? { ...present, [key]: to } : rest
+      return [setField(node.path, field, Object.keys(next).length > 0 ? next : null)]
+    })
   return (
     <Section title="Userdata">
       {ins.map((key) => (
@@ -40,7 +40,7 @@ export function DataForm({
             placeholder={inputs.find((each) => each.name === key)?.required ? key : 'its default'}
             options={keys}
             value={node.inputs[key] ?? ''}
-            onCommit={(typed) => set('in', node.inputs, key, typed)}
+            onCommit={(typed) => set('in', key, typed)}
           />
         </div>
       ))}
@@ -54,7 +54,7 @@ export function DataForm({
             placeholder="nowhere"
             options={keys}
             value={node.outputs[key] ?? ''}
-            onCommit={(typed) => set('out', node.outputs, key, typed)}
+            onCommit={(typed) => set('out', key, typed)}
           />
         </div>
       ))}

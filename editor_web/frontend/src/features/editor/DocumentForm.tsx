@@ -1,18 +1,23 @@
 /** What the behavior itself declares: name, description, outcomes, parameters, userdata. */
 import { IconPlus, IconTrash } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
+import type { DocumentInfoBody } from '../../api/types'
 import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
-import { draftOf, refused, useEditor } from './store'
+import { draftOf, editor, refused, useEditor } from './store'
 
 type Mapping = Readonly<Record<string, unknown>>
 
 const TYPES = ['number', 'integer', 'string', 'boolean', 'pose', 'joints', 'list', 'mapping'] as const
 
-function setDocument(words: string, changes: Mapping): void {
-  void perform(words, [{ edit: 'set_document', changes }])
+/** What is a list or mapping is sent as a whole, and so made of what it is by then. */
+function setDocument(words: string, changes: (now: DocumentInfoBody) => Mapping): void {
+  void perform(words, () => {
+    const now = draftOf(editor()).document
+    return now ? [{ edit: 'set_document', changes: changes(now) }] : []
+  })
 }
 
 export function DocumentForm() {
@@ -25,7 +30,7 @@ export function DocumentForm() {
           <TemplateInput
             label="Name of the behavior"
             value={document.name}
-            onCommit={(typed) => typed && setDocument('Name', { name: typed })}
+            onCommit={(typed) => typed && setDocument('Name', () => ({ name: typed }))}
           />
         </Line>
         <TemplateInput
@@ -33,7 +38,7 @@ export function DocumentForm() {
           isLong
           placeholder="What it does, for those who start it"
           value={document.description}
-          onCommit={(typed) => setDocument('Description', { description: typed || null })}
+          onCommit={(typed) => setDocument('Description', () => ({ description: typed || null }))}
         />
         <Line label="Cell">
           <TemplateInput
@@ -41,7 +46,7 @@ export function DocumentForm() {
             isMono
             placeholder="../cells/cell.yaml"
             value={document.cell ?? ''}
-            onCommit={(typed) => setDocument('Cell', { cell: typed || null })}
+            onCommit={(typed) => setDocument('Cell', () => ({ cell: typed || null }))}
           />
         </Line>
       </Section>
@@ -77,12 +82,12 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
               <input
                 type="checkbox"
                 checked={success.includes(outcome)}
-                onChange={(event) =>
-                  setDocument('Success', {
-                    success: event.currentTarget.checked
-                      ? [...success, outcome]
-                      : success.filter((each) => each !== outcome),
-                  })
+                onChange={({ currentTarget: { checked } }) =>
+                  setDocument('Success', (now) => ({
+                    success: checked
+                      ? [...new Set([...now.success, outcome])]
+                      : now.success.filter((each) => each !== outcome),
+                  }))
                 }
               />
               <span className="mono">{outcome}</span>
@@ -93,10 +98,10 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
               className="mini"
               aria-label={`Remove the outcome ${outcome}`}
               onClick={() =>
-                setDocument(`Remove ${outcome}`, {
-                  outcomes: outcomes.filter((each) => each !== outcome),
-                  success: success.filter((each) => each !== outcome),
-                })
+                setDocument(`Remove ${outcome}`, (now) => ({
+                  outcomes: now.outcomes.filter((each) => each !== outcome),
+                  success: now.success.filter((each) => each !== outcome),
+                }))
               }
             >
               <IconTrash size={13} aria-hidden />
@@ -106,7 +111,7 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
       </ul>
       <AddName
         label="New outcome"
-        onAdd={(name) => setDocument(`Add ${name}`, { outcomes: [...outcomes, name] })}
+        onAdd={(name) => setDocument(`Add ${name}`, (now) => ({ outcomes: [...new Set([...now.outcomes, name])] }))}
         taken={outcomes}
       />
     </>
@@ -114,13 +119,14 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
 }
 
 function Parameters({ parameters }: { parameters: Mapping }) {
-  const set = (name: string, change: Mapping) => {
-    const present = mappingOf(parameters[name])
-    const next = Object.fromEntries(
-      Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''),
-    )
-    setDocument(`Parameter ${name}`, { parameters: { ...parameters, [name]: next } })
-  }
+  const set = (name: string, change: Mapping) =>
+    setDocument(`Parameter ${name}`, (now) => {
+      const present = mappingOf(now.parameters[name])
+      const next = Object.fromEntries(
+        Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''),
+      )
+      return { parameters: { ...now.parameters, [name]: next } }
+    })
   return (
     <>
       {Object.entries(parameters).map(([name, given]) => {
@@ -134,7 +140,7 @@ function Parameters({ parameters }: { parameters: Mapping }) {
                 type="button"
                 className="mini"
                 aria-label={`Remove the parameter ${name}`}
-                onClick={() => setDocument(`Remove ${name}`, { parameters: without(parameters, name) })}
+                onClick={() => setDocument(`Remove ${name}`, (now) => ({ parameters: without(now.parameters, name) }))}
               >
                 <IconTrash size={13} aria-hidden />
               </button>
@@ -202,7 +208,9 @@ function Parameters({ parameters }: { parameters: Mapping }) {
         label="New parameter"
         taken={Object.keys(parameters)}
         onAdd={(name) =>
-          setDocument(`Add ${name}`, { parameters: { ...parameters, [name]: { type: 'number', default: 0 } } })
+          setDocument(`Add ${name}`, (now) => ({
+            parameters: { ...now.parameters, [name]: { type: 'number', default: 0 } },
+          }))
         }
       />
     </>
@@ -220,14 +228,14 @@ function Userdata({ userdata }: { userdata: Mapping }) {
             isMono
             value={value === null ? 'null' : shownValue(value)}
             onCommit={(typed) =>
-              setDocument(`Userdata ${name}`, { userdata: { ...userdata, [name]: looseValue(typed) } })
+              setDocument(`Userdata ${name}`, (now) => ({ userdata: { ...now.userdata, [name]: looseValue(typed) } }))
             }
           />
           <button
             type="button"
             className="mini"
             aria-label={`Remove the key ${name}`}
-            onClick={() => setDocument(`Remove ${name}`, { userdata: without(userdata, name) })}
+            onClick={() => setDocument(`Remove ${name}`, (now) => ({ userdata: without(now.userdata, name) }))}
           >
             <IconTrash size={13} aria-hidden />
           </button>
@@ -236,7 +244,7 @@ function Userdata({ userdata }: { userdata: Mapping }) {
       <AddName
         label="New key"
         taken={Object.keys(userdata)}
-        onAdd={(name) => setDocument(`Add ${name}`, { userdata: { ...userdata, [name]: 0 } })}
+        onAdd={(name) => setDocument(`Add ${name}`, (now) => ({ userdata: { ...now.userdata, [name]: 0 } }))}
       />
     </>
   )

@@ -2,7 +2,7 @@
 import { waysOf, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { connect, disconnect } from './actions'
-import { perform } from './apply'
+import { performOn } from './apply'
 import { Section } from './Section'
 import { declaredOutcomes } from './useArrangement'
 import { draftOf, rootOf, useEditor } from './store'
@@ -91,13 +91,13 @@ function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
       aria-label={`Autonomy of ${outcome}`}
       title={level ? LEVEL_WORDS[level] : 'passes by itself'}
       value={level}
-      onChange={(event) => {
-        const { [outcome]: _, ...rest } = node.autonomy
-        const next = event.currentTarget.value ? { ...rest, [outcome]: event.currentTarget.value } : rest
-        void perform(`Autonomy of ${outcome}`, [
-          setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null),
-        ])
-      }}
+      onChange={({ currentTarget: { value: wanted } }) =>
+        void performOn(node.path, `Autonomy of ${outcome}`, (now) => {
+          const { [outcome]: _, ...rest } = now.autonomy
+          const next = wanted ? { ...now.autonomy, [outcome]: wanted } : rest
+          return [setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null)]
+        })
+      }
     >
       <option value="">passes</option>
       {LEVELS.map((each) => (

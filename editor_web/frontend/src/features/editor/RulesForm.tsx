@@ -1,19 +1,17 @@
 /** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
-import { nodeOf, type EditNode } from '../../document/editing/model'
+import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { added, conditionsOf, moved, renamedOutcome, withChild, without, type Rule } from '../../document/editing/rules'
-import { perform } from './apply'
+import { perform, performOn } from './apply'
 import { Section } from './Section'
-import { editor, rootOf } from './store'
 import { TemplateInput } from './TemplateInput'
 
 export function RulesForm({ node }: { node: EditNode }) {
   const set = (change: (rules: readonly Rule[]) => readonly Rule[], words: string) =>
-    void perform(words, () => {
-      const now = nodeOf(rootOf(editor()), node.path)
-      return now ? [setField(node.path, 'conditions', conditionsOf(change(now.rules)))] : []
-    })
+    void performOn(node.path, words, (now) => [
+      setField(node.path, 'conditions', conditionsOf(change(now.rules))),
+    ])
   return (
     <Section title="Ends with" note="the first line that holds">
       <div className="rules-scroll" role="region" aria-label="Rules" tabIndex={0}>

@@ -18,7 +18,7 @@ import {
 } from '../../document/editing/model'
 import { aligned, type Alignment } from '../../document/editing/neighbors'
 import type { Box } from '../../document/geometry'
-import { perform } from './apply'
+import { perform, performOn } from './apply'
 import { canvasBoxes } from './canvasPlaces'
 import { chosenOf, draftOf, editor, refused, rootOf, scopeOf, setEditor, told, type AddRequest } from './store'
 
@@ -323,12 +323,14 @@ export async function nudge(x: number, y: number): Promise<void> {
 }
 
 export async function reorder(parent: EditNode, name: string, by: number): Promise<void> {
-  const order = parent.children.map((child) => child.name)
-  const from = order.indexOf(name)
-  const to = Math.max(0, Math.min(order.length - 1, from + by))
-  if (from === to) return
-  order.splice(to, 0, ...order.splice(from, 1))
-  const answer = await perform(`Move ${name}`, [setField(parent.path, 'order', order)])
+  const answer = await performOn(parent.path, `Move ${name}`, (now) => {
+    const order = now.children.map((child) => child.name)
+    const from = order.indexOf(name)
+    const to = Math.max(0, Math.min(order.length - 1, from + by))
+    if (from < 0 || from === to) return []
+    order.splice(to, 0, ...order.splice(from, 1))
+    return [setField(parent.path, 'order', order)]
+  })
   if (answer) chooseChanged([`${parent.path}/${name}`], [])
 }
 

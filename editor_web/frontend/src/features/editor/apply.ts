@@ -4,7 +4,7 @@ import { documents } from '../../api/documents'
 import type { EditedBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
-import { nodeOf, parentPath, type Draft } from '../../document/editing/model'
+import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
 import { findingsOf } from './checking'
 import { keepDraft } from './kept'
 import { withReferences } from './references'
@@ -60,6 +60,18 @@ export function perform(
       if (editor().id === id) refused(label, ...reasonOf(error))
     }
     return undefined
+  })
+}
+
+/** The same for a node, with edits that are made of what it is by then: for lists and mappings, which are sent as a whole. */
+export function performOn(
+  path: string,
+  label: string,
+  edits: (now: EditNode) => readonly Edit[],
+): Promise<EditedBody | undefined> {
+  return perform(label, () => {
+    const now = nodeOf(rootOf(editor()), path)
+    return now ? edits(now) : []
   })
 }
 
