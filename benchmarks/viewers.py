@@ -38,6 +38,7 @@ BEHAVIOR = Path(__file__).with_name("two_arms_for_ever.yaml")
 _ROOT = Path(__file__).parents[1]
 _WARM_UP_S = 5.0
 _SAMPLE_S = 1.0
+_ALONE_S = 60.0
 
 
 @dataclass(kw_only=True)
@@ -57,16 +58,17 @@ def main() -> None:
     parser.add_argument("--viewers", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--no-record", action="store_true", help="do not record the run")
-    parser.add_argument("--watch", nargs=3, metavar=("URL", "TOKEN", "RUN"), help=argparse.SUPPRESS)
+    for name in ("url", "token", "run"):
+        parser.add_argument(f"--{name}", help=argparse.SUPPRESS)
     options = parser.parse_args()
-    if options.watch:
-        print(json.dumps(asyncio.run(_watch(*options.watch, viewers=options.viewers))))
+    if options.url:
+        watching = _watch(options.url, options.token, options.run, viewers=options.viewers)
+        print(json.dumps(asyncio.run(watching)))
         return
-    for row in asyncio.run(_measure(options.viewers, options.seconds, records=not options.no_record)):
-        _print(row)
+    asyncio.run(_measure(options.viewers, options.seconds, records=not options.no_record))
 
 
-async def _measure(viewers: int, seconds: float, *, records: bool) -> list[Watched]:
+async def _measure(viewers: int, seconds: float, *, records: bool) -> None:
     with tempfile.TemporaryDirectory() as folder_name:
         folder = Path(folder_name)
         catalogue = load_states()
@@ -85,14 +87,13 @@ async def _measure(viewers: int, seconds: float, *, records: bool) -> list[Watch
             ):
                 run = await session.start(f"behaviors/{BEHAVIOR.name}", parameters={}, seed=1)
                 await asyncio.sleep(_WARM_UP_S)
-                rows = [await _while_watched(cell, 0, seconds, None)]
+                _print(await _while_watched(cell, 0, min(seconds, _ALONE_S), None))
                 if viewers > 0:
                     watching = await _watchers(page.url, page.token, run, viewers)
                     await asyncio.sleep(_WARM_UP_S)
-                    rows.append(await _while_watched(cell, viewers, seconds, watching))
+                    _print(await _while_watched(cell, viewers, seconds, watching))
                 await session.stop(run, reason="it was long enough")
                 await session.wait(run)
-                return rows
 
 
 def _copied(folder: Path) -> Path:
@@ -122,7 +123,8 @@ async def _while_watched(cell: OpenCell, viewers: int, seconds: float, watching:
 
 async def _watchers(url: str, token: str, run: str, viewers: int) -> Process:
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-P", "-m", "benchmarks.viewers", "--viewers", str(viewers), "--watch", url, token, run,
+        sys.executable, "-P", "-m", "benchmarks.viewers", f"--viewers={viewers}",
+        f"--url={url}", f"--token={token}", f"--run={run}",
         stdin=PIPE, stdout=PIPE, cwd=_ROOT, env={**os.environ, "PYTHONPATH": str(_ROOT)},
     )  # fmt: skip
     assert process.stdout is not None
@@ -190,7 +192,7 @@ def _memory_mb() -> float:
 
 def _print(row: Watched) -> None:
     memory, reactions = row.memory_mb, np.array(row.reactions_s) * 1e3
-    print(f"{row.viewers} viewers")
+    print(f"{row.viewers} viewers, {len(memory) * _SAMPLE_S:.0f} s", flush=True)
     tenth = max(1, len(memory) // 10)
     print(
         f"  memory {np.mean(memory[:tenth]):.0f} MB at first, {np.mean(memory[-tenth:]):.0f} MB in the end,"

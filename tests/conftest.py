@@ -30,7 +30,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def _is_against_wall_time(item: pytest.Function) -> bool:
     arguments = item.callspec.params.values() if hasattr(item, "callspec") else ()
-    return "browser" in item.fixturenames or "process" in arguments
+    return "browser" in item.fixturenames or any(isinstance(each, str) and each == "process" for each in arguments)
 
 
 @pytest.hookimpl(tryfirst=True)
