@@ -218,7 +218,7 @@ def test_no_run_under_way_says_what_to_do(browser: Browser, shop: Workshop) -> N
     """On the way to the list from anywhere."""
     with opened_page(browser, shop.running) as page:
         page.get_by_role("link", name="All runs under way").click()
-        expect(page.get_by_text("Choose a behavior on the left and start it")).to_be_visible()
+        expect(page.get_by_text("Choose a behavior in the menu and start it")).to_be_visible()
         expect(page.get_by_text("None is under way")).to_be_visible()
 
 

@@ -36,7 +36,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
         {role === 'operator' && <TourInvitation />}
         <InterruptedHere onResumed={onOpenRun} />
         {runs.length === 0 ? (
-          <Empty title="No runs yet">Choose a behavior on the left, set its parameters and start it.</Empty>
+          <Empty title="No runs yet">Choose a behavior in the menu, set its parameters and start it.</Empty>
         ) : (
           <Table.ScrollContainer minWidth={420} scrollAreaProps={{ viewportProps: { tabIndex: 0, 'aria-label': 'Latest runs' } }}>
             <Table verticalSpacing={7} highlightOnHover>

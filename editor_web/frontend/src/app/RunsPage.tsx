@@ -68,7 +68,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
         <InterruptedHere onResumed={(run) => onOpen(runHref(run))} />
         {active.length === 0 ? (
           <Empty icon={<IconPlayerPlay size={26} stroke={1.4} aria-hidden />} title="No run is under way">
-            Choose a behavior on the left and start it; several go on at once as long as no two need the same arm.
+            Choose a behavior in the menu and start it; several go on at once as long as no two need the same arm.
           </Empty>
         ) : (
           <div className="run-cards">
