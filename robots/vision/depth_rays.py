@@ -5,15 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from engine.sensing import CameraIntrinsics
 from robots.model.rigid import Rigid
+from robots.port import Array
 from robots.sim.physics import mujoco
 from robots.vision.camera import CameraSpec, Image, directions, reduced
 from robots.vision.physics_copy import PhysicsCopy
 
 SEEN_GROUPS = 3
 """Bodies in the geometry groups below this are there for cameras; helpers are in groups above."""
+_SEEN = np.array([group < SEEN_GROUPS for group in range(6)], dtype=np.uint8)
 # Coarser than this share of a voxel between rays, surfaces would have holes that no neighbour fills.
 _PITCH_VOXELS = 1.5
 _STEPS = (8, 4, 2)
@@ -28,7 +31,6 @@ class RayDepth:
         self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, voxel_m: float, middle_m: tuple[float, ...]
     ) -> None:
         self._cell = cell
-        self._groups = np.array([group < SEEN_GROUPS for group in range(6)], dtype=np.uint8)
         self._rays = {camera.name: _Rays(camera, voxel_m, np.array(middle_m)) for camera in cameras}
 
     def intrinsics(self, camera: CameraSpec) -> CameraIntrinsics:
@@ -38,27 +40,29 @@ class RayDepth:
     def exact(self, camera: CameraSpec) -> Image:
         """Return the depths that the camera looks at, (height, width), infinite where there is nothing."""
         rays = self._rays[camera.name]
-        count = len(rays.along)
-        hit, distance = np.empty(count, dtype=np.int32), np.empty(count)
-        mujoco.mj_multiRay(
-            self._cell.model,
-            self._cell.data,
-            rays.start,
-            rays.flat,
-            self._groups,
-            True,
-            -1,
-            hit,
-            distance,
-            None,
-            count,
-            2.0 * camera.range_m[1],
-        )
+        hit, distance = first_hits(self._cell, rays.start, rays.flat, reach_m=2.0 * camera.range_m[1])
         depth = np.where(hit >= 0, distance * rays.along, np.inf).astype(np.float32)
         return depth.reshape(rays.intrinsics.height_px, rays.intrinsics.width_px)
 
     def close(self) -> None:
         """Nothing to let go of."""
+
+
+def first_hits(cell: PhysicsCopy, start: Array, along: Array, *, reach_m: float) -> tuple[NDArray[np.int32], Array]:
+    """Return the shape that each ray meets first, below 0 for none, and how far away, metres.
+
+    Args:
+        cell: In the state that it is in.
+        start: Where all rays begin, (3,).
+        along: Where they go, k unit vectors in the world, flat (3 k,).
+        reach_m: How far at most.
+    """
+    count = len(along) // 3
+    hit, distance = np.empty(count, dtype=np.int32), np.empty(count)
+    mujoco.mj_multiRay(
+        cell.model, cell.data, start, along, _SEEN, True, -1, hit, distance, None, count, reach_m
+    )  # fmt: skip
+    return hit, distance
 
 
 class _Rays:

@@ -19,11 +19,10 @@ from engine.sensing import CameraIntrinsics
 from engine.skills.vision import Detection, Detections, Rectangle
 from robots.model.rigid import Rigid, product, quaternion_of
 from robots.port import Array
-from robots.sim.physics import mujoco
 from robots.sim.scene import PartBody
 from robots.vision.camera import CameraSpec, pixels
 from robots.vision.depth_image import frame_number
-from robots.vision.depth_rays import SEEN_GROUPS
+from robots.vision.depth_rays import first_hits
 from robots.vision.detector_spec import DetectorSpec
 from robots.vision.outline import edges_m, met
 from robots.vision.physics_copy import PhysicsCopy
@@ -45,7 +44,6 @@ class PartDetector:
         self._cell = cell
         self._parts = parts
         self._seed = seed
-        self._groups = np.array([group < SEEN_GROUPS for group in range(6)], dtype=np.uint8)
         self._geoms = {part.name: int(cell.model.geom(part.name).id) for part in parts}
 
     def detections(self, camera: CameraSpec, detector: DetectorSpec, *, time_s: float) -> Detections:
@@ -100,21 +98,8 @@ class PartDetector:
     def _depths(self, geom: int, start: Array, along: Array, far: float) -> Array:
         """Return how deep the part is where a ray, one metre deep each, meets it first; else infinity."""
         lengths = np.linalg.norm(along, axis=1)
-        hit, distance = np.empty(len(along), dtype=np.int32), np.empty(len(along))
-        mujoco.mj_multiRay(
-            self._cell.model,
-            self._cell.data,
-            start.copy(),
-            np.ascontiguousarray(along / lengths[:, None]).ravel(),
-            self._groups,
-            True,
-            -1,
-            hit,
-            distance,
-            None,
-            len(along),
-            far * float(lengths.max()),
-        )
+        units = np.ascontiguousarray(along / lengths[:, None]).ravel()
+        hit, distance = first_hits(self._cell, start.copy(), units, reach_m=far * float(lengths.max()))
         return np.where(hit == geom, distance / lengths, np.inf)
 
     def _measured(self, camera: CameraSpec, detector: DetectorSpec, part: str, pose: Pose, time_s: float) -> Pose:

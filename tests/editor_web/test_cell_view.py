@@ -36,21 +36,9 @@ from tests.editor_web.fake_sights import (
     way,
 )
 from tests.editor_web.limits import GUARD_S
+from tests.editor_web.viser_page import opened_view
 
 VISER = Subprotocol("viser-v1.1.1")
-
-
-@asynccontextmanager
-async def opened(backend: FakeBackend) -> AsyncGenerator[CellView]:
-    """An open view of a backend's cell."""
-    view = CellView(backend, shadows=False)
-    await asyncio.to_thread(view.open)
-    await view.subscribe()
-    try:
-        yield view
-    finally:
-        await view.unsubscribe()
-        await asyncio.to_thread(view.close)
 
 
 async def read(socket: websockets.asyncio.client.ClientConnection, *wanted: str) -> None:
@@ -71,7 +59,7 @@ def unpacked(message: bytes | str) -> bytes:
 
 async def test_the_port_of_the_view_refuses_everybody_without_the_key() -> None:
     """Page 403, websocket 403, wrong key 403; with the key both open."""
-    async with opened(FakeBackend()) as view:
+    async with opened_view(FakeBackend()) as view:
         page, socket = f"http://127.0.0.1:{view.port}/", f"ws://127.0.0.1:{view.port}/"
         async with httpx.AsyncClient(trust_env=False, timeout=GUARD_S) as http:
             assert (await http.get(page)).status_code == 403
@@ -112,7 +100,7 @@ async def test_a_cell_without_a_world_has_an_empty_view() -> None:
         raise FlexcellError("no such topic", where=topic)
 
     backend.subscribe_topic = refuse  # pyright: ignore[reportAttributeAccessIssue] # a cell without these topics
-    async with opened(backend) as view:
+    async with opened_view(backend) as view:
         assert view.port > 0
 
 
@@ -123,7 +111,7 @@ async def test_a_shape_that_cannot_be_drawn_leaves_the_others(caplog: pytest.Log
     odd = msgspec.structs.replace(scene.geometries[0], name="odd_one", kind="torus")
     backend.publish("cell/scene", SceneDescription(geometries=(odd, *scene.geometries)))
     async with (
-        opened(backend) as view,
+        opened_view(backend) as view,
         websockets.asyncio.client.connect(
             f"ws://127.0.0.1:{view.port}/",
             subprotocols=[VISER],
@@ -239,7 +227,7 @@ async def until(backend: FakeBackend, condition: Callable[[], bool]) -> None:
 
 async def test_everything_that_is_there_to_see_reaches_the_page() -> None:
     """Each in its group; the bodies of people are none of the cell's."""
-    async with opened(sighted()) as view, looking(view) as socket:
+    async with opened_view(sighted()) as view, looking(view) as socket:
         await read(
             socket,
             "/voxels/occupied",
@@ -262,7 +250,7 @@ async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them
     def followed() -> list[bool]:
         return [backend.listeners(topic) > 0 for topic in costly]
 
-    async with opened(backend) as view:
+    async with opened_view(backend) as view:
         assert followed() == [False, False, False]
         async with looking(view, page="one"):
             await until(backend, lambda: followed() == [True, False, True])
@@ -280,7 +268,7 @@ async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them
 async def test_a_topic_that_is_made_later_is_followed_with_the_next_page() -> None:
     """As that of an arm which plans for the first time."""
     backend = FakeBackend()
-    async with opened(backend) as view:
+    async with opened_view(backend) as view:
         backend.publish("left/planned_path", way("left"))
         assert backend.listeners("left/planned_path") == 0
         async with looking(view):

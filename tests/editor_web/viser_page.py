@@ -16,6 +16,7 @@ from websockets.typing import Subprotocol
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView
 from editor_web.security import cookie_name
 from editor_web.server import Dashboard
+from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.limits import GUARD_S
 
 VISER = Subprotocol("viser-v1.1.1")
@@ -95,19 +96,25 @@ class ViserPage:
 
 
 @asynccontextmanager
+async def opened_view(backend: FakeBackend) -> AsyncGenerator[CellView]:
+    """An open view of a backend's cell."""
+    view = CellView(backend, shadows=False)
+    await asyncio.to_thread(view.open)
+    await view.subscribe()
+    try:
+        yield view
+    finally:
+        await view.unsubscribe()
+        await asyncio.to_thread(view.close)
+
+
+@asynccontextmanager
 async def viser_page(
     view: CellView, page: str = "", *, headers: Mapping[str, str] | None = None
 ) -> AsyncGenerator[ViserPage]:
     """Connect a page to a view, with what our own server tells of it in the headers."""
-    async with websockets.asyncio.client.connect(
-        f"ws://127.0.0.1:{view.port}/",
-        subprotocols=[VISER],
-        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: page, **(headers or {})},
-        max_size=None,
-        proxy=None,
-    ) as socket:
-        opened = ViserPage(socket=socket)
-        await opened.send_camera()
+    opening = {KEY_HEADER: view.key, PAGE_HEADER: page, **(headers or {})}
+    async with _connected(f"ws://127.0.0.1:{view.port}/", opening) as opened:
         yield opened
 
 
@@ -115,13 +122,18 @@ async def viser_page(
 async def served_view(running: Dashboard, session: str, page: str) -> AsyncGenerator[ViserPage]:
     """Connect as a browser does whose page has this name, through the server and with the cookie of a log-in."""
     origin = running.url.rstrip("/")
+    cookie = {"Cookie": f"{cookie_name(running.port)}={session}"}
+    address = f"{origin.replace('http', 'ws', 1)}/cell/{page}/"
+    async with _connected(address, cookie, origin=websockets.Origin(origin)) as opened:
+        yield opened
+
+
+@asynccontextmanager
+async def _connected(
+    address: str, headers: Mapping[str, str], *, origin: websockets.Origin | None = None
+) -> AsyncGenerator[ViserPage]:
     async with websockets.asyncio.client.connect(
-        f"{origin.replace('http', 'ws', 1)}/cell/{page}/",
-        subprotocols=[VISER],
-        additional_headers={"Cookie": f"{cookie_name(running.port)}={session}"},
-        origin=websockets.Origin(origin),
-        max_size=None,
-        proxy=None,
+        address, subprotocols=[VISER], additional_headers=headers, origin=origin, max_size=None, proxy=None
     ) as socket:
         opened = ViserPage(socket=socket)
         await opened.send_camera()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 
@@ -15,7 +14,7 @@ from engine.skills.planning import PathPreview
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.fake_sights import description, way
-from tests.editor_web.viser_page import viser_page
+from tests.editor_web.viser_page import opened_view, viser_page
 
 NOBODY_LOOKS = PathPreview(robot="left", state="none")
 
@@ -54,14 +53,8 @@ async def opened() -> AsyncGenerator[CellView]:
         ("left/planned_path", way("left", "moving")),
     ):
         backend.publish(topic, message)
-    view = CellView(backend, shadows=False)
-    await asyncio.to_thread(view.open)
-    await view.subscribe()
-    try:
+    async with opened_view(backend) as view:
         yield view
-    finally:
-        await view.unsubscribe()
-        await asyncio.to_thread(view.close)
 
 
 async def test_a_page_that_hides_planned_ways_sees_what_is_looked_at() -> None:
