@@ -1,0 +1,340 @@
+"""The engine's side of the stop relay: starts its process, hands out stop lines, and hears of every stop."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import secrets
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable, Generator, Iterable
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import msgspec
+
+from engine.errors import CellError, FlexcellError
+from engine.stop.messages import (
+    Answer,
+    Close,
+    Configure,
+    FromRelay,
+    MessageReader,
+    NewLine,
+    Question,
+    Ready,
+    StopNotice,
+    StopOrder,
+    StopOrdered,
+    StopRelease,
+    ToRelay,
+    encoded,
+)
+
+_ROOT = str(Path(__file__).resolve().parents[2])
+_START = "from engine.stop.process import main; main()"
+_START_S = 20.0
+_ORDER_S = 0.3
+_END_S = 2.0
+_READ_BYTES = 65536
+_log = logging.getLogger("flexcell.stop")
+
+StopCallback = Callable[[StopNotice], Awaitable[None]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopEndpoint:
+    """Where STOP is taken whatever the engine does: POST `{"token": …, "reason": …}` to `url`."""
+
+    url: str
+    token: str
+
+
+class StopRelay:
+    """A stop that needs no event loop: `async with` starts the relay's process and ends it.
+
+    Belongs to the event loop that enters it. Not a safety function: see docs/concepts/safety.md.
+
+    Args:
+        host: Loopback address to take STOP at over HTTP; None for signals only.
+        port: TCP port; 0 takes a free one.
+    """
+
+    def __init__(self, *, host: str | None = None, port: int = 0) -> None:
+        self._host = host
+        self._port = port
+        self._token = secrets.token_urlsafe(32)
+        self._listener: socket.socket | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._control: socket.socket | None = None
+        self._signals: socket.socket | None = None
+        self._reader = MessageReader(FromRelay)
+        self._unsent = bytearray()
+        self._ready: asyncio.Future[None] | None = None
+        self._orders: dict[int, asyncio.Future[int]] = {}
+        self._requests = 0
+        self._callback: StopCallback | None = None
+        self._carried_out: set[asyncio.Task[None]] = set()
+        self.lost_reason = ""
+        """Why the relay is gone; empty while it works."""
+
+    @property
+    def endpoint(self) -> StopEndpoint | None:
+        """Where STOP is taken over HTTP; None where it is not."""
+        if self._listener is None:
+            return None
+        host = f"[{self._host}]" if self._host and ":" in self._host else self._host
+        return StopEndpoint(url=f"http://{host}:{self._listener.getsockname()[1]}/stop", token=self._token)
+
+    @property
+    def pid(self) -> int:
+        """The relay's process id, 0 before it is started."""
+        return self._process.pid if self._process is not None else 0
+
+    async def __aenter__(self) -> Self:
+        """Start the process; raises CellError when it does not start, or the port is taken."""
+        if self._host is not None:
+            self._listener = _bound(self._host, self._port)
+        try:
+            await self._start()
+        except BaseException:
+            self._end()
+            raise
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the process; every line has been closed before, or is cut now."""
+        self._send(Close())
+        self._end()
+
+    def on_stop(self, callback: StopCallback | None) -> None:
+        """Call back with every stop that did not come from this engine; it has reached the devices already.
+
+        What the callback raises is logged, and the devices stay latched; when it returns they are released.
+        """
+        self._callback = callback
+
+    def allow_origins(self, origins: Iterable[str]) -> None:
+        """Let pages of these origins, such as `http://127.0.0.1:8642`, read the answer to STOP."""
+        self._send(Configure(token=self._token, origins=tuple(origins)))
+
+    def new_line(self, device: str) -> socket.socket:
+        """Return the device's end of a new stop line, to be handed to its process and closed here.
+
+        Raises:
+            CellError: the relay is gone.
+        """
+        if self._control is None or self.lost_reason:
+            raise CellError(
+                self.lost_reason or "the stop relay is not open", where=device, hint="connect the cell again"
+            )
+        ours, theirs = socket.socketpair()
+        try:
+            self._flush()
+            if self._unsent:
+                raise BlockingIOError("it does not read what it is told")
+            socket.send_fds(self._control, [encoded(NewLine(device=device))], [ours.fileno()])
+        except OSError as error:
+            theirs.close()
+            raise CellError(f"the stop relay takes no line: {error}", where=device) from error
+        finally:
+            ours.close()
+        return theirs
+
+    async def order(self, reason: str) -> int | None:
+        """Have every device told to stop, and return the stop's number, for `release`; None where the relay is gone."""
+        if self._control is None or self.lost_reason:
+            return None
+        self._requests += 1
+        ordered = self._orders[self._requests] = asyncio.get_running_loop().create_future()
+        self._send(StopOrder(reason=reason, request=self._requests))
+        try:
+            async with asyncio.timeout(_ORDER_S):
+                return await ordered
+        except TimeoutError:
+            _log.error("the stop relay does not answer; the robots are stopped without it")
+            return None
+        finally:
+            self._orders.pop(self._requests, None)
+
+    def release(self, stop: int) -> None:
+        """Let devices that this stop, or an earlier one, has latched move again: what was under way has ended."""
+        self._send(StopRelease(stop=stop))
+
+    @contextmanager
+    def watched_signals(self) -> Generator[None]:
+        """Have the relay see SIGINT and SIGTERM while the block runs, also while this interpreter is held.
+
+        The relay acts on them when the event loop does not answer. Main thread only. The signals need handlers
+        set by `signal.signal`: an event loop's own would take the descriptor that this needs.
+        """
+        assert self._signals is not None
+        before = signal.set_wakeup_fd(self._signals.fileno(), warn_on_full_buffer=False)
+        try:
+            yield
+        finally:
+            signal.set_wakeup_fd(before)
+
+    async def _start(self) -> None:
+        control, theirs = socket.socketpair()
+        signals, signals_theirs = socket.socketpair()
+        for each in (control, signals):
+            each.setblocking(False)
+        listener_fd = self._listener.fileno() if self._listener is not None else -1
+        descriptors = [theirs.fileno(), signals_theirs.fileno(), listener_fd]
+        try:
+            self._process = _started(descriptors)
+        finally:
+            theirs.close()
+            signals_theirs.close()
+        self._control, self._signals, self.lost_reason = control, signals, ""
+        loop = asyncio.get_running_loop()
+        self._ready = loop.create_future()
+        loop.add_reader(control.fileno(), self._read)
+        self._send(Configure(token=self._token, origins=()))
+        try:
+            async with asyncio.timeout(_START_S):
+                await self._ready
+        except TimeoutError as error:
+            raise CellError(f"the stop relay does not answer within {_START_S:g} s") from error
+
+    def _read(self) -> None:
+        assert self._control is not None
+        try:
+            data = self._control.recv(_READ_BYTES)
+            messages = self._reader.feed(data)
+        except BlockingIOError:
+            return
+        except (OSError, msgspec.DecodeError):
+            data, messages = b"", []
+        for message in messages:
+            self._take(message)
+        if not data:
+            self._lost()
+
+    def _take(self, message: object) -> None:
+        match message:
+            case Ready():
+                if self._ready is not None and not self._ready.done():
+                    self._ready.set_result(None)
+            case Question():
+                self._send(Answer(number=message.number))
+            case StopOrdered():
+                ordered = self._orders.get(message.request)
+                if ordered is not None and not ordered.done():
+                    ordered.set_result(message.stop)
+            case StopNotice():
+                task = asyncio.get_running_loop().create_task(self._carry_out(message), name=f"stop {message.stop}")
+                self._carried_out.add(task)
+                task.add_done_callback(self._carried_out.discard)
+            case _:
+                pass
+
+    async def _carry_out(self, notice: StopNotice) -> None:
+        _log.warning("STOP: %s", notice.reason)
+        try:
+            if self._callback is not None:
+                await self._callback(notice)
+        except FlexcellError as error:
+            _log.error("after STOP the devices stay stopped: %s", error)
+            return
+        if notice.stop:
+            self.release(notice.stop)
+
+    def _lost(self) -> None:
+        """Treat the loss of the relay as a stop: every device has found its line cut."""
+        self._forget_control()
+        if self.lost_reason:
+            return
+        self.lost_reason = f"the stop relay has ended{_how(self._process)}"
+        if self._ready is not None and not self._ready.done():
+            self._ready.set_exception(CellError(f"{self.lost_reason} before it was ready"))
+            return
+        self._take(StopNotice(stop=0, reason=self.lost_reason, source="loss"))
+
+    def _send(self, message: ToRelay) -> None:
+        self._unsent += encoded(message)
+        self._flush()
+
+    def _flush(self) -> None:
+        control = self._control
+        if control is None:
+            self._unsent.clear()
+            return
+        try:
+            del self._unsent[: control.send(self._unsent)]
+        except BlockingIOError:
+            asyncio.get_running_loop().add_writer(control.fileno(), self._flush)
+            return
+        except OSError:
+            # It has gone; reading its end of the stream tells so.
+            self._unsent.clear()
+        asyncio.get_running_loop().remove_writer(control.fileno())
+
+    def _forget_control(self) -> None:
+        control, self._control = self._control, None
+        if control is not None:
+            loop = asyncio.get_running_loop()
+            loop.remove_reader(control.fileno())
+            loop.remove_writer(control.fileno())
+            control.close()
+
+    def _end(self) -> None:
+        self.lost_reason = self.lost_reason or "the stop relay was closed"
+        self._forget_control()
+        for each in (self._signals, self._listener):
+            if each is not None:
+                each.close()
+        process, self._process = self._process, None
+        if process is not None:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(timeout=_END_S)
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+
+
+def _started(descriptors: list[int]) -> subprocess.Popen[bytes]:
+    """Start the relay's process with these descriptors, whose numbers are its arguments (-1 for none)."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)])}
+    command = [sys.executable, "-P", "-c", _START, *map(str, descriptors)]
+    kept = tuple(descriptor for descriptor in descriptors if descriptor >= 0)
+    try:
+        return subprocess.Popen(command, pass_fds=kept, env=environment, stdin=subprocess.DEVNULL)
+    except OSError as error:
+        raise CellError(f"the stop relay does not start: {error}", where=sys.executable) from error
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((host, port))
+        listener.listen(1024)
+        listener.setblocking(False)
+    except OSError as error:
+        listener.close()
+        raise CellError(
+            f"cannot listen for STOP on {host}:{port}: {error.strerror or error}",
+            where="--stop-port",
+            hint="choose another --stop-port",
+        ) from error
+    return listener
+
+
+def _how(process: subprocess.Popen[bytes] | None) -> str:
+    if process is None:
+        return ""
+    with suppress(subprocess.TimeoutExpired):
+        code = process.wait(timeout=0.2)
+        return f" by {signal.Signals(-code).name}" if code < 0 else f" with exit code {code}"
+    return ""
