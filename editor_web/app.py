@@ -49,6 +49,7 @@ from editor_web.teaching.jogging import Jogger
 from editor_web.wire import AskBody, ErrorBody, QuestionBody
 from engine.errors import ControlError, FlexcellError
 from engine.resume import NeedsAnswers
+from engine.stop import StopEndpoint
 
 STATIC = Path(__file__).parent / "static"
 # Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none.
@@ -65,6 +66,7 @@ def new_app(
     port: int,
     cell_view: CellView | None = None,
     static: Path = STATIC,
+    stop: StopEndpoint | None = None,
 ) -> ASGIApp:
     """Return the whole server as one ASGI application.
 
@@ -75,6 +77,7 @@ def new_app(
         port: Our own port.
         cell_view: The 3D view; opened and closed with the application.
         static: Folder of the built page.
+        stop: Where an operator's page sends STOP, beside here.
     """
     limit = AttemptLimit(now_s=time.monotonic)
     app = api()
@@ -86,11 +89,12 @@ def new_app(
         cell_view=cell_view,
         static=static,
         port=port,
+        stop=stop,
     )
     app.state.started = OrderedDict[str, str]()
     app.state.pasts = Pasts(backend)
     app.state.joggers = dict[str, Jogger]()
-    return Gate(app, access=access, limit=limit, hosts=hosts, port=port)
+    return Gate(app, access=access, limit=limit, hosts=hosts, port=port, stop=stop)
 
 
 def api() -> FastAPI:

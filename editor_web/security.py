@@ -11,11 +11,13 @@ import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from http.cookies import CookieError, SimpleCookie
+from urllib.parse import urlsplit
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from editor_web.access import OPERATOR, Access, AttemptLimit
 from editor_web.bodies import TOO_LARGE, bounded, told_too_large
+from engine.stop import StopEndpoint
 
 PAGE_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self' data:; "
@@ -57,14 +59,25 @@ class Gate:
         limit: Counts wrong bearer tokens, shared with the log-in page.
         hosts: Values of the Host header to answer to, with port, in lower case.
         port: Our own port, for the cookie's name.
+        stop: Where pages may send STOP, besides here.
     """
 
-    def __init__(self, app: ASGIApp, *, access: Access, limit: AttemptLimit, hosts: frozenset[str], port: int) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        access: Access,
+        limit: AttemptLimit,
+        hosts: frozenset[str],
+        port: int,
+        stop: StopEndpoint | None = None,
+    ) -> None:
         self._app = app
         self._access = access
         self._limit = limit
         self._hosts = hosts
         self._cookie = cookie_name(port)
+        self._connects = (_origin(stop.url),) if stop is not None else ()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve or refuse one request or websocket."""
@@ -76,7 +89,7 @@ class Gate:
         if refusal is None and scope["type"] == "websocket":
             await self._app(scope, receive, send)
         elif refusal is None:
-            await self._app(scope, bounded(receive), _with_headers(scope, send))
+            await self._app(scope, bounded(receive), _with_headers(scope, send, self._connects))
         elif scope["type"] == "websocket":
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": refusal.message})
@@ -151,10 +164,11 @@ def _refuse(status: int, message: str) -> Refusal:
     return Refusal(status=status, message=message, headers={})
 
 
-def response_headers(path: str) -> dict[str, str]:
-    """Return the headers that every answer under `path` carries."""
+def response_headers(path: str, *, connects: tuple[str, ...] = ()) -> dict[str, str]:
+    """Return the headers that every answer under `path` carries; `connects` are origins that a page may talk to."""
+    page_policy = PAGE_POLICY.replace("connect-src 'self'", " ".join(("connect-src 'self'", *connects)))
     headers = {
-        "content-security-policy": CELL_POLICY if path.startswith("/cell/") else PAGE_POLICY,
+        "content-security-policy": CELL_POLICY if path.startswith("/cell/") else page_policy,
         "x-content-type-options": "nosniff",
         # Under no-referrer a browser sends `Origin: null` with a form, and the log-in's would be refused.
         "referrer-policy": "same-origin" if path == "/login" else "no-referrer",
@@ -166,8 +180,13 @@ def response_headers(path: str) -> dict[str, str]:
     return headers
 
 
-def _with_headers(scope: Scope, send: Send) -> Send:
-    extra = [(k.encode(), v.encode()) for k, v in response_headers(scope["path"]).items()]
+def _origin(url: str) -> str:
+    parts = urlsplit(url)
+    return f"{parts.scheme}://{parts.netloc}"
+
+
+def _with_headers(scope: Scope, send: Send, connects: tuple[str, ...]) -> Send:
+    extra = [(k.encode(), v.encode()) for k, v in response_headers(scope["path"], connects=connects).items()]
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":

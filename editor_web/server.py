@@ -18,6 +18,7 @@ from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.connection import TimedConnection
 from engine.errors import FlexcellError
+from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3
 
@@ -51,6 +52,7 @@ async def dashboard(
     cell_view: bool = True,
     shadows: bool = True,
     static: Path = STATIC,
+    relay: StopRelay | None = None,
 ) -> AsyncGenerator[Dashboard]:
     """Serve the page while the block runs.
 
@@ -62,6 +64,7 @@ async def dashboard(
         cell_view: Whether to draw the cell in 3D.
         shadows: Whether the 3D view casts shadows.
         static: Folder of the built page.
+        relay: Takes STOP from the page where this server does not answer.
 
     Raises:
         FlexcellError: The host is not loopback, the port is taken, or the token file cannot be used.
@@ -69,13 +72,17 @@ async def dashboard(
     access = load_access(token_file)
     listener = _bind(host, port)
     bound = int(listener.getsockname()[1])
+    hosts = frozenset(f"{name}:{bound}" for name in (_in_url(host), "127.0.0.1", "localhost", "[::1]"))
+    if relay is not None:
+        relay.allow_origins(f"http://{name}" for name in hosts)
     app = new_app(
         backend,
         access=access,
-        hosts=frozenset(f"{name}:{bound}" for name in (_in_url(host), "127.0.0.1", "localhost", "[::1]")),
+        hosts=hosts,
         port=bound,
         cell_view=CellView(backend, shadows=shadows) if cell_view else None,
         static=static,
+        stop=relay.endpoint if relay is not None else None,
     )
     server = _Server(
         uvicorn.Config(
@@ -107,10 +114,11 @@ async def serve(
     token_file: Path,
     host: str = "127.0.0.1",
     port: int = 0,
+    relay: StopRelay | None = None,
     on_ready: Callable[[Dashboard], None],
 ) -> None:
     """Serve the page until cancelled; `on_ready` is told the address once it answers."""
-    async with dashboard(backend, token_file=token_file, host=host, port=port) as running:
+    async with dashboard(backend, token_file=token_file, host=host, port=port, relay=relay) as running:
         on_ready(running)
         await asyncio.Event().wait()
 

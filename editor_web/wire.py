@@ -122,13 +122,21 @@ class BusMessageBody(Wire):
     message: dict[str, object]
 
 
+class StopEndpointBody(Wire):
+    """Where STOP is taken whatever this server does: POST `{"token": …, "reason": …}` as plain text to `url`."""
+
+    url: str
+    token: str
+
+
 class SessionBody(Wire):
-    """Who is logged in, and what this server has."""
+    """Who is logged in, and what this server has; `stop` is for operators."""
 
     role: str
     cell_name: str
     has_cell_view: bool
     epoch: str
+    stop: StopEndpointBody | None = None
 
 
 class QuestionBody(Wire):

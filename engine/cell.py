@@ -22,6 +22,7 @@ from engine.errors import CellError, FlexcellError, NotStopped, RobotError
 from engine.preemption import Overdue, preempt
 from engine.registry import DRIVERS, WORLDS, load_maker
 from engine.robot import Robot, World
+from engine.stop import StopRelay
 from engine.store import Store, publish_changes, register_store
 
 _PATIENCE_S = 10.0
@@ -40,9 +41,17 @@ class OpenCell:
         cell: The document, or None for behaviors that need no robot.
         seed: Places the parts of a simulated world within their jitter; None exactly where they are drawn.
         store_path: Replaces the store of the document: a file, or the address of a MongoDB server.
+        relay: Gives every process that moves something a stop line; without one, STOP needs the event loop.
     """
 
-    def __init__(self, cell: Cell | None, *, seed: int | None = None, store_path: str | None = None) -> None:
+    def __init__(
+        self,
+        cell: Cell | None,
+        *,
+        seed: int | None = None,
+        store_path: str | None = None,
+        relay: StopRelay | None = None,
+    ) -> None:
         self.document = cell
         self.seed = seed
         self.bus = SkillBus(new_clock())
@@ -50,6 +59,7 @@ class OpenCell:
         self.robots: Mapping[str, Robot] = {}
         self._world: World | None = None
         self._store_path = store_path
+        self.relay = relay
         self._stack = AsyncExitStack()
 
     @property
@@ -153,7 +163,13 @@ class OpenCell:
             return None
         new_world: NewWorld = load_maker(WORLDS, "mujoco")
         world = await self._stack.enter_async_context(
-            new_world(cell, bus=self.bus, virtual=self.bus.clock.virtual, seed=self.seed)
+            new_world(
+                cell,
+                bus=self.bus,
+                virtual=self.bus.clock.virtual,
+                seed=self.seed,
+                new_stop_line=self.relay.new_line if self.relay is not None else None,
+            )
         )
         world.register(self.bus)
         self._world = world

@@ -33,6 +33,7 @@ from engine.session_entries import StoredEntries
 from engine.session_operators import Attachment, Operators
 from engine.session_recordings import SessionRecordings, Start
 from engine.session_run import SessionRun
+from engine.session_stops import SessionStops
 from engine.skill_port import BusPort
 from engine.supervision import Supervision
 from engine.userdata_book import UserdataBook
@@ -80,20 +81,24 @@ class Session:
         self._runs: dict[str, SessionRun] = {}
         self._callbacks: tuple[EventCallback, ...] = ()
         self._operators = Operators()
+        self._stops = SessionStops(cell, self._runs)
 
     async def __aenter__(self) -> Self:
         await self._entries.open()
+        self._stops.begin()
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Stop every run and wait until its robots rest."""
+        self._stops.end()
         for started in self._runs.values():
             started.run.stop("the session was closed")
         tasks = [started.task for started in self._runs.values() if started.task is not None]
         if tasks:
             await asyncio.wait(tasks)
+        await self._stops.released()
         if self._recordings is not None:
             await self._recordings.close()
         self._entries.close()
@@ -268,20 +273,17 @@ class Session:
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Ask a run to stop and return at once; stopping one that is over does nothing."""
-        started = self._known(run_id)
-        if started.result is None:
-            started.stopping = True
-            started.run.stop(reason)
+        self._known(run_id).stop(reason)
 
     async def stop_all(self, *, reason: str) -> None:
         """Ask every run to stop, cancel every goal of whomever, and return when every robot is at rest.
 
+        With a stop relay the devices take no motion until every run has ended, that of a clean-up neither.
+
         Raises:
-            RobotError: one could not confirm it; the others were stopped all the same.
+            RobotError: one could not confirm it; the others were stopped all the same, and stay latched.
         """
-        for run_id in tuple(self._runs):
-            await self.stop(run_id, reason=reason)
-        await self.cell.stop()
+        await self._stops.stop_all(reason=reason)
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
         """Return the breakpoints that are kept beside a behavior's file.

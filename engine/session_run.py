@@ -29,3 +29,9 @@ class SessionRun:
         self.stopping = False
         self.result: RunResult | None = None
         self.task: asyncio.Task[None] | None = None
+
+    def stop(self, reason: str) -> None:
+        """Ask it to stop and return at once; one that is over stays as it is."""
+        if self.result is None:
+            self.stopping = True
+            self.run.stop(reason)

@@ -14,6 +14,7 @@ from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
 from engine.editing import Documents
+from engine.stop import StopEndpoint
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,7 @@ class Services:
     cell_view: CellView | None
     static: Path
     port: int
+    stop: StopEndpoint | None = None
 
     @property
     def documents(self) -> Documents:

@@ -8,9 +8,10 @@ from urllib.parse import parse_qs
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
+from editor_web.access import OPERATOR
 from editor_web.routes.services import Services, ServicesOf, role_of
 from editor_web.security import cookie_name
-from editor_web.wire import SessionBody
+from editor_web.wire import SessionBody, StopEndpointBody
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
@@ -20,11 +21,13 @@ SESSION_S = 30 * 24 * 3600
 @router.get("/api/v1/session")
 def get_session(request: Request, services: ServicesOf) -> SessionBody:
     """Say who is logged in and what this server has."""
+    role, stop = role_of(request), services.stop
     return SessionBody(
-        role=role_of(request),
+        role=role,
         cell_name=services.backend.cell_name,
         has_cell_view=services.cell_view is not None,
         epoch=services.hub.epoch,
+        stop=StopEndpointBody(url=stop.url, token=stop.token) if stop is not None and role == OPERATOR else None,
     )
 
 

@@ -24,6 +24,9 @@ class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
     url: str
     token: str
     pid: int
+    stop_url: str = ""
+    """Where STOP is taken whatever the server does; empty where it is not."""
+    stop_token: str = ""
 
 
 class _Failure(msgspec.Struct):

@@ -9,6 +9,7 @@ import time
 from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import AbstractAsyncContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, TypeVar
 
 from rich.console import Console
@@ -29,6 +30,7 @@ from engine.recorder import Watcher
 from engine.recording import RecordingOrder, RunRecording
 from engine.run import Run, RunResult
 from engine.skill_port import BusPort, SkillPort
+from engine.stop import StopNotice, StopRelay
 from engine.supervision import Supervision
 from engine.watchdog import Watchdog
 
@@ -112,13 +114,17 @@ def _on_clock(main: Coroutine[Any, Any, T], *, virtual: bool) -> T:
 
 async def _execute(order: Order) -> Ended:
     log: list[Event] = []
+    over = asyncio.Event()
     with ExitStack() as stack:
         interruption = stack.enter_context(Interruption(_say))
         journal = _journal(order, stack)
         async with (
             _recording(order) as recording,
-            OpenCell(order.cell, seed=order.seed, store_path=order.store) as cell,
+            _relay(order) as relay,
+            OpenCell(order.cell, seed=order.seed, store_path=order.store, relay=relay) as cell,
         ):
+            if relay is not None:
+                stack.enter_context(relay.watched_signals())
             started_unix_s = time.time()
             faults = _faults(order, cell)
             run = await order.make(cell, journal, faults)
@@ -131,11 +137,14 @@ async def _execute(order: Order) -> Ended:
             if not order.quiet:
                 run.watch(Progress(Console(stderr=True)).show)
             interruption.watch_over(run)
+            if relay is not None:
+                relay.on_stop(partial(_stop_run, run, over))
             _watch_for_standstill(run)
             if order.reload is not None:
                 stack.enter_context(OperatorConsole(run, say=_tell, reload=order.reload, policy=order.supervision))
             with Watchdog():
                 result = await _within(order.timeout_s, run)
+            over.set()
     if faults is not None and order.quiet:
         # With progress on the terminal these lines stand in it already.
         for line in faults.unapplied():
@@ -152,6 +161,17 @@ async def _within(timeout_s: float | None, execution: Run) -> RunResult:
         return await execution.execute()
     finally:
         timer.cancel()
+
+
+def _relay(order: Order) -> AbstractAsyncContextManager[StopRelay | None]:
+    """Return what brings the robots to rest when a signal finds the event loop blocked."""
+    return StopRelay() if order.cell is not None and not order.virtual else nullcontext()
+
+
+async def _stop_run(run: Run, over: asyncio.Event, notice: StopNotice) -> None:
+    """End the run; the devices stay latched until it is over."""
+    run.stop(notice.reason)
+    await over.wait()
 
 
 def _watch_for_standstill(run: Run) -> None:

@@ -13,6 +13,7 @@ import typer
 
 from engine.cli import bus, check, coverage, export, replay, resume, run, runs, schema, serve, states, store, teach
 from engine.cli.exit_code import ExitCode
+from engine.cli.stop import REASON, STATE_FOLDER, stop_cell
 from engine.errors import FlexcellError
 
 app = typer.Typer(
@@ -34,6 +35,19 @@ app.add_typer(store.app, name="store")
 app.add_typer(bus.app, name="bus")
 app.add_typer(teach.app, name="teach")
 app.command("schema")(schema.schema)
+
+
+@app.command("stop")
+def stop(
+    state: Annotated[Path, typer.Option(help="Folder in which the server keeps its state.")] = Path(STATE_FOLDER),
+    reason: Annotated[str, typer.Option(help="Why; runs that end by it say so.")] = REASON,
+) -> None:
+    """Stop every run and every motion of a running server, whatever the server does.
+
+    Exit code 0: everything is at rest. 2: no server runs there. 3: somebody does not confirm it.
+    This is no safety function: see docs/concepts/safety.md.
+    """
+    raise typer.Exit(stop_cell(state, reason))
 
 
 def _print_version(wanted: bool) -> None:

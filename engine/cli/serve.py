@@ -10,6 +10,7 @@ import webbrowser
 from collections.abc import Callable, Coroutine
 from contextlib import ExitStack
 from pathlib import Path
+from types import FrameType
 from typing import Annotated, Any
 
 import msgspec
@@ -23,6 +24,7 @@ from engine.journal import Journal
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
 from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
+from engine.stop import StopEndpoint, StopRelay
 from engine.teaching import HelpingHand, teachable
 from engine.watchdog import Watchdog
 
@@ -35,6 +37,12 @@ def serve(
     ] = None,
     port: Annotated[int, typer.Option(help="TCP port on 127.0.0.1; 0 takes a free one.", min=0, max=65535)] = 8642,
     host: Annotated[str, typer.Option(help="Loopback address to listen on.")] = "127.0.0.1",
+    stop_port: Annotated[
+        int,
+        typer.Option(
+            help="TCP port at which STOP is taken whatever the server does; 0 takes a free one.", min=0, max=65535
+        ),
+    ] = 0,
     project: Annotated[Path, typer.Option(help="Folder with `behaviors/` in it.")] = Path(),
     state: Annotated[Path, typer.Option(help="Folder for tokens and the journal.")] = Path(".flexcell"),
     seed: Annotated[
@@ -60,6 +68,7 @@ def serve(
             loaded,
             port=port,
             host=host,
+            stop_port=stop_port,
             project=project,
             state=state,
             seed=seed,
@@ -75,6 +84,7 @@ async def _serve(
     *,
     port: int,
     host: str,
+    stop_port: int,
     project: Path,
     state: Path,
     seed: int | None,
@@ -86,7 +96,7 @@ async def _serve(
     server_file = state / SERVER_FILE
 
     def ready(dashboard: Any) -> None:
-        _write_private(server_file, ServerRecord(url=dashboard.url, token=dashboard.token, pid=os.getpid()))
+        _write_private(server_file, _record(dashboard, relay.endpoint))
         # What is late before is late for nobody.
         watched.enter_context(Watchdog())
         sys.stdout.write(f"Dashboard: {dashboard.login_url}\nStop with Ctrl-C.\n")
@@ -98,25 +108,45 @@ async def _serve(
         sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
     with Journal.open(state) as journal, ExitStack() as watched:
         async with (
-            OpenCell(cell, seed=seed) as opened,
+            StopRelay(host=host, port=stop_port) as relay,
+            OpenCell(cell, seed=seed, relay=relay) as opened,
             HelpingHand(
                 opened.bus, robots=teachable(opened.bus), folder=state / "captures", file=state / "triggers.yaml"
             ),
             Session(opened, project=project, catalogue=catalogue, journal=journal, recordings=recordings) as session,
         ):
             serving = asyncio.create_task(
-                new_dashboard(session, token_file=state / "tokens", host=host, port=port, on_ready=ready),
+                new_dashboard(session, token_file=state / "tokens", host=host, port=port, relay=relay, on_ready=ready),
                 name="serve",
             )
-            loop = asyncio.get_running_loop()
-            for number in (signal.SIGINT, signal.SIGTERM):
-                loop.add_signal_handler(number, serving.cancel)
+            _on_signals(asyncio.get_running_loop(), serving.cancel)
             try:
-                await serving
+                with relay.watched_signals():
+                    await serving
             except asyncio.CancelledError:
                 sys.stderr.write("stopping: bringing the robots to rest\n")
             finally:
                 server_file.unlink(missing_ok=True)
+
+
+def _on_signals(loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:
+    """Call `end` on the loop at SIGINT and SIGTERM; the loop's own handlers would hide the signals from the relay."""
+
+    def caught(_number: int, _frame: FrameType | None) -> None:
+        loop.call_soon_threadsafe(end)
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, caught)
+
+
+def _record(dashboard: Any, stop: StopEndpoint | None) -> ServerRecord:
+    return ServerRecord(
+        url=dashboard.url,
+        token=dashboard.token,
+        pid=os.getpid(),
+        stop_url=stop.url if stop is not None else "",
+        stop_token=stop.token if stop is not None else "",
+    )
 
 
 def _write_private(file: Path, record: ServerRecord) -> None:

@@ -112,6 +112,11 @@ class StopRelay:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """End the process; every line has been closed before, or is cut now."""
+        self._callback = None
+        for task in self._carried_out:
+            task.cancel()
+        if self._carried_out:
+            await asyncio.wait(self._carried_out)
         self._send(Close())
         self._end()
 

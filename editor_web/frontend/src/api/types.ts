@@ -1009,12 +1009,13 @@ export interface SavedBody {
   readonly saved_at: number
 }
 
-/** Who is logged in, and what this server has. */
+/** Who is logged in, and what this server has; `stop` is for operators. */
 export interface SessionBody {
   readonly role: string
   readonly cell_name: string
   readonly has_cell_view: boolean
   readonly epoch: string
+  readonly stop: StopEndpointBody | null
 }
 
 /** Change what the document declares; null takes a key away. The other keys stay. Keys: name, description, cell, parameters, userdata, outcomes, success. */
@@ -1130,6 +1131,12 @@ export interface StepBody {
 /** A request to stop a run; `reason` goes into its event log. */
 export interface StopBody {
   readonly reason?: string
+}
+
+/** Where STOP is taken whatever this server does: POST `{"token": …, "reason": …}` as plain text to `url`. */
+export interface StopEndpointBody {
+  readonly url: string
+  readonly token: string
 }
 
 /** How a run is watched over; see `flexcell run --help` for the same options. */

@@ -1,0 +1,29 @@
+"""The console script: STOP goes out before anything else is even imported."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+
+def main() -> None:
+    """Run the command line; `flexcell stop` in its plain forms without loading the rest."""
+    if sys.argv[1:2] == ["stop"] and (options := _stop_options(sys.argv[2:])) is not None:
+        from engine.cli.stop import stop_cell
+
+        sys.exit(stop_cell(*options))
+    from engine.cli.main import main as command_line
+
+    command_line()
+
+
+def _stop_options(arguments: list[str]) -> tuple[Path, str] | None:
+    """Return state folder and reason; None for whatever only the full command line understands, such as --help."""
+    from engine.cli.stop import REASON, STATE_FOLDER
+
+    given = {"--state": STATE_FOLDER, "--reason": REASON}
+    names, values = arguments[0::2], arguments[1::2]
+    if len(names) != len(values) or any(name not in given for name in names):
+        return None
+    given.update(zip(names, values, strict=True))
+    return Path(given["--state"]), given["--reason"]
