@@ -11,66 +11,14 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import AsyncGenerator, Generator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import httpx
 
 from engine.stop import StopEndpoint, StopLine, StopNotice, StopRelay
-
-
-class _Device:
-    """A control loop in miniature: a thread that polls its line and rests as soon as it is told to stop."""
-
-    def __init__(self, relay: StopRelay, name: str = "world") -> None:
-        self.connection = relay.new_line(name)
-        self.line = StopLine(self.connection)
-        self.stops: list[str] = []
-        self.rests = True
-        self.stopped = threading.Event()
-        self.released = threading.Event()
-        self._end = threading.Event()
-        self._thread = threading.Thread(target=self._run)
-        self._thread.start()
-
-    def _run(self) -> None:
-        while not self._end.wait(0.001):
-            if reason := self.line.poll():
-                self.stops.append(reason)
-                self.stopped.set()
-            if self.stops and not self.line.latched:
-                self.released.set()
-            if self.rests:
-                self.line.tell_rest()
-
-    def close(self) -> None:
-        self._end.set()
-        self._thread.join()
-        self.connection.close()
-
-
-@asynccontextmanager
-async def device(relay: StopRelay) -> AsyncGenerator[_Device]:
-    made = _Device(relay)
-    try:
-        yield made
-    finally:
-        made.close()
-
-
-def post(endpoint: StopEndpoint, *, path: str = "", token: str | None = None, reason: str = "test") -> httpx.Response:
-    body = {"token": endpoint.token if token is None else token, "reason": reason}
-    return httpx.post(endpoint.url + path, content=json.dumps(body), timeout=10, trust_env=False)
-
-
-async def stopped_by_another_thread(endpoint: StopEndpoint, **options: str) -> httpx.Response:
-    return await asyncio.to_thread(lambda: post(endpoint, **options))
-
-
-def endpoint_of(relay: StopRelay) -> StopEndpoint:
-    assert relay.endpoint is not None
-    return relay.endpoint
+from tests.engine.stop.device import device, endpoint_of, post, posted
 
 
 async def test_a_stop_over_http_reaches_the_device_and_the_engine_and_is_released_by_the_engine() -> None:
@@ -83,7 +31,7 @@ async def test_a_stop_over_http_reaches_the_device_and_the_engine_and_is_release
 
     async with StopRelay(host="127.0.0.1") as relay, device(relay) as arm:
         relay.on_stop(note)
-        answer = await stopped_by_another_thread(endpoint_of(relay), reason="the door is open")
+        answer = await posted(endpoint_of(relay), reason="the door is open")
         await noted.wait()
         await asyncio.to_thread(arm.released.wait)
     assert answer.status_code == 200
@@ -112,11 +60,11 @@ async def test_status_says_when_everything_rests() -> None:
     async with StopRelay(host="127.0.0.1") as relay, device(relay) as arm:
         arm.rests = False
         endpoint = endpoint_of(relay)
-        first = (await stopped_by_another_thread(endpoint)).json()
+        first = (await posted(endpoint)).json()
         arm.rests = True
         status = first
         while not status["at_rest"]:
-            status = (await stopped_by_another_thread(endpoint, path="/status")).json()
+            status = (await posted(endpoint, path="/status")).json()
     assert (first["acknowledged"], first["at_rest"]) == (True, False)
     assert status["stop"] == first["stop"]
 
@@ -134,10 +82,10 @@ async def test_an_order_of_the_engine_latches_until_it_is_released() -> None:
 async def test_a_wrong_token_stops_nothing_and_never_locks_the_right_one_out() -> None:
     async with StopRelay(host="127.0.0.1") as relay, device(relay) as arm:
         endpoint = endpoint_of(relay)
-        wrong = [(await stopped_by_another_thread(endpoint, token="guess")).status_code for _ in range(20)]
+        wrong = [(await posted(endpoint, token="guess")).status_code for _ in range(20)]
         assert set(wrong) == {401}
         assert not arm.stops
-        assert (await stopped_by_another_thread(endpoint)).json()["acknowledged"]
+        assert (await posted(endpoint)).json()["acknowledged"]
 
 
 async def test_only_pages_of_this_server_may_ask() -> None:
@@ -161,7 +109,7 @@ async def test_connections_that_say_nothing_delay_no_stop() -> None:
         endpoint = endpoint_of(relay)
         url = httpx.URL(endpoint.url)
         mute = [await asyncio.open_connection(url.host, url.port) for _ in range(400)]
-        answer = await stopped_by_another_thread(endpoint)
+        answer = await posted(endpoint)
         for _, writer in mute:
             writer.close()
     assert answer.json()["acknowledged"]
@@ -177,7 +125,7 @@ async def test_a_relay_that_is_killed_counts_as_a_stop() -> None:
 
     async with StopRelay() as relay, device(relay) as arm:
         relay.on_stop(note)
-        os.kill(relay.pid, signal.SIGKILL)
+        relay.kill()
         await told.wait()
         await asyncio.to_thread(arm.stopped.wait)
         assert arm.stops == ["the stop line is cut: the stop relay has ended"]
@@ -260,7 +208,7 @@ async def test_a_signal_that_a_blocked_engine_cannot_handle_stops_the_devices() 
 async def test_a_frozen_engine_is_stopped_over_http() -> None:
     with engine_in_a_process("waits") as engine:
         engine.process.send_signal(signal.SIGSTOP)
-        asking = asyncio.create_task(stopped_by_another_thread(engine.endpoint))
+        asking = asyncio.create_task(posted(engine.endpoint))
         assert await engine.stops_device() == "test"
         assert (await asking).json()["engine"] == "silent"
 
@@ -269,7 +217,7 @@ async def test_a_killed_engine_stops_the_devices_and_stop_is_still_answered() ->
     with engine_in_a_process("waits") as engine:
         engine.process.kill()
         assert await engine.stops_device() == "the engine has ended"
-        asking = asyncio.create_task(stopped_by_another_thread(engine.endpoint))
+        asking = asyncio.create_task(posted(engine.endpoint))
         assert await engine.stops_device() == "test"
         told = (await asking).json()
     assert (told["acknowledged"], told["engine"]) == (True, "ended")
