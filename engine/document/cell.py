@@ -40,10 +40,20 @@ class MongoStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mongo
 
 
 class MujocoWorld(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
-    """The simulated surroundings."""
+    """The simulated surroundings.
+
+    The two silences are for simulations in real time on a loaded machine: a longer one lets an arm move on for
+    longer while nobody watches it.
+    """
 
     step_s: Annotated[float, Meta(gt=0.0, le=0.01, description="Physics step in seconds")] = 0.001
     gravity: bool = True
+    engine_silence_s: Annotated[
+        float, Meta(ge=0.1, le=60.0, description="Without a sign of the engine for so long, everything comes to rest")
+    ] = 0.2
+    world_silence_s: Annotated[
+        float, Meta(ge=0.1, le=60.0, description="Without a step of the world for so long, it is lost and ended")
+    ] = 0.25
 
 
 OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]

@@ -28,6 +28,7 @@ class _UnderWay:
     tolerance: Tolerance
     ending: MotionEnd | None = None
     reason: str = ""
+    stop_cause: str = ""
     hold: bool = False
     finishing: bool = False
     request: int = 0
@@ -117,9 +118,11 @@ class ArmMotion:
         if self._following and self._following.number == number and self._following.ending is None:
             self._following.ending = MotionEnd.CANCELED
 
-    def stop(self) -> None:
-        """Cancel whatever runs."""
-        self.cancel(self.number)
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs; with a `cause` it ends as failed with that. The set point is held."""
+        following = self._following
+        if following and following.ending is None:
+            following.ending, following.stop_cause = MotionEnd.CANCELED, cause
 
     def step(self, step_s: float, state: ArmState) -> tuple[AnyMotionEvent, ...]:
         """Move the set point on by one period and return what happened."""
@@ -208,9 +211,12 @@ class ArmMotion:
         if self._give_way is not None and self._give_way[2] < 1.0:
             return ()
         if at_rest:
+            if following.stop_cause and not following.reason:
+                return self._finish(following, MotionEnd.FAILED, following.stop_cause)
             return self._finish(following, ending, following.reason)
         if following.waited_s >= _STILL_MOVING_AFTER_S:
-            reason = (following.reason + "; " if following.reason else "") + "the arm does not come to rest"
+            why = following.reason or following.stop_cause
+            reason = (why + "; " if why else "") + "the arm does not come to rest"
             return self._finish(following, MotionEnd.FAILED, reason)
         return ()
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from robots.control.grip_task import GripTask
-from robots.control.motion_event import AnyMotionEvent, MotionFinished
-from robots.port import MotionEnd
+from robots.control.motion_event import AnyMotionEvent
 
 # For fingers with 0.2 kg behind them that is 20 N at 1 mm, well damped.
 _STIFFNESS_PER_S2 = 100_000.0
@@ -131,9 +130,9 @@ class FingerServo:
         """Stop the fingers where they are and end as canceled."""
         self._task.cancel(number)
 
-    def stop(self) -> None:
-        """Cancel whatever runs; a force that holds a part is kept."""
-        self.cancel(self.number)
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs; a force that holds a part is kept; with a `cause` it ends as failed."""
+        self._task.stop(cause)
 
     def step(self, step_s: float, *, width_m: float, velocity_m_s: float) -> tuple[AnyMotionEvent, ...]:
         """Set `force_n` for each finger and return what happened; both measures are of the opening."""
@@ -144,6 +143,7 @@ class FingerServo:
         self.force_n = min(self._limit_n, max(-self._limit_n, wanted))
         arrived = self._set_m == self._target_m and abs(width_m - self._target_m) < _AT_WIDTH_M
         pressing = abs(self.force_n) >= _FORCE_SHARE * self._limit_n
+        cancelled = self._task.cancelled
         events = self._task.judge(
             step_s,
             still=abs(velocity_m_s) < _REST_M_S,
@@ -151,9 +151,8 @@ class FingerServo:
             progress=lambda: self.progress(width_m),
             late=self._late,
         )
-        for event in events:
-            if isinstance(event, MotionFinished) and event.end == MotionEnd.CANCELED.value:
-                self._target_m = self._set_m
+        if cancelled and not self._task.number:
+            self._target_m = self._set_m
         return events
 
     def _advance(self, step_s: float, width_m: float) -> None:

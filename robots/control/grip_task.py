@@ -23,6 +23,7 @@ class _Task:
     told_held: bool = False
     tell_resumed: bool = False
     cancel: bool = False
+    stop_cause: str = ""
     waited_s: float = 0.0
 
 
@@ -42,6 +43,11 @@ class GripTask:
     def halted(self) -> bool:
         """True while a motion is held or being cancelled."""
         return self._task is not None and (self._task.hold or self._task.cancel)
+
+    @property
+    def cancelled(self) -> bool:
+        """True while a motion is being cancelled."""
+        return self._task is not None and self._task.cancel
 
     def start(self, number: int, *, patience_s: float) -> None:
         """Begin a motion; it fails after `patience_s` of not being held."""
@@ -69,6 +75,11 @@ class GripTask:
         """Stop and end as canceled."""
         if self._task and self._task.number == number:
             self._task.cancel = True
+
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs; with a `cause` it ends as failed with that."""
+        if self._task and not self._task.cancel:
+            self._task.cancel, self._task.stop_cause = True, cause
 
     def judge(
         self,
@@ -98,7 +109,10 @@ class GripTask:
             self._rest_s = 0.0
             return (MotionResumed(motion=task.number, request=task.request),)
         if task.cancel:
-            return self._finish(task, MotionEnd.CANCELED, progress) if at_rest else self._wait(step_s, progress, late)
+            if not at_rest:
+                return self._wait(step_s, progress, late)
+            end = MotionEnd.FAILED if task.stop_cause else MotionEnd.CANCELED
+            return self._finish(task, end, progress, task.stop_cause)
         if task.hold:
             if not at_rest or task.told_held:
                 return ()

@@ -70,9 +70,9 @@ class MagnetSwitch:
         """End as canceled once the field stands still."""
         self._task.cancel(number)
 
-    def stop(self) -> None:
-        """Cancel whatever runs; what is held stays held."""
-        self.cancel(self.number)
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs, what is held stays held; with a `cause` it ends as failed."""
+        self._task.stop(cause)
 
     def step(self, step_s: float, *, still: bool) -> tuple[AnyMotionEvent, ...]:
         """Move `level` on and return what happened; `still` when nothing moves that the magnet pulls."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from robots.control.grip_task import GripTask
-from robots.control.motion_event import AnyMotionEvent, MotionFinished
-from robots.port import MotionEnd
+from robots.control.motion_event import AnyMotionEvent
 
 # The tendon gives by this share of its travel under the motor's whole force.
 _GIVE_SHARE = 0.25
@@ -91,9 +90,9 @@ class TendonServo:
         """Stop the motor where it is and end as canceled."""
         self._task.cancel(number)
 
-    def stop(self) -> None:
-        """Cancel whatever runs; what is held stays held."""
-        self.cancel(self.number)
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs; what is held stays held; with a `cause` it ends as failed."""
+        self._task.stop(cause)
 
     def step(self, step_s: float, *, pulled_m: float, velocity_m_s: float) -> tuple[AnyMotionEvent, ...]:
         """Set `force_n`, the pull; `pulled_m` is how much tendon the fingers have given, at `velocity_m_s`."""
@@ -107,6 +106,7 @@ class TendonServo:
         self.force_n = min(self._max_force_n, max(0.0, wanted))
         slack = pulled_m - self._wound_m > _SLACK_SHARE * self._travel_m
         stalled = self._wound_m < self._target_m and self.force_n >= _FORCE_SHARE * self._max_force_n
+        cancelled = self._task.cancelled
         events = self._task.judge(
             step_s,
             still=abs(velocity_m_s) < _REST_M_S,
@@ -114,9 +114,8 @@ class TendonServo:
             progress=lambda: self.progress,
             late=self._late,
         )
-        for event in events:
-            if isinstance(event, MotionFinished) and event.end == MotionEnd.CANCELED.value:
-                self._target_m = self._wound_m
+        if cancelled and not self._task.number:
+            self._target_m = self._wound_m
         return events
 
     def _late(self, waited_s: float) -> str:

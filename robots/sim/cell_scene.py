@@ -32,6 +32,8 @@ def scene_of(document: CellDocument, *, seed: int | None = None, resolve: Resolv
     return Scene(
         step_s=world.step_s,
         gravity=world.gravity,
+        engine_silence_s=world.engine_silence_s,
+        world_silence_s=world.world_silence_s,
         arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
         fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
         parts=tuple(_parts(document, seed)),

@@ -9,6 +9,7 @@ from engine.errors import RobotError
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands import AnyCommand, Cancel, Hold, Resume
+from robots.sim.host import CONNECT_AGAIN
 
 
 class SimMotion:
@@ -116,7 +117,7 @@ class MotionBoard:
             RobotError: the world is gone, or no motion may start for now.
         """
         if self.lost_reason:
-            raise RobotError(self.lost_reason, hint="connect the cell again")
+            raise RobotError(self.lost_reason, hint=CONNECT_AGAIN)
         if self.closed_reason:
             raise RobotError(self.closed_reason, hint="wait a moment")
         self._last_number += 1

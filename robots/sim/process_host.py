@@ -14,9 +14,11 @@ import msgspec
 from engine.errors import CellError, RobotError
 from robots.child_process import how_it_ended, start_child
 from robots.port import Array
+from robots.port.heartbeat import Heartbeat, new_heartbeat_file
+from robots.port.loop_heartbeat import LoopHeartbeat
 from robots.sim.commands import AnyCommand, Restore, Shutdown
 from robots.sim.framing import FrameReader, framed
-from robots.sim.host import HostListener
+from robots.sim.host import CONNECT_AGAIN, HostListener
 from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers, new_shared_file
 from robots.sim.snapshot import CellSummary, Snapshot, SnapshotLayout
@@ -40,6 +42,7 @@ class ProcessHost:
         self._layout: SnapshotLayout | None = None
         self._state: SharedNumbers | None = None
         self._timing: SharedNumbers | None = None
+        self._heartbeat: LoopHeartbeat | None = None
         self.fifo = False
 
     @property
@@ -78,22 +81,24 @@ class ProcessHost:
                 await restored
         except TimeoutError as error:
             raise RobotError(
-                f"the world's process did not restore its state within {_RESTORE_S:g} s", hint="connect the cell again"
+                f"the world's process did not restore its state within {_RESTORE_S:g} s", hint=CONNECT_AGAIN
             ) from error
 
     def send(self, command: AnyCommand) -> None:
         """Give a command; raises RobotError when the process is gone."""
         if self._wire is None or self._wire.lost_reason:
             raise RobotError(
-                self._wire.lost_reason if self._wire else "the world's process was ended", hint="connect the cell again"
+                self._wire.lost_reason if self._wire else "the world's process was ended", hint=CONNECT_AGAIN
             )
+        if self._heartbeat is not None:
+            self._heartbeat.pulse()
         self._wire.send(msgspec.msgpack.encode(command))
 
     async def open(self, listener: HostListener) -> None:
-        """Start the process and wait until its world stands."""
+        """Start the process and wait until its world stands; again when the last one was lost."""
         ours, theirs = socket.socketpair()
-        state_fd, timing_fd = new_shared_file(), new_shared_file()
-        descriptors = (theirs.fileno(), state_fd, timing_fd)
+        state_fd, timing_fd, heartbeat_fd = new_shared_file(), new_shared_file(), new_heartbeat_file()
+        descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd)
         try:
             self._process = start_child(_START, descriptors, what=_WHAT)
             # Closed before the process can be gone, else its end would not be heard.
@@ -109,6 +114,7 @@ class ProcessHost:
             self._state.read()
             self._timing = SharedNumbers(timing_fd, SIZE)
             self.fifo = ready.fifo
+            self._begin_heartbeat(Heartbeat(heartbeat_fd))
         except BaseException:
             # Whatever went wrong, cancellation included, no process may be left behind.
             wire, self._wire = self._wire, None
@@ -122,6 +128,21 @@ class ProcessHost:
             theirs.close()
             os.close(state_fd)
             os.close(timing_fd)
+            os.close(heartbeat_fd)
+
+    def _begin_heartbeat(self, heartbeat: Heartbeat) -> None:
+        self._heartbeat = LoopHeartbeat(
+            heartbeat, limit_s=self._scene.world_silence_s, on_silence=self._end_silent_process
+        )
+        self._heartbeat.begin()
+
+    def _end_silent_process(self, silent_s: float) -> None:
+        """Kill a process that does not step, so that it is known to be over, and tell that it is lost."""
+        if self._process is not None:
+            self._process.kill()
+        if self._wire is not None and not self._wire.lost_reason:
+            self._wire.lose(f"{_WHAT} has not stepped for {silent_s:.1f} s: it is frozen or starved, and was ended")
+            self._wire.close()
 
     async def _answer(self, wire: _Wire) -> WorldReady:
         try:
@@ -148,6 +169,9 @@ class ProcessHost:
 
     def _kill(self, wire: _Wire | None) -> None:
         """End the process, gently if it is about to end by itself."""
+        if self._heartbeat is not None:
+            self._heartbeat.end()
+            self._heartbeat = None
         if wire is not None:
             wire.close()
         if self._process is not None and self._process.poll() is None:
@@ -211,13 +235,18 @@ class _Wire(asyncio.Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         if not self.gone.done():
             self.gone.set_result(None)
-        reason = "the world was closed" if self.closing else self._how_it_ended()
+        if not self.lost_reason:
+            self.lose(self._how_it_ended() if not self.closing else "")
+
+    def lose(self, reason: str) -> None:
+        """Tell everybody who waits that the world is gone; what is closed on purpose has its own reason."""
+        reason = "the world was closed" if self.closing else reason
         self.lost_reason = reason
         if not self.first.done():
             self.first.set_exception(RobotError(f"{reason} before it was ready"))
         for future in self._restores:
             if not future.done():
-                future.set_exception(RobotError(reason, hint="connect the cell again"))
+                future.set_exception(RobotError(reason, hint=CONNECT_AGAIN))
         self._listener.lost(reason)
 
     def send(self, payload: bytes) -> None:

@@ -14,6 +14,8 @@ import msgspec
 import numpy as np
 
 from engine.errors import CellError
+from robots.port.control_process import EngineMonitor
+from robots.port.heartbeat import Heartbeat
 from robots.sim.cell_model import build_cell
 from robots.sim.commands import AnyCommand, Restore, Shutdown, StopAll
 from robots.sim.framing import FrameReader, framed
@@ -21,6 +23,7 @@ from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers
 from robots.sim.simulation import Simulation
 from robots.sim.timing import SIZE, TimingCounter
+from robots.sim.world_log import log_without_waiting
 from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
 
 _FIFO_PRIORITY = 20
@@ -84,12 +87,29 @@ class CommandChannel:
         del self._unsent[:sent]
 
 
+class ClosedChannel:
+    """What takes the channel's place once the parent is gone: nothing arrives, nobody hears."""
+
+    def commands(self) -> list[AnyCommand]:
+        """Return nothing."""
+        return []
+
+    def report(self, message: AnyReport) -> None:
+        """Drop a message."""
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+
 class WorldLoop:
     """Steps a simulation at its own pace against the monotonic clock until told to stop."""
 
-    def __init__(self, simulation: Simulation, channel: CommandChannel, *, state_fd: int, timing_fd: int) -> None:
+    def __init__(
+        self, simulation: Simulation, channel: CommandChannel, *, engine: EngineMonitor, state_fd: int, timing_fd: int
+    ) -> None:
         self._simulation = simulation
-        self._channel = channel
+        self._channel: CommandChannel | ClosedChannel = channel
+        self._engine = engine
         # What is measured, and behind it the image, so that both are of one instant.
         self._values = np.zeros(simulation.layout.size + simulation.image_layout.size)
         self._image = self._values[simulation.layout.size :]
@@ -111,7 +131,17 @@ class WorldLoop:
         self._shared.write(self._values)
 
     def run(self) -> None:
-        """Step until told to end and everything is at rest; raises ParentGone when nobody listens any more."""
+        """Step until told to end, or until the parent is gone, and everything is at rest."""
+        try:
+            self._step_on()
+        except ParentGone:
+            self._channel = ClosedChannel()
+            self._engine.engine_is_gone()
+            self.request_end()
+            self._step_on()
+            self._engine.look(time.monotonic())
+
+    def _step_on(self) -> None:
         step_s = self._simulation.step_s
         due = time.monotonic() + step_s
         while not self._over():
@@ -131,6 +161,8 @@ class WorldLoop:
     def _tick(self) -> None:
         for command in self._channel.commands():
             self._take(command)
+        # After the commands: who sends one has given a pulse before.
+        self._engine.look(time.monotonic())
         events = self._simulation.step()
         if events or self._simulation.steps % _SNAPSHOT_EVERY == 0:
             # The state is written before the event is told, so who hears of an end reads its state.
@@ -169,8 +201,8 @@ def take_real_time_schedule() -> bool:
 
 
 def main() -> None:
-    """Run the world; the arguments are the descriptors of the socket, the state and the timing."""
-    connection_fd, state_fd, timing_fd = (int(argument) for argument in sys.argv[1:4])
+    """Run the world; the arguments are the descriptors of the socket, the state, the timing and the heartbeat."""
+    connection_fd, state_fd, timing_fd, heartbeat_fd = (int(argument) for argument in sys.argv[1:5])
     # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     channel = CommandChannel(socket.socket(fileno=connection_fd))
@@ -184,7 +216,10 @@ def main() -> None:
             )
             channel.report(refusal)
             return
-        loop = WorldLoop(simulation, channel, state_fd=state_fd, timing_fd=timing_fd)
+        engine = EngineMonitor(
+            Heartbeat(heartbeat_fd), simulation, limit_s=scene.engine_silence_s, log=log_without_waiting
+        )
+        loop = WorldLoop(simulation, channel, engine=engine, state_fd=state_fd, timing_fd=timing_fd)
         signal.signal(signal.SIGTERM, loop.request_end)
         fifo = take_real_time_schedule()
         gc.collect()

@@ -15,6 +15,7 @@ from engine.document.cell_senses import arm_reach_m
 from engine.messages import Pose, Vector3
 from robots.model.registry import OWN_TOOL, robot_model
 from robots.model.robot_model import RobotModel
+from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 
 Rgba = tuple[float, float, float, float]
 GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
@@ -103,9 +104,15 @@ class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that a simulated world is built from; equal scenes give equal worlds, bit for bit."""
+    """Everything that a simulated world is built from; equal scenes give equal worlds, bit for bit.
+
+    In real time, `engine_silence_s` and `world_silence_s` are how long engine and world may each be silent before the
+    other acts, see `robots.port.control_process`.
+    """
 
     step_s: float = 0.001
+    engine_silence_s: float = ENGINE_SILENCE_S
+    world_silence_s: float = CONTROL_SILENCE_S
     gravity: bool = True
     arms: tuple[ArmPlacement, ...] = ()
     fixtures: tuple[FixtureBody, ...] = ()

@@ -38,6 +38,8 @@ from robots.sim.physics import Physics
 from robots.sim.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
 from robots.sim.tool_summary import tool_summary
 
+_REST_RAD_S = 0.01
+
 
 class Simulation:
     """The one place where a simulated world changes.
@@ -71,6 +73,8 @@ class Simulation:
         tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
         self._tools: dict[str, Mechanics] = {name: tool for name, tool in tools.items() if tool is not None}
         arms = _arm_summaries(cell)
+        self._tool_names = {arm.name: f"{arm.name}/{arm.tool.device}" for arm in arms if arm.tool is not None}
+        self._arm_dof = np.concatenate([np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms)])
         self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
         self.summary = _summary(cell, arms, image_size=self.image_layout.size)
         self.layout = SnapshotLayout(self.summary)
@@ -84,6 +88,18 @@ class Simulation:
     def busy(self) -> bool:
         """True while a motion is under way."""
         return any(a.busy for a in self._arms.values()) or any(t.drive.number for t in self._tools.values())
+
+    @property
+    def at_rest(self) -> bool:
+        """True when no motion is under way and no arm is measured to move."""
+        return not self.busy and bool((np.abs(self._qvel[self._arm_dof]) < _REST_RAD_S).all())
+
+    def brake(self, cause: str) -> None:
+        """Bring every motion to rest within its limits; each ends as failed with `cause` and its device's name."""
+        for name, arm in self._arms.items():
+            arm.control.motion.stop(f"{cause}; {name} came to rest by itself")
+        for name, tool in self._tools.items():
+            tool.drive.stop(f"{cause}; {self._tool_names[name]} came to rest by itself")
 
     def control(self, arm: str) -> ArmControl:
         """Return what controls an arm, for tests and measurements."""

@@ -28,8 +28,8 @@ class Drive(Protocol):
         """Stop and end as canceled."""
         ...
 
-    def stop(self) -> None:
-        """Cancel whatever runs; what is held stays held."""
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs, what is held stays held; with a `cause` it ends as failed."""
         ...
 
 

@@ -85,6 +85,27 @@ def test_an_arm_that_never_rests_is_not_called_cancelled() -> None:
     assert steps >= 3000
 
 
+def test_what_is_stopped_for_a_cause_brakes_on_its_path_and_fails_with_that_cause() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    assert run(motion, lambda desired: desired.copy(), limit=100) == ([], 100)
+    motion.stop("the engine was silent")
+    motion.stop("the engine was silent for longer")
+    motion.cancel(7)
+    events, _ = run(motion, lambda desired: desired.copy())
+    (end,) = events
+    assert isinstance(end, MotionFinished)
+    assert (end.end, end.reason, 0.0 < end.progress < 1.0) == ("failed", "the engine was silent", True)
+    assert motion.position[0] == 2.0 * motion.position[1]
+
+
+def test_what_is_being_cancelled_already_stays_so() -> None:
+    motion = new_motion(np.array([0.2, 0.1]), Tolerance())
+    motion.cancel(7)
+    motion.stop("the engine was silent")
+    events, _ = run(motion, lambda desired: desired.copy())
+    assert events == [MotionFinished(motion=7, end="canceled", progress=0.0)]
+
+
 def test_commands_for_another_motion_are_ignored() -> None:
     motion = new_motion(np.array([0.2, 0.1]), Tolerance())
     motion.cancel(6)

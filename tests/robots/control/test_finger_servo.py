@@ -120,3 +120,19 @@ def test_fingers_that_never_rest_fail_in_words() -> None:
             assert "neither at 0.0 mm nor at rest against something" in end.reason
             return
     raise AssertionError("it waited for ever")
+
+
+def test_fingers_that_are_stopped_for_a_cause_fail_with_it_and_stay_where_they_are() -> None:
+    fingers = Fingers(wall_m=0.0)
+    fingers.servo.close_to(1, width_m=0.0, speed_m_s=0.05, force_n=40.0, now_m=fingers.width_m)
+    for _ in range(200):
+        assert fingers.step() == ()
+    fingers.servo.stop("the engine was silent")
+    event, _ = fingers.until_told()
+    assert isinstance(event, MotionFinished)
+    assert (event.end, event.reason) == ("failed", "the engine was silent")
+    left_at_m = fingers.width_m
+    for _ in range(1000):
+        fingers.step()
+    assert left_at_m > 0.05
+    assert fingers.width_m == pytest.approx(left_at_m, abs=1e-4)

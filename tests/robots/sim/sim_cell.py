@@ -6,12 +6,14 @@ import asyncio
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 
+import msgspec
 import numpy as np
 
 from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
+from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 from robots.sim.world import SimWorld, new_world
 
@@ -33,14 +35,27 @@ def box(name: str, xyz: Vector3 = PART_XYZ, *, mass_kg: float = 0.12) -> PartBod
     return PartBody(name=name, shape="box", size_m=(0.06, 0.03, 0.04), mass_kg=mass_kg, pose=Pose(xyz=xyz))
 
 
+# Longer than a loaded machine keeps a process waiting; what is to be noticed at once says so with `watched`.
+PATIENT_S = 20.0
+
+
 def one_arm(*parts: PartBody) -> Scene:
     """Return the left arm at a table with these parts."""
-    return Scene(arms=(LEFT,), fixtures=(TABLE,), parts=parts)
+    return _patient(LEFT, parts=parts)
 
 
 def two_arms(*parts: PartBody) -> Scene:
     """Return both arms at a table with these parts."""
-    return Scene(arms=(LEFT, RIGHT), fixtures=(TABLE,), parts=parts)
+    return _patient(LEFT, RIGHT, parts=parts)
+
+
+def watched(scene: Scene) -> Scene:
+    """Return a scene in which engine and world notice each other's silence as soon as in a real cell."""
+    return msgspec.structs.replace(scene, engine_silence_s=ENGINE_SILENCE_S, world_silence_s=CONTROL_SILENCE_S)
+
+
+def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> Scene:
+    return Scene(arms=arms, fixtures=(TABLE,), parts=parts, engine_silence_s=PATIENT_S, world_silence_s=PATIENT_S)
 
 
 def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:

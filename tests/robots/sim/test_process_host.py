@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 import gc
 import os
+import re
 import select
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from engine.bus import SkillBus
@@ -19,10 +22,11 @@ from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
 from robots.port import MotionEnd, Tolerance
+from robots.port.heartbeat import CONTROL_SILENCE_S, Heartbeat
 from robots.sim.process_host import ProcessHost
 from robots.sim.scene import FixtureBody, Scene
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import HOME, one_arm, smooth, until
+from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until, watched
 
 ROOT = Path(__file__).parents[3]
 
@@ -56,6 +60,99 @@ async def test_a_killed_world_fails_its_motions_and_refuses_the_next_instead_of_
             await world.restore(last)
     async with SimWorld(one_arm(), host=ProcessHost(one_arm())) as world:
         await world.restore(last)
+
+
+async def test_a_frozen_world_is_ended_and_its_motions_fail_with_that_cause() -> None:
+    host = ProcessHost(watched(one_arm()))
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 0.3, 20.0), tolerance=Tolerance())
+        pid = host.pid
+        os.kill(pid, signal.SIGSTOP)
+        report = await motion.report()
+        assert report.end is MotionEnd.FAILED
+        assert re.fullmatch(
+            r"the world's process has not stepped for \d\.\d s: it is frozen or starved, and was ended", report.reason
+        )
+        assert world.status is DeviceStatus.FAULT
+    assert not alive(pid)
+
+
+async def test_a_world_is_not_lost_because_the_engine_itself_did_not_look() -> None:
+    """A loop that was blocked for seconds looks again before it judges."""
+    scene = msgspec.structs.replace(one_arm(), world_silence_s=CONTROL_SILENCE_S)
+    host = ProcessHost(scene)
+    async with SimWorld(one_arm(), host=host) as world:
+        for _ in range(3):
+            time.sleep(0.4)  # noqa: ASYNC251
+            await asyncio.sleep(0.0)
+        assert (world.status, (await move(world.arm("left"), HOME + 0.02, 0.2)).end) == (
+            DeviceStatus.READY,
+            MotionEnd.REACHED,
+        )
+
+
+def test_a_world_whose_engine_is_killed_brings_its_arm_to_rest_and_then_ends() -> None:
+    """Looked at by a third process, which reads what the world tells of itself."""
+    parent, world = engine_in_mid_motion("one_arm()")
+    heartbeat, process = Heartbeat.of_process(world), os.pidfd_open(world)
+    assert heartbeat.at_rest_since_ns == 0
+    parent.kill()
+    killed_ns = time.monotonic_ns()
+    _, log = parent.communicate()
+    ended, _, _ = select.select([process], [], [], 60.0)
+    os.close(process)
+    assert ended
+    assert heartbeat.at_rest_since_ns > killed_ns
+    assert "flexcell world: the engine has ended; everything came to rest" in log
+    heartbeat.close()
+
+
+def test_a_world_whose_engine_is_suspended_brings_its_arm_to_rest_and_waits_for_it() -> None:
+    parent, world = engine_in_mid_motion("watched(one_arm())")
+    heartbeat = Heartbeat.of_process(world)
+    parent.send_signal(signal.SIGSTOP)
+    while heartbeat.at_rest_since_ns == 0:
+        os.sched_yield()
+    assert alive(world)
+    parent.send_signal(signal.SIGCONT)
+    answer, log = parent.communicate()
+    assert re.fullmatch(r"failed the engine has been silent for \d\.\d s; left came to rest by itself\n", answer)
+    assert "flexcell world: the engine has been silent for 0." in log
+    heartbeat.close()
+
+
+def engine_in_mid_motion(scene: str) -> tuple[subprocess.Popen[str], int]:
+    """Start a process that moves an arm, and return it once the arm moves, with the world's number.
+
+    It prints how the motion ended and ends.
+    """
+    parent = subprocess.Popen(
+        [sys.executable, "-c", MOVING_ENGINE.format(scene)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=ROOT,
+    )
+    assert parent.stdout is not None
+    return parent, int(parent.stdout.readline())
+
+
+MOVING_ENGINE = """
+import asyncio
+from robots.port import Tolerance
+from robots.sim.process_host import ProcessHost
+from robots.sim.world import SimWorld
+from tests.robots.sim.sim_cell import HOME, one_arm, smooth, until, watched
+async def main():
+    host = ProcessHost({})
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.arm("left").follow(smooth(HOME, HOME + 1.0, 6.0), tolerance=Tolerance())
+        await until(lambda: motion.progress > 0.2)
+        print(host.pid, flush=True)
+        report = await motion.report()
+        print(report.end.value, report.reason, flush=True)
+asyncio.run(main())
+"""
 
 
 async def test_a_closed_world_leaves_no_process_and_brought_its_arm_to_rest() -> None:

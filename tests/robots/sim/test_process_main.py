@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 
 import msgspec
@@ -10,14 +11,14 @@ import numpy as np
 import pytest
 
 from robots.control.motion_event import MotionFinished
-from robots.port import Tolerance
+from robots.port import MotionEnd, Tolerance
 from robots.sim.commands import Cancel, StopAll
 from robots.sim.framing import FrameReader, framed
 from robots.sim.process_host import ProcessHost
 from robots.sim.process_main import CommandChannel, ParentGone
 from robots.sim.world import SimWorld
 from robots.sim.world_report import AnyReport
-from tests.robots.sim.sim_cell import HOME, one_arm, smooth
+from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until, watched
 
 
 def end_of(motion: int) -> MotionFinished:
@@ -60,7 +61,7 @@ def test_commands_that_came_in_pieces_are_taken_once_they_are_whole_and_their_en
 
 
 async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> None:
-    """As by a viewer, a recorder or a planner that takes too long: this test never lets the loop turn."""
+    """Where the cell lets the engine be silent for so long: this test never lets the loop turn."""
     host = ProcessHost(one_arm())
     async with SimWorld(one_arm(), host=host) as world:
         motion = world.arm("left").follow(smooth(HOME, HOME + 0.05, 0.3), tolerance=Tolerance())
@@ -73,3 +74,38 @@ async def test_the_world_goes_on_while_the_loop_of_its_parent_is_blocked() -> No
         assert world.measured().time_s - began_s >= 0.3
         assert world.measured().arm("left").desired_rad.tolist() == pytest.approx((HOME + 0.05).tolist())
         assert (await motion.report()).end.value == "reached"
+
+
+async def test_an_arm_comes_to_rest_by_itself_while_the_loop_of_its_parent_is_blocked_and_moves_again_when_told() -> (
+    None
+):
+    host = ProcessHost(watched(one_arm()))
+    async with SimWorld(one_arm(), host=host) as world:
+        arm = world.arm("left")
+        motion = arm.follow(smooth(HOME, HOME + 1.0, 60.0), tolerance=Tolerance())
+        await until(lambda: motion.progress > 0.001)
+        # Nothing here lets the loop turn: what ends the motion is the world itself.
+        while world.measured().arm_progress("left", 1) is not None:
+            os.sched_yield()
+        at_rest = world.measured().arm("left")
+        assert abs(at_rest.velocity_rad_s).max() < 0.01
+        report = await motion.report()
+        silence, _, device = report.reason.partition("; ")
+        assert (report.end, device) == (MotionEnd.FAILED, "left came to rest by itself")
+        assert re.fullmatch(r"the engine has been silent for 0\.2 s", silence)
+        # On a loaded machine this loop may be silent once more.
+        while (await move(arm, HOME, 0.3)).end is not MotionEnd.REACHED:
+            pass
+
+
+async def test_fingers_come_to_rest_by_themselves_as_well() -> None:
+    host = ProcessHost(watched(one_arm()))
+    async with SimWorld(one_arm(), host=host) as world:
+        motion = world.gripper("left").close_to(width_m=0.0, speed_m_s=0.002, force_n=10.0)
+        await until(lambda: motion.progress > 0.01)
+        while world.measured().tool_progress("left", 1) is not None:
+            os.sched_yield()
+        report = await motion.report()
+        assert report.end is MotionEnd.FAILED
+        assert report.reason.endswith("; left/gripper came to rest by itself")
+        assert world.gripper("left").sample().width_m > 0.01

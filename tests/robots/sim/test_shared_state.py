@@ -8,6 +8,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
 
 from robots.sim.shared_state import SharedNumbers, new_shared_file
 
@@ -48,13 +50,20 @@ def test_a_reader_never_sees_half_of_a_write_of_another_process() -> None:
     reader.close()
 
 
-def test_a_writer_that_died_in_mid_write_does_not_hang_the_reader() -> None:
+@given(cut=st.integers(0, 3), writes=st.integers(1, 5))
+def test_a_writer_that_stops_anywhere_in_a_write_leaves_the_numbers_before_it(cut: int, writes: int) -> None:
     descriptor = new_shared_file()
     shared = SharedNumbers(descriptor, 3)
-    shared.write(np.array([1.0, 2.0, 3.0]))
-    assert shared.read().tolist() == [1.0, 2.0, 3.0]
-    os.pwrite(descriptor, (3).to_bytes(8, "little"), 0)
-    os.pwrite(descriptor, bytes(8), 8)
-    assert shared.read().tolist() == [1.0, 2.0, 3.0]
-    shared.close()
+    for value in range(1, writes + 1):
+        shared.write(np.full(3, float(value)))
+    reader = SharedNumbers(descriptor, 3)
+    _write_up_to(descriptor, cut, count=writes + 1)
+    assert reader.read().tolist() == [float(writes)] * 3
+    for each in (shared, reader):
+        each.close()
     os.close(descriptor)
+
+
+def _write_up_to(descriptor: int, numbers: int, *, count: int) -> None:
+    """Do what a writer of three numbers does until it is stopped before it has raised the count."""
+    os.pwrite(descriptor, np.full(numbers, -1.0).tobytes(), 8 + 8 * 3 * (count % 2))

@@ -1,0 +1,97 @@
+"""What the process that controls a device owes the engine, whether it simulates or drives a real one.
+
+- *The engine is silent* (its counter has not changed for `engine_silence_s`, 0.2 s unless the cell says otherwise:
+  its loop is blocked, the process is suspended or starved): every motion and drive decelerates within its braking
+  limits. Each motion ends as FAILED with the cause and the measured silence, at rest. Nothing is resumed when the
+  engine is back; new motions are taken again from its next pulse on, and fail with the cause before it.
+- *The engine is gone* (the socket ends, as with `kill -9`): the same at once, and the process ends as soon as
+  everything rests.
+- *Stop*: the same as a cancel of every motion; it does not wait for the engine.
+- *Its own pulse*: it raises its counter once a control period and from nowhere else, so that a process that does not
+  control any more is silent. The engine then declares it lost within 0.3 s, kills it, and fails its motions.
+- What is held stays held: brakes, grippers and magnets keep what they do.
+
+`EngineMonitor` does the first and the last but one of these; a driver's process calls `look` once a control period.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from robots.port.heartbeat import ENGINE_SILENCE_S, Heartbeat, SilenceMonitor
+
+_LONGEST_GAP_S = 0.05
+ENGINE_GONE = "the engine has ended"
+
+
+class ControlledDevices(Protocol):
+    """Everything that one control process moves."""
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether no motion is under way and nothing is measured to move."""
+        ...
+
+    def brake(self, cause: str) -> None:
+        """Decelerate every motion within its limits and let it end as FAILED with `cause`; may be called again."""
+        ...
+
+
+class EngineMonitor:
+    """The control process's side of the heartbeat: its own pulse, the engine's silence, since when everything rests.
+
+    Args:
+        heartbeat: Shared with the engine.
+        devices: What is brought to rest.
+        limit_s: How long the engine may be silent.
+        log: Takes a line for the log; must not wait.
+    """
+
+    def __init__(
+        self,
+        heartbeat: Heartbeat,
+        devices: ControlledDevices,
+        *,
+        limit_s: float = ENGINE_SILENCE_S,
+        log: Callable[[str], None],
+    ) -> None:
+        self._heartbeat = heartbeat
+        self._devices = devices
+        self._silence = SilenceMonitor(limit_s=limit_s, longest_gap_s=_LONGEST_GAP_S)
+        self._log = log
+        self._is_gone = False
+        self._is_heard = True
+        self._braking_since_s: float | None = None
+        self._was_at_rest = False
+
+    def look(self, now_s: float) -> None:
+        """Raise the own counter, and brake while the engine is silent; once a control period, on CLOCK_MONOTONIC."""
+        self._heartbeat.beat_control()
+        if self._is_gone or self._silence.look(self._heartbeat.engine_count, now_s):
+            self._brake(now_s)
+        else:
+            self._is_heard = True
+        self._tell_rest(now_s)
+
+    def engine_is_gone(self) -> None:
+        """Brake from the next look on, for good: the connection to the engine has ended."""
+        self._is_gone = True
+
+    def _brake(self, now_s: float) -> None:
+        if self._is_heard and not self._devices.at_rest:
+            self._braking_since_s = now_s
+        self._is_heard = False
+        self._devices.brake(self._cause())
+
+    def _cause(self) -> str:
+        return ENGINE_GONE if self._is_gone else f"the engine has been silent for {self._silence.silent_s:.1f} s"
+
+    def _tell_rest(self, now_s: float) -> None:
+        at_rest = self._devices.at_rest
+        if at_rest != self._was_at_rest:
+            self._was_at_rest = at_rest
+            self._heartbeat.tell_rest(round(now_s * 1e9) if at_rest else 0)
+        if at_rest and self._braking_since_s is not None:
+            took_s, self._braking_since_s = now_s - self._braking_since_s, None
+            self._log(f"{self._cause()}; everything came to rest {took_s:.3f} s later, at {now_s:.3f} s (monotonic)")

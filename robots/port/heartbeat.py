@@ -1,0 +1,135 @@
+"""Heartbeats between the engine and a control process: two counters in shared memory, and who is silent.
+
+The engine raises its counter from its event loop, so a blocked, suspended or dead engine is silent. The
+control process raises its own once a control period. Neither waits for the other: each compares a number.
+`control_process` holds the contract of a control process, simulated or real.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import tempfile
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+ENGINE_SILENCE_S = 0.2
+"""Without a pulse of the engine for this long, a control process brings everything to rest."""
+CONTROL_SILENCE_S = 0.25
+"""Without a pulse of the control process for this long, the engine declares it lost; with one look more, 0.3 s."""
+PULSE_S = 0.04
+"""Period of the engine's pulse and of its looks."""
+
+_NAME = "flexcell-heartbeat"
+_ENGINE, _CONTROL, _REST_SINCE, _SLOTS = 0, 1, 2, 3
+
+
+def new_heartbeat_file() -> int:
+    """Return the descriptor of an unnamed file for one heartbeat; it vanishes with its last user."""
+    if hasattr(os, "memfd_create"):
+        descriptor = os.memfd_create(_NAME)
+    else:
+        with tempfile.TemporaryFile() as file:
+            descriptor = os.dup(file.fileno())
+    os.ftruncate(descriptor, 8 * _SLOTS)
+    return descriptor
+
+
+class Heartbeat:
+    """The counters of one connection between the engine and a control process; each has one writer.
+
+    A count of 0 means that this side has not begun yet.
+    """
+
+    def __init__(self, descriptor: int) -> None:
+        self._memory = mmap.mmap(descriptor, 8 * _SLOTS)
+        self._numbers: NDArray[np.int64] = np.frombuffer(self._memory, dtype=np.int64, count=_SLOTS)
+
+    @classmethod
+    def of_process(cls, pid: int) -> Self:
+        """Open the heartbeat of a running control process, for a third process that only looks.
+
+        Raises:
+            OSError: there is no such process, it belongs to somebody else, or it has no heartbeat.
+        """
+        folder = f"/proc/{pid}/fd"
+        for entry in os.listdir(folder):
+            try:
+                if _NAME not in os.readlink(f"{folder}/{entry}"):
+                    continue
+            except FileNotFoundError:
+                # The process has closed it meanwhile.
+                continue
+            descriptor = os.open(f"{folder}/{entry}", os.O_RDWR)
+            try:
+                return cls(descriptor)
+            finally:
+                os.close(descriptor)
+        raise FileNotFoundError(f"process {pid} has no heartbeat")
+
+    @property
+    def engine_count(self) -> int:
+        """How often the engine's loop has turned by its timer."""
+        return int(self._numbers[_ENGINE])
+
+    @property
+    def control_count(self) -> int:
+        """How many control periods have passed."""
+        return int(self._numbers[_CONTROL])
+
+    @property
+    def at_rest_since_ns(self) -> int:
+        """Since when, on CLOCK_MONOTONIC, everything is measured at rest without a motion; 0 while it is not."""
+        return int(self._numbers[_REST_SINCE])
+
+    def beat_engine(self) -> None:
+        """Raise the engine's counter; the engine only."""
+        self._numbers[_ENGINE] += 1
+
+    def beat_control(self) -> None:
+        """Raise the control process's counter; the control process only."""
+        self._numbers[_CONTROL] += 1
+
+    def tell_rest(self, since_ns: int) -> None:
+        """Tell since when everything rests, 0 for never; the control process only."""
+        self._numbers[_REST_SINCE] = since_ns
+
+    def close(self) -> None:
+        """Let go of the memory."""
+        del self._numbers
+        self._memory.close()
+
+
+class SilenceMonitor:
+    """Measures for how long a peer's counter has not changed, in time in which the observer itself was running.
+
+    A gap between two looks counts for `longest_gap_s` at most: an observer that was itself suspended or
+    blocked looks again before it judges. The first count above 0 arms it.
+
+    Args:
+        limit_s: The silence from which on the peer is `silent`.
+        longest_gap_s: What one gap between two looks may count for; below the limit.
+    """
+
+    def __init__(self, *, limit_s: float, longest_gap_s: float) -> None:
+        self._limit_s = limit_s
+        self._longest_gap_s = min(longest_gap_s, limit_s / 2.0)
+        self._count: int = 0
+        self._looked_s = 0.0
+        self.silent_s = 0.0
+
+    @property
+    def silent(self) -> bool:
+        """Whether the peer has been silent for the limit."""
+        return self.silent_s >= self._limit_s
+
+    def look(self, count: int, now_s: float) -> bool:
+        """Take the peer's present count; return whether it is silent."""
+        gap_s, self._looked_s = now_s - self._looked_s, now_s
+        if count != self._count or count == 0:
+            self._count, self.silent_s = count, 0.0
+        else:
+            self.silent_s += min(max(gap_s, 0.0), self._longest_gap_s)
+        return self.silent
