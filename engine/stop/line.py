@@ -37,6 +37,11 @@ class StopLine:
         """Whether no motion may start or go on."""
         return bool(self.reason)
 
+    @property
+    def awaits_rest(self) -> bool:
+        """Whether somebody still waits to hear, by `tell_rest`, that everything has come to rest."""
+        return not self._rest_told
+
     def poll(self) -> str:
         """Read the line; the reason when a stop has arrived since the last call: bring everything to rest now."""
         if self._cut:

@@ -27,16 +27,27 @@ from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRe
 
 _START = "from robots.sim.process_main import main; main()"
 _WHAT = "the world's process"
-_START_S = 30.0
+# On a loaded machine that compiles the controllers for the first time, one arm takes half a minute.
+_START_S = 180.0
 _END_S = 6.0
 _RESTORE_S = 5.0
 
 
-class ProcessHost:
-    """Starts the process, sends it commands, hears its events, reads its state from shared memory."""
+NewStopLine = Callable[[str], socket.socket]
+"""Makes the stop line of a device; see `engine.stop.StopRelay.new_line`."""
 
-    def __init__(self, scene: Scene) -> None:
+
+class ProcessHost:
+    """Starts the process, sends it commands, hears its events, reads its state from shared memory.
+
+    Args:
+        scene: What the world consists of.
+        new_stop_line: Makes the line on which the process takes STOP; None for a world that has none.
+    """
+
+    def __init__(self, scene: Scene, *, new_stop_line: NewStopLine | None = None) -> None:
         self._scene = scene
+        self._new_stop_line = new_stop_line
         self._process: subprocess.Popen[bytes] | None = None
         self._wire: _Wire | None = None
         self._layout: SnapshotLayout | None = None
@@ -98,7 +109,9 @@ class ProcessHost:
         """Start the process and wait until its world stands; again when the last one was lost."""
         ours, theirs = socket.socketpair()
         state_fd, timing_fd, heartbeat_fd = new_shared_file(), new_shared_file(), new_heartbeat_file()
-        descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd)
+        stop_line = self._new_stop_line("world") if self._new_stop_line is not None else None
+        stop_fds = (stop_line.fileno(),) if stop_line is not None else ()
+        descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd, *stop_fds)
         try:
             self._process = start_child(_START, descriptors, what=_WHAT)
             # Closed before the process can be gone, else its end would not be heard.
@@ -126,6 +139,8 @@ class ProcessHost:
             raise
         finally:
             theirs.close()
+            if stop_line is not None:
+                stop_line.close()
             os.close(state_fd)
             os.close(timing_fd)
             os.close(heartbeat_fd)

@@ -14,8 +14,10 @@ import msgspec
 import numpy as np
 
 from engine.errors import CellError
+from engine.stop import StopLine
 from robots.port.control_process import EngineMonitor
 from robots.port.heartbeat import Heartbeat
+from robots.port.stop_monitor import StopMonitor
 from robots.sim.cell_model import build_cell
 from robots.sim.commands import AnyCommand, Restore, Shutdown, StopAll
 from robots.sim.framing import FrameReader, framed
@@ -105,11 +107,19 @@ class WorldLoop:
     """Steps a simulation at its own pace against the monotonic clock until told to stop."""
 
     def __init__(
-        self, simulation: Simulation, channel: CommandChannel, *, engine: EngineMonitor, state_fd: int, timing_fd: int
+        self,
+        simulation: Simulation,
+        channel: CommandChannel,
+        *,
+        engine: EngineMonitor,
+        stop: StopMonitor,
+        state_fd: int,
+        timing_fd: int,
     ) -> None:
         self._simulation = simulation
         self._channel: CommandChannel | ClosedChannel = channel
         self._engine = engine
+        self._stop = stop
         # What is measured, and behind it the image, so that both are of one instant.
         self._values = np.zeros(simulation.layout.size + simulation.image_layout.size)
         self._image = self._values[simulation.layout.size :]
@@ -161,6 +171,8 @@ class WorldLoop:
     def _tick(self) -> None:
         for command in self._channel.commands():
             self._take(command)
+        # Before the engine's silence, so that what STOP ends says so.
+        self._stop.look()
         # After the commands: who sends one has given a pulse before.
         self._engine.look(time.monotonic())
         events = self._simulation.step()
@@ -201,8 +213,8 @@ def take_real_time_schedule() -> bool:
 
 
 def main() -> None:
-    """Run the world; the arguments are the descriptors of the socket, the state, the timing and the heartbeat."""
-    connection_fd, state_fd, timing_fd, heartbeat_fd = (int(argument) for argument in sys.argv[1:5])
+    """Run the world on the descriptors of socket, state, timing, heartbeat and, where there is one, stop line."""
+    connection_fd, state_fd, timing_fd, heartbeat_fd, *stop_fd = (int(argument) for argument in sys.argv[1:])
     # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     channel = CommandChannel(socket.socket(fileno=connection_fd))
@@ -219,7 +231,15 @@ def main() -> None:
         engine = EngineMonitor(
             Heartbeat(heartbeat_fd), simulation, limit_s=scene.engine_silence_s, log=log_without_waiting
         )
-        loop = WorldLoop(simulation, channel, engine=engine, state_fd=state_fd, timing_fd=timing_fd)
+        line = StopLine(socket.socket(fileno=stop_fd[0])) if stop_fd else None
+        loop = WorldLoop(
+            simulation,
+            channel,
+            engine=engine,
+            stop=StopMonitor(line, simulation),
+            state_fd=state_fd,
+            timing_fd=timing_fd,
+        )
         signal.signal(signal.SIGTERM, loop.request_end)
         fifo = take_real_time_schedule()
         gc.collect()

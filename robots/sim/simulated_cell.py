@@ -12,6 +12,7 @@ from robots.arm.arm_server import ArmServer
 from robots.arm.outputs import Outputs
 from robots.model.robot_model import RobotModel
 from robots.sim.cell_scene import scene_of
+from robots.sim.process_host import NewStopLine
 from robots.sim.scene import ArmPlacement, Scene
 from robots.sim.tool_servers import tool_server
 from robots.sim.world import SimRobot, SimWorld
@@ -23,8 +24,12 @@ from robots.workspace.workspace import Workspace
 from robots.workspace.world_look import WorldLook
 
 
-def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> SimWorld:
+def new_world(
+    cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None, new_stop_line: NewStopLine | None = None
+) -> SimWorld:
     """Return the simulated world of a cell, not yet open; its robots answer the motion and gripper skills.
+
+    In real time it takes STOP on a line of `new_stop_line`, where there is one.
 
     Raises:
         CellError: a model is unknown, or a size or gripper does not fit.
@@ -42,7 +47,7 @@ def new_world(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> 
         arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
         return (*((cameras,) if cameras is not None else ()), workspace, *arms)
 
-    return new_sim_world(scene, virtual=virtual, make_robots=make_robots)
+    return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line)
 
 
 def _live_scene(scene: Scene, world: SimWorld) -> LiveScene:

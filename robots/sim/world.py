@@ -24,7 +24,7 @@ from robots.sim.host import Host, StepHook
 from robots.sim.lockstep_host import LockstepHost
 from robots.sim.motion_board import MotionBoard
 from robots.sim.people.person_services import PersonServices
-from robots.sim.process_host import ProcessHost
+from robots.sim.process_host import NewStopLine, ProcessHost
 from robots.sim.publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
 from robots.sim.scene import ArmPlacement, Scene
 from robots.sim.scene_description import describe_scene
@@ -349,10 +349,15 @@ class SimWorld:
 
 
 def new_world(
-    scene: Scene, *, virtual: bool, make_robots: RobotMaker = no_robots, cache: Path | None = None
+    scene: Scene,
+    *,
+    virtual: bool,
+    make_robots: RobotMaker = no_robots,
+    cache: Path | None = None,
+    new_stop_line: NewStopLine | None = None,
 ) -> SimWorld:
     """Return a world for virtual time (in this process, in lockstep) or real time (in its own process)."""
-    host = LockstepHost(scene) if virtual else ProcessHost(scene)
+    host = LockstepHost(scene) if virtual else ProcessHost(scene, new_stop_line=new_stop_line)
     return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
 
 
