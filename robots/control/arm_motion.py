@@ -217,7 +217,7 @@ class ArmMotion:
         if following.waited_s >= _STILL_MOVING_AFTER_S:
             why = following.reason or following.stop_cause
             reason = (why + "; " if why else "") + "the arm does not come to rest"
-            return self._finish(following, MotionEnd.FAILED, reason)
+            return self._finish(following, MotionEnd.FAILED, reason, at_rest=False)
         return ()
 
     def _yield(self, step_s: float) -> None:
@@ -228,7 +228,9 @@ class ArmMotion:
         self.position[:] = start + share * (target - start)
         self._stand_still()
 
-    def _finish(self, following: _UnderWay, end: MotionEnd, reason: str) -> tuple[AnyMotionEvent, ...]:
+    def _finish(
+        self, following: _UnderWay, end: MotionEnd, reason: str, *, at_rest: bool = True
+    ) -> tuple[AnyMotionEvent, ...]:
         self._following, self._give_way = None, None
         self._stand_still()
         generator = following.generator
@@ -240,5 +242,6 @@ class ArmMotion:
                 reason=reason,
                 contact=generator.contact,
                 data=generator.data(),
+                at_rest=at_rest,
             ),
         )

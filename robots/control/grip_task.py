@@ -110,7 +110,7 @@ class GripTask:
             return (MotionResumed(motion=task.number, request=task.request),)
         if task.cancel:
             if not at_rest:
-                return self._wait(step_s, progress, late)
+                return self._wait(step_s, progress, late, at_rest=at_rest)
             end = MotionEnd.FAILED if task.stop_cause else MotionEnd.CANCELED
             return self._finish(task, end, progress, task.stop_cause)
         if task.hold:
@@ -120,21 +120,21 @@ class GripTask:
             return (MotionHeld(motion=task.number, request=task.request),)
         if at_rest and reached:
             return self._finish(task, MotionEnd.REACHED, progress)
-        return self._wait(step_s, progress, late)
+        return self._wait(step_s, progress, late, at_rest=at_rest)
 
     def _wait(
-        self, step_s: float, progress: Callable[[], float], late: Callable[[float], str]
+        self, step_s: float, progress: Callable[[], float], late: Callable[[float], str], *, at_rest: bool
     ) -> tuple[AnyMotionEvent, ...]:
         task = self._task
         assert task is not None
         task.waited_s += step_s
         if task.waited_s < task.patience_s:
             return ()
-        return self._finish(task, MotionEnd.FAILED, progress, late(task.waited_s))
+        return self._finish(task, MotionEnd.FAILED, progress, late(task.waited_s), at_rest=at_rest)
 
     def _finish(
-        self, task: _Task, end: MotionEnd, progress: Callable[[], float], reason: str = ""
+        self, task: _Task, end: MotionEnd, progress: Callable[[], float], reason: str = "", *, at_rest: bool = True
     ) -> tuple[AnyMotionEvent, ...]:
         share = progress()
         self._task = None
-        return (MotionFinished(motion=task.number, end=end.value, progress=share, reason=reason),)
+        return (MotionFinished(motion=task.number, end=end.value, progress=share, reason=reason, at_rest=at_rest),)

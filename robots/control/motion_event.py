@@ -12,7 +12,7 @@ class MotionEvent(msgspec.Struct, frozen=True, kw_only=True, tag_field="event"):
 
 
 class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
-    """It ended (`end` is the value of a `MotionEnd`) and the device is at rest; `reason` if it failed.
+    """It ended (`end` is the value of a `MotionEnd`); `reason` if it failed, not `at_rest` if it could not be stopped.
 
     `progress` is the share of its way that it made; `contact` and `data` are as in `MotionReport`.
     """
@@ -22,6 +22,7 @@ class MotionFinished(MotionEvent, frozen=True, kw_only=True, tag="finished"):
     reason: str = ""
     contact: bool = False
     data: bytes = b""
+    at_rest: bool = True
 
 
 class MotionHeld(MotionEvent, frozen=True, kw_only=True, tag="held"):

@@ -21,13 +21,15 @@ class MotionReport:
 
     `contact` is true when a motion that was to end at a contact did. `data` is what the kind of
     motion recorded, see `ForceRecord`; a stream of joint angles has there the words (UTF-8) of
-    what it had to clip, empty for nothing; empty for the others.
+    what it had to clip, empty for nothing; empty for the others. `at_rest` is false where the device
+    could not be brought to rest.
     """
 
     end: MotionEnd
     reason: str = ""
     contact: bool = False
     data: bytes = b""
+    at_rest: bool = True
 
 
 class Motion(Protocol):

@@ -81,7 +81,11 @@ class SimMotion:
             case MotionFinished():
                 self._last_progress = event.progress
                 end = MotionEnd(event.end)
-                self.end_with(MotionReport(end=end, reason=event.reason, contact=event.contact, data=event.data))
+                self.end_with(
+                    MotionReport(
+                        end=end, reason=event.reason, contact=event.contact, data=event.data, at_rest=event.at_rest
+                    )
+                )
 
     def end_with(self, report: MotionReport) -> None:
         """End it; a second end is ignored."""

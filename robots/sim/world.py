@@ -17,7 +17,7 @@ from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
 from engine.skills.world import BodyPushed, PartsReset, PushBody, ResetParts
 from robots.gripper.grip_judgement import Grip
-from robots.port import ArmPort, GripperPort, HandPort, MagnetPort, MotionEnd
+from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
 from robots.sim.commands import Push, StopAll
 from robots.sim.commands import ResetParts as ResetPartsCommand
 from robots.sim.host import Host, StepHook
@@ -258,7 +258,7 @@ class SimWorld:
         motions = self._board.under_way()
         self._host.send(StopAll())
         reports = await asyncio.gather(*(motion.report() for motion in motions))
-        moving = [report.reason for report in reports if report.end is MotionEnd.FAILED and "rest" in report.reason]
+        moving = [report.reason for report in reports if not report.at_rest]
         if moving or self._board.lost_reason:
             raise RobotError("; ".join(moving) or self._board.lost_reason, where=self.name)
 
