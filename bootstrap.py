@@ -80,6 +80,7 @@ def test(options: list[str]) -> int:
         ("lint", ["ruff", "check", "."]),
         ("types", ["pyright", "--warnings"]),
         ("layers", ["lint-imports"]),
+        ("advisories", ["python", ".ci/audit.py"]),
     ):
         started_s = time.monotonic()
         _check([BIN / command[0], *command[1:]])

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from hatchling.builders.wheel import WheelBuilder
+from hatchling.metadata.core import CoreMetadata
 
 import hatch_build
 
@@ -71,7 +72,8 @@ def test_the_wheel_carries_all_licences() -> None:
     files = {file.distribution_path for file in builder.recurse_included_files()}
     assert f"editor_web/static/{NAME}" in files
     assert "robots/arms/ur10/LICENSE" in files
-    assert set(builder.metadata.core.license_files) == {
+    core: CoreMetadata = builder.metadata.core  # pyright: ignore[reportUnknownMemberType] - hatchling leaves it open
+    assert set(core.license_files) == {
         "LICENSE",
         "robots/arms/ur10/LICENSE",
         f"editor_web/static/{NAME}",
