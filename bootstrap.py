@@ -4,6 +4,8 @@
 python3 bootstrap.py demo              the demo cell with its dashboard
 python3 bootstrap.py demo --headless   the demo behavior once, no browser
 python3 bootstrap.py test              everything that must pass
+python3 bootstrap.py test --fast       what needs no browser, process or physics: a few minutes
+python3 bootstrap.py lock [--upgrade]  requirements/*.lock for what pyproject.toml asks for
 """
 
 from __future__ import annotations
@@ -11,19 +13,34 @@ from __future__ import annotations
 import ctypes.util
 import hashlib
 import importlib.util
+import json
 import os
 import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent
 VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
+PIP_INSTALL = [PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
 DEMO = "behaviors/reconcycle/two_arm_transfer.yaml"
 CELL = "behaviors/cells/dual_panda.yaml"
+# What each lock holds beyond the runtime dependencies. Both hold what builds flexcell, so nothing unlocked is fetched.
+PROJECT = ROOT / "pyproject.toml"
+LOCKS = ROOT / "requirements"
+LOCKED = {
+    "development": ["--extra=all", "--extra=test", "--extra=bench", "--group=build", "--group=lock", "--group=audit"],
+    "runtime": ["--extra=all", "--group=build"],
+}
+DIGEST = "# Requirements of pyproject.toml, SHA-256: "
+COMPILE = [
+    *("pip", "compile", "--quiet", "--universal", "--python-version=3.11", "--generate-hashes"),
+    "--only-binary=:all:",
+]
 MESA_DRIVERS = ("*/dri/swrast_dri.so", "*/libgallium-*.so")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
@@ -32,13 +49,12 @@ def main(arguments: list[str]) -> int:
     """Do what the first argument says and return the exit code."""
     if sys.version_info < (3, 11):  # noqa: UP036 - run by whatever Python there is
         return _fail(f"flexcell needs Python 3.11 or newer; this is {sys.version.split()[0]}")
-    if not arguments or arguments[0] not in ("demo", "test"):
+    commands = {"demo": demo, "test": test, "lock": lock}
+    if not arguments or arguments[0] not in commands:
         sys.stderr.write(__doc__ or "")
         return 2
     try:
-        if arguments[0] == "demo":
-            return demo(arguments[1:])
-        return test(arguments[1:])
+        return commands[arguments[0]](arguments[1:])
     except subprocess.CalledProcessError as error:
         return _fail(f"`{' '.join(str(part) for part in error.cmd)}` failed with exit code {error.returncode}")
     except KeyboardInterrupt:
@@ -47,7 +63,7 @@ def main(arguments: list[str]) -> int:
 
 def demo(options: list[str]) -> int:
     """Serve the demo cell, or run its behavior once with --headless."""
-    install("all")
+    install("runtime")
     if "--headless" in options:
         rest = [option for option in options if option != "--headless"]
         return _become([BIN / "flexcell", "run", DEMO, "--cell", CELL, "--clock", "virtual", *rest])
@@ -56,7 +72,7 @@ def demo(options: list[str]) -> int:
 
 def test(options: list[str]) -> int:
     """Run lint, types, import contracts and the tests; pytest's own line is the last one."""
-    install("all,test,bench")
+    install("development")
     ensure_browser()
     ensure_graphics()
     for name, command in (
@@ -64,6 +80,7 @@ def test(options: list[str]) -> int:
         ("lint", ["ruff", "check", "."]),
         ("types", ["pyright", "--warnings"]),
         ("layers", ["lint-imports"]),
+        ("advisories", ["python", ".ci/audit.py"]),
     ):
         started_s = time.monotonic()
         _check([BIN / command[0], *command[1:]])
@@ -71,18 +88,55 @@ def test(options: list[str]) -> int:
     return _become([PYTHON, "-m", "pytest", "-n", "2", "-q", *options])
 
 
-def install(extras: str) -> None:
-    """Make `.venv` with flexcell and `extras`, unless it is as the project's files ask already."""
+def lock(options: list[str]) -> int:
+    """Write the lock files; versions stay as they are where they still fit, unless --upgrade is given."""
+    _make_venv()
+    _check([*PIP_INSTALL, "--only-binary", ":all:", *_requirements(PROJECT)["dependency-groups"]["lock"]])
+    _compile("development", options)
+    # Constrained to the versions that the tests see.
+    _compile("runtime", ["--constraint", str(_lock_file("development").relative_to(ROOT))])
+    return 0
+
+
+def install(name: str) -> None:
+    """Make `.venv` with flexcell and exactly what the lock `name` holds, unless it is so already."""
     stamp = VENV / "flexcell-installed"
     state = _fingerprint()
     present = stamp.read_text(encoding="utf-8").split() if stamp.is_file() else [""]
-    if present[0] == state and set(extras.split(",")) <= set(present[1:]):
+    if present[0] == state and name in present[1:]:
         return
-    if not PYTHON.is_file():
-        _make_venv()
+    require_current_lock(PROJECT, _lock_file(name))
+    _make_venv()
     _say("installing flexcell and what it needs (a few minutes the first time)")
-    _check([PYTHON, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-e", f".[{extras}]"])
-    stamp.write_text(" ".join([state, *extras.split(",")]), encoding="utf-8")
+    # Each file has a hash in the lock, and none runs code of its own while it is installed.
+    _check([*PIP_INSTALL, "--require-hashes", "--only-binary", ":all:", "--requirement", _lock_file(name)])
+    _check([*PIP_INSTALL, "--no-deps", "--no-build-isolation", "--editable", "."])
+    # The development lock holds all of the runtime lock, in the same versions.
+    stamp.write_text(" ".join([state, *LOCKED] if name == "development" else [state, name]), encoding="utf-8")
+
+
+def require_current_lock(project: Path, lock_file: Path) -> None:
+    """Refuse a lock that was made for other requirements than those of `project`."""
+    first = lock_file.read_text(encoding="utf-8").partition("\n")[0] if lock_file.is_file() else ""
+    if first != DIGEST + requirements_digest(project):
+        relative = f"{lock_file.parent.name}/{lock_file.name}"
+        problem = f"{relative} does not fit the requirements in {project.name}"
+        raise SystemExit(_fail(f"{problem}: run `python3 bootstrap.py lock` and commit what it writes"))
+
+
+def requirements_digest(project: Path) -> str:
+    """Return the SHA-256 of all that a project file requires, and of nothing else in it."""
+    return hashlib.sha256(json.dumps(_requirements(project), sort_keys=True).encode()).hexdigest()
+
+
+def _requirements(project: Path) -> dict[str, Any]:
+    # Imported here, since main() must be able to say that this Python is too old to have it.
+    import tomllib
+
+    data = tomllib.loads(project.read_text(encoding="utf-8"))
+    names = ("requires-python", "dependencies", "optional-dependencies")
+    required = {name: data["project"].get(name) for name in names}
+    return required | {"build": data["build-system"]["requires"], "dependency-groups": data.get("dependency-groups")}
 
 
 def ensure_browser() -> None:
@@ -110,7 +164,23 @@ def _is_there(pattern: str) -> bool:
     return any(Path("/usr/lib").glob(pattern))
 
 
+def _lock_file(name: str) -> Path:
+    return LOCKS / f"{name}.lock"
+
+
+def _compile(name: str, options: list[str]) -> None:
+    """Write one lock: every version for every Python from 3.11 on, with hashes, without a registry's address."""
+    file = _lock_file(name)
+    environment = {**os.environ, "UV_CUSTOM_COMPILE_COMMAND": "python3 bootstrap.py lock"}
+    command = [PYTHON, "-m", "uv", *COMPILE, *LOCKED[name], *options, "pyproject.toml", "--output-file", file]
+    subprocess.run(command, check=True, cwd=ROOT, env=environment, stdout=subprocess.DEVNULL)
+    head = DIGEST + requirements_digest(PROJECT)
+    file.write_text(f"{head}\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
+
+
 def _make_venv() -> None:
+    if PYTHON.is_file():
+        return
     if importlib.util.find_spec("ensurepip") is None:
         package = f"python{sys.version_info.major}.{sys.version_info.minor}-venv"
         if shutil.which("apt-get") and hasattr(os, "geteuid") and os.geteuid() == 0:
@@ -128,11 +198,11 @@ def _apt(*packages: str) -> None:
 
 
 def _fingerprint() -> str:
-    """What the installation depends on: the project file, the build hook and the front end's sources."""
+    """What the installation depends on: the project file, the locks, the build hook and the front end's sources."""
     digest = hashlib.sha256()
     front_end = ROOT / "editor_web" / "frontend"
     sources = [p for p in front_end.rglob("*") if "node_modules" not in p.parts and p.is_file()]
-    for path in (ROOT / "pyproject.toml", ROOT / "hatch_build.py", *sorted(sources)):
+    for path in (PROJECT, ROOT / "hatch_build.py", *map(_lock_file, LOCKED), *sorted(sources)):
         digest.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()
 

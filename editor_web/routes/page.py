@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from fastapi import APIRouter, HTTPException
 from fastapi.responses import FileResponse, HTMLResponse, Response
 
@@ -27,10 +29,13 @@ def asset(name: str, services: ServicesOf) -> Response:
 @router.get("/favicon.svg")
 def icon(services: ServicesOf) -> Response:
     """Serve the icon."""
-    file = services.static / "favicon.svg"
-    if not file.is_file():
-        raise HTTPException(404, "no such file")
-    return FileResponse(file)
+    return _served(services.static / "favicon.svg")
+
+
+@router.get("/THIRD-PARTY-NOTICES.txt")
+def notices(services: ServicesOf) -> Response:
+    """Serve the licences of what the page is built from."""
+    return _served(services.static / "THIRD-PARTY-NOTICES.txt")
 
 
 @router.get("/")
@@ -47,3 +52,9 @@ def index(services: ServicesOf, rest: str = "") -> Response:
     del rest
     file = services.static / "index.html"
     return FileResponse(file, media_type="text/html") if file.is_file() else HTMLResponse(NOT_BUILT, status_code=503)
+
+
+def _served(file: Path) -> Response:
+    if not file.is_file():
+        raise HTTPException(404, "no such file")
+    return FileResponse(file)

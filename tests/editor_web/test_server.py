@@ -44,6 +44,20 @@ async def test_the_printed_address_logs_in(tmp_path: Path, loopback: str) -> Non
         assert (await browser.get(f"{running.url}api/v1/session")).json()["role"] == "operator"
 
 
+async def test_the_licences_of_the_page_are_handed_out(tmp_path: Path, loopback: str) -> None:
+    """As text, to whoever may see the page; never kept, since the next version of the page has others."""
+    async with (
+        dashboard(FakeBackend(), token_file=tmp_path / "tokens", host=loopback, cell_view=False) as running,
+        httpx.AsyncClient(base_url=running.url, trust_env=False, timeout=GUARD_S) as browser,
+    ):
+        assert (await browser.get("THIRD-PARTY-NOTICES.txt")).status_code == 401
+        await browser.get(running.login_url)
+        answer = await browser.get("THIRD-PARTY-NOTICES.txt")
+        assert answer.headers["content-type"] == "text/plain; charset=utf-8"
+        assert answer.headers["cache-control"] == "no-store"
+        assert "@mantine/core" in answer.text
+
+
 async def test_serving_ends_when_cancelled_and_leaves_the_signals_alone(tmp_path: Path, loopback: str) -> None:
     """Ctrl-C belongs to whoever runs the cell."""
     before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)

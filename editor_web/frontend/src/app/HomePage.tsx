@@ -99,6 +99,9 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
   return (
     <>
       <span className="spacer" />
+      <a className="link" href="/THIRD-PARTY-NOTICES.txt" target="_blank" rel="noreferrer">
+        Licences
+      </a>
       {mayOperate && isSettled && <TourButton />}
     </>
   )
