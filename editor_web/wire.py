@@ -122,6 +122,17 @@ class BusMessageBody(Wire):
     message: dict[str, object]
 
 
+class ConnectionBody(Wire):
+    """Whether every device of the cell is connected; `reason` says which is lost and why."""
+
+    connected: bool
+    reason: str
+
+
+class ConnectBody(Wire):
+    """A request to connect again what is lost of the cell."""
+
+
 class SessionBody(Wire):
     """Who is logged in, and what this server has."""
 
@@ -129,6 +140,7 @@ class SessionBody(Wire):
     cell_name: str
     has_cell_view: bool
     epoch: str
+    cell: ConnectionBody
 
 
 class QuestionBody(Wire):

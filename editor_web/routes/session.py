@@ -10,7 +10,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 
 from editor_web.routes.services import Services, ServicesOf, role_of
 from editor_web.security import cookie_name
-from editor_web.wire import SessionBody
+from editor_web.wire import ConnectionBody, SessionBody
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
@@ -25,6 +25,7 @@ def get_session(request: Request, services: ServicesOf) -> SessionBody:
         cell_name=services.backend.cell_name,
         has_cell_view=services.cell_view is not None,
         epoch=services.hub.epoch,
+        cell=ConnectionBody.model_validate(services.backend.cell_connection),
     )
 
 
