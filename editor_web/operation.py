@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Protocol
 
+from engine.cell_connection import CellConnection
 from engine.control import Breakpoint, Control
 from engine.hot_change import ChangeReport
 
@@ -88,6 +89,20 @@ class Operation(Protocol):
 
         Raises:
             FlexcellError: a robot could not confirm it; the others were stopped all the same.
+        """
+        ...
+
+    @property
+    def cell_connection(self) -> CellConnection:
+        """Whether every device of the cell is connected."""
+        ...
+
+    async def connect_cell(self) -> None:
+        """Connect again what is lost of the cell; does nothing where nothing is.
+
+        Raises:
+            ControlError: a run is under way.
+            FlexcellError: a device does not come back.
         """
         ...
 

@@ -129,6 +129,17 @@ class StopEndpointBody(Wire):
     token: str
 
 
+class ConnectionBody(Wire):
+    """Whether every device of the cell is connected; `reason` says which is lost and why."""
+
+    connected: bool
+    reason: str
+
+
+class ConnectBody(Wire):
+    """A request to connect again what is lost of the cell."""
+
+
 class SessionBody(Wire):
     """Who is logged in, and what this server has; `stop` is for operators."""
 
@@ -136,6 +147,7 @@ class SessionBody(Wire):
     cell_name: str
     has_cell_view: bool
     epoch: str
+    cell: ConnectionBody
     stop: StopEndpointBody | None = None
 
 

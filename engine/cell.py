@@ -14,11 +14,12 @@ from types import TracebackType
 from typing import Any, Self
 
 from engine.bus import SkillBus
+from engine.cell_connection import CellConnection, CellConnections
 from engine.cell_store import open_cell_store, store_address
 from engine.clock import new_clock
 from engine.document.cell import Cell
 from engine.document.entries import load_entries
-from engine.errors import CellError, FlexcellError, NotStopped, RobotError
+from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
 from engine.preemption import Overdue, preempt
 from engine.registry import DRIVERS, WORLDS, load_maker
 from engine.robot import Robot, World
@@ -61,6 +62,7 @@ class OpenCell:
         self._store_path = store_path
         self.relay = relay
         self._stack = AsyncExitStack()
+        self._connections = CellConnections(self.bus)
 
     @property
     def name(self) -> str:
@@ -81,6 +83,30 @@ class OpenCell:
     def store_path(self) -> str | None:
         """The file or address of its store, without secrets; None without one."""
         return store_address(self.document, self._store_path) if self.document is not None else None
+
+    @property
+    def connection(self) -> CellConnection:
+        """Whether every device is connected, and which is not."""
+        return self._connections.now
+
+    def require_connected(self) -> None:
+        """Raise RobotError, with what is lost and what to do, unless every device is connected."""
+        self._connections.require()
+
+    async def reconnect(self) -> None:
+        """Connect again what is lost, under the same names; does nothing where nothing is.
+
+        A simulated world goes on from its last instant, at rest.
+
+        Raises:
+            ControlError: a robot is commanded by a run.
+            RobotError: a device does not come back.
+        """
+        for robot in self.robots:
+            owner = self.bus.leases.owner(robot)
+            if owner is not None and not self.connection.connected:
+                raise ControlError(f"{robot} is commanded by run {owner}", where=self.name, hint="stop that run first")
+        await self._connections.reconnect()
 
     async def __aenter__(self) -> Self:
         try:
@@ -173,6 +199,7 @@ class OpenCell:
         )
         world.register(self.bus)
         self._world = world
+        self._connections.follow(world)
         return world
 
     async def _open_robots(self, cell: Cell, world: World | None) -> None:
@@ -186,6 +213,7 @@ class OpenCell:
             robot = await self._stack.enter_async_context(made)
             robot.register(self.bus)
             robots[name] = robot
+            self._connections.follow(robot)
         self.robots = robots
 
     def _new_robot(self, cell: Cell, name: str, kind: str) -> Robot:

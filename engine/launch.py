@@ -85,7 +85,9 @@ def new_run(
     Raises:
         DocumentError: a parameter or input is not acceptable; the journal knows nothing of it.
         JournalError: the journal cannot be written.
+        RobotError: it commands devices, and one of the cell is lost.
     """
+    _require_devices(plan, cell)
     checked = plan.checked_parameters(parameters or {})
     given = plan.checked_inputs(inputs or {})
     run_id = new_run_id(plan.name)
@@ -112,6 +114,12 @@ def new_run(
         checkpoint=checkpoint,
         world=cell.snapshot if cell.has_world and not isinstance(journal, NullJournal) else None,
     )
+
+
+def _require_devices(plan: Plan, cell: OpenCell) -> None:
+    """Refuse what commands devices while one is lost: its first motion would only fail."""
+    if plan.commands_hardware:
+        cell.require_connected()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -279,10 +287,11 @@ async def resume_run(
 
     Raises:
         JournalError: the journal cannot be written.
-        RobotError: the world cannot be brought to where it was.
+        RobotError: a device of the cell is lost, or the world cannot be brought to where it was.
         ControlError: its engine has gone on meanwhile, to where it cannot be resumed like this.
     """
     plan, found = resumption.plan, resumption.found
+    _require_devices(plan, cell)
     entry = journal.resume(found.id)
     now = read_run(found.place, found.id)
     if now.record.last_seq != found.record.last_seq:

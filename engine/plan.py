@@ -50,6 +50,11 @@ class Plan:
             due += reversed(list(node.work.children.values()))
         return found
 
+    @cached_property
+    def commands_hardware(self) -> bool:
+        """Whether any of its states commands a device."""
+        return any(isinstance(node.work, Leaf) and node.work.commands_hardware for node in self.nodes.values())
+
     def outcomes_of(self, path: str) -> tuple[str, ...] | None:
         """Return the outcomes that the node at `path` can have; None where there is no such node."""
         node = self.nodes.get(path)

@@ -7,6 +7,7 @@ or processes it needs are its own and end in `__aexit__`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import Enum
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
@@ -59,6 +60,30 @@ class Robot(Protocol):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Come to rest and disconnect."""
+        ...
+
+
+@runtime_checkable
+class Reconnectable(Protocol):
+    """A device whose connection can be lost and made anew while the cell stays open."""
+
+    @property
+    def lost_reason(self) -> str:
+        """Why the connection is lost, in words; empty while it stands."""
+        ...
+
+    def when_connection_changes(self, tell: Callable[[], None]) -> None:
+        """Call `tell`, on the event loop, when the connection is lost and when it is back."""
+        ...
+
+    async def reconnect(self) -> str:
+        """Connect again under the same names, at rest, and return what is not as it was before, empty for nothing.
+
+        Skills, topics and leases go on working. Does nothing while the connection stands.
+
+        Raises:
+            RobotError: it does not come back, with what to check.
+        """
         ...
 
 

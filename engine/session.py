@@ -16,6 +16,7 @@ from engine.bus.access import BusAccess, LocalBus
 from engine.bus.desk import BusDesk
 from engine.cause import describe
 from engine.cell import OpenCell
+from engine.cell_connection import CellConnection
 from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
 from engine.document.faults import Faults
 from engine.editing import Documents
@@ -284,6 +285,23 @@ class Session:
             RobotError: one could not confirm it; the others were stopped all the same, and stay latched.
         """
         await self._stops.stop_all(reason=reason)
+
+    @property
+    def cell_connection(self) -> CellConnection:
+        """Whether every device of the cell is connected."""
+        return self.cell.connection
+
+    async def connect_cell(self) -> None:
+        """Connect again what is lost of the cell; does nothing where nothing is.
+
+        Raises:
+            ControlError: a run is under way.
+            RobotError: a device does not come back.
+        """
+        for run_id, started in self._runs.items():
+            if started.result is None and not self.cell.connection.connected:
+                raise ControlError("a run is under way", where=run_id, hint="stop it first, then connect the cell")
+        await self.cell.reconnect()
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
         """Return the breakpoints that are kept beside a behavior's file.

@@ -11,7 +11,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse
 from editor_web.access import OPERATOR
 from editor_web.routes.services import Services, ServicesOf, role_of
 from editor_web.security import cookie_name
-from editor_web.wire import SessionBody, StopEndpointBody
+from editor_web.wire import ConnectionBody, SessionBody, StopEndpointBody
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
@@ -27,6 +27,7 @@ def get_session(request: Request, services: ServicesOf) -> SessionBody:
         cell_name=services.backend.cell_name,
         has_cell_view=services.cell_view is not None,
         epoch=services.hub.epoch,
+        cell=ConnectionBody.model_validate(services.backend.cell_connection),
         stop=StopEndpointBody(url=stop.url, token=stop.token) if stop is not None and role == OPERATOR else None,
     )
 

@@ -41,6 +41,24 @@ class _End(msgspec.Struct):
     cause: Cause | None
 
 
+@asynccontextmanager
+async def server_client(folder: Path) -> AsyncGenerator[httpx.AsyncClient]:
+    """Reach the server that keeps its state in `folder`, as its operator.
+
+    Raises:
+        BusError: no server runs there, or it does not answer.
+    """
+    record = _record(folder)
+    headers = {"Authorization": f"Bearer {record.token}"}
+    async with httpx.AsyncClient(base_url=record.url, headers=headers, timeout=10.0, trust_env=False) as client:
+        try:
+            yield client
+        except httpx.TransportError as error:
+            raise BusError(
+                f"the server does not answer: {error}", where=record.url, hint="start it with `flexcell serve`"
+            ) from error
+
+
 class RemoteBus:
     """A bus behind a server; make it with `connect`."""
 
@@ -55,27 +73,20 @@ class RemoteBus:
         Raises:
             BusError: no server runs there.
         """
-        record = _record(folder)
-        headers = {"Authorization": f"Bearer {record.token}"}
-        async with httpx.AsyncClient(base_url=record.url, headers=headers, timeout=10.0, trust_env=False) as client:
-            try:
-                yield cls(client)
-            except httpx.TransportError as error:
-                raise BusError(
-                    f"the server does not answer: {error}", where=record.url, hint="start it with `flexcell serve`"
-                ) from error
+        async with server_client(folder) as client:
+            yield cls(client)
 
     async def listing(self) -> tuple[BusEntry, ...]:
         """Return everything on the bus."""
         response = await self._client.get("/api/v1/bus")
-        return msgspec.json.decode(_verified(response).content, type=tuple[BusEntry, ...])
+        return msgspec.json.decode(verified(response).content, type=tuple[BusEntry, ...])
 
     async def echo(self, topic: str) -> AsyncGenerator[str, None]:
         """Go through the messages of a topic as JSON, the latest one first."""
         async with self._client.stream("GET", "/api/v1/bus/echo", params={"topic": topic}, timeout=None) as response:
             if not response.is_success:
                 await response.aread()
-            _verified(response)
+            verified(response)
             async for line in response.aiter_lines():
                 if line:
                     yield line
@@ -83,17 +94,17 @@ class RemoteBus:
     async def publish(self, topic: str, message: object) -> None:
         """Publish a message on a topic that takes commands."""
         body = {"topic": topic, "message": message}
-        _verified(await self._client.post("/api/v1/bus/publish", json=body))
+        verified(await self._client.post("/api/v1/bus/publish", json=body))
 
     async def call(self, address: str, request: object) -> str:
         """Ask a service; returns its answer as JSON."""
         body = {"address": address, "request": request}
-        return _verified(await self._client.post("/api/v1/bus/call", json=body)).text
+        return verified(await self._client.post("/api/v1/bus/call", json=body)).text
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
         """Send a goal and wait for its end; the server cancels it when this connection is lost."""
         body = {"address": address, "request": goal}
-        response = _verified(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
+        response = verified(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
         end = msgspec.json.decode(response.content, type=_End)
         return GoalEnd(GoalStatus(end.status), end.result, end.cause)
 
@@ -108,7 +119,8 @@ def _record(folder: Path) -> ServerRecord:
         ) from error
 
 
-def _verified(response: httpx.Response) -> httpx.Response:
+def verified(response: httpx.Response) -> httpx.Response:
+    """Return a response that says that all went well; raises BusError with the server's words otherwise."""
     if response.is_success:
         return response
     try:

@@ -11,7 +11,22 @@ from typing import Annotated
 
 import typer
 
-from engine.cli import bus, check, coverage, export, replay, resume, run, runs, schema, serve, states, store, teach
+from engine.cli import (
+    bus,
+    cell,
+    check,
+    coverage,
+    export,
+    replay,
+    resume,
+    run,
+    runs,
+    schema,
+    serve,
+    states,
+    store,
+    teach,
+)
 from engine.cli.exit_code import ExitCode
 from engine.cli.stop import REASON, STATE_FOLDER, stop_cell
 from engine.errors import FlexcellError
@@ -33,6 +48,7 @@ app.add_typer(coverage.app, name="coverage")
 app.add_typer(states.app, name="states")
 app.add_typer(store.app, name="store")
 app.add_typer(bus.app, name="bus")
+app.add_typer(cell.app, name="cell")
 app.add_typer(teach.app, name="teach")
 app.command("schema")(schema.schema)
 

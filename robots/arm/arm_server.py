@@ -151,11 +151,19 @@ class ArmServer:
         if self._gripper is not None:
             self._gripper.grip = grips.get(self._gripper.name)
 
+    def world_lost(self, reason: str) -> None:
+        """Take no goals, and say why."""
+        self._runner.lose(reason)
+
+    def world_back(self) -> None:
+        """Take goals again."""
+        self._runner.find()
+
     async def stop(self) -> None:
         """Cancel what arm and gripper do; return when the arm is measured at rest.
 
         Raises:
-            RobotError: it still moves.
+            RobotError: it still moves, or is out of reach.
         """
         runner = self._runner
         runner.brake()
@@ -187,8 +195,11 @@ class ArmServer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            await self.stop()
+            # What is out of reach was told when it was lost; there is nothing to bring to rest from here.
+            if not self._runner.lost_reason:
+                await self.stop()
         finally:
+            self._runner.lost_reason = ""
             self._runner.status = DeviceStatus.DISCONNECTED
             self._runner.changed()
             await self._runner.loading.finished()

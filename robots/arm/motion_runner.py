@@ -12,6 +12,7 @@ import numpy as np
 
 from engine.bus import ActiveGoal
 from engine.cause import cause_of, describe
+from engine.cell_connection import CONNECT_AGAIN
 from engine.clock import Clock
 from engine.errors import GoalRejected, RobotError, SkillFailed
 from engine.messages import Pose, Quaternion, Vector3
@@ -55,6 +56,7 @@ class MotionRunner:
         reserved_for: Why no other goal is taken for now, in words; empty when one is.
         activity: The skill that is carried out, or what a goal waits for; empty when there is none.
         error: Why the last motion failed; empty after one that did not.
+        lost_reason: Why the device is out of reach; empty while it is not.
         changed: Called when any of these has changed.
     """
 
@@ -75,6 +77,7 @@ class MotionRunner:
         self.reserved_for = ""
         self.activity = ""
         self.error = ""
+        self.lost_reason = ""
         self.changed: Callable[[], None] = _nothing
         self._mode: ArmMode = "moving"
         self._motion: Motion | None = None
@@ -187,6 +190,8 @@ class MotionRunner:
 
     def obstacle(self) -> tuple[str, str]:
         """Return why the arm takes no goals for now and what to do about it; empty where it takes them."""
+        if self.lost_reason:
+            return self.lost_reason, CONNECT_AGAIN
         if self.status is not DeviceStatus.READY:
             return f"the arm is {self.status.value}", "connect it first"
         if self.reserved_for:
@@ -245,6 +250,16 @@ class MotionRunner:
         if self._occupied is not None:
             await asyncio.wait((self._occupied,))
 
+    def lose(self, reason: str) -> None:
+        """Take no goals until `find`: the device is out of reach."""
+        self.status, self.lost_reason, self.error = DeviceStatus.FAULT, reason, reason
+        self.changed()
+
+    def find(self) -> None:
+        """Take goals again: the device is back, at rest."""
+        self.status, self.lost_reason, self.error = DeviceStatus.READY, "", ""
+        self.changed()
+
     async def stop(self) -> None:
         """Cancel what is carried out and return at its end."""
         self._stops += 1
@@ -263,8 +278,10 @@ class MotionRunner:
         """Return when the arm is measured at rest; whoever else moved it is being stopped as well.
 
         Raises:
-            RobotError: it still moves; the status is then FAULT.
+            RobotError: it still moves, and the status is then FAULT; or it is out of reach.
         """
+        if self.lost_reason:
+            raise RobotError(self.lost_reason, where=self.name, hint=CONNECT_AGAIN)
         patience_s = self.clock.now_s() + _BRAKING_S
         while True:
             speed = np.abs(self.port.sample().velocity_rad_s)

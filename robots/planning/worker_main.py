@@ -12,6 +12,7 @@ import msgspec
 from engine.errors import FlexcellError
 from engine.messages import Pose
 from engine.shapes import Box, Obstacle
+from robots.child_process import end_with_parent
 from robots.planning.planner import ScenePlanner
 from robots.planning.request import JointGoal, PlanRequest
 from robots.planning.scene import PlanningScene, SceneArm
@@ -96,6 +97,7 @@ class _Mailbox:
 def main() -> None:
     """Serve the socket whose descriptor is the first argument until the other end closes it."""
     connection = socket.socket(fileno=int(sys.argv[1]))
+    end_with_parent(connection)
     mailbox = _Mailbox(connection)
     planner = ScenePlanner()
     try:

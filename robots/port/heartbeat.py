@@ -19,7 +19,7 @@ ENGINE_SILENCE_S = 0.2
 """Without a pulse of the engine for this long, a control process brings everything to rest."""
 CONTROL_SILENCE_S = 0.25
 """Without a pulse of the control process for this long, the engine declares it lost; with one look more, 0.3 s."""
-PULSE_S = 0.04
+PULSE_S = 0.02
 """Period of the engine's pulse and of its looks."""
 
 _NAME = "flexcell-heartbeat"

@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 from robots.port.heartbeat import CONTROL_SILENCE_S, PULSE_S, Heartbeat, SilenceMonitor
 
+_LONGEST_GAP_S = 0.06
+
 
 class LoopHeartbeat:
     """Pulses by a timer of the running loop, so that a loop that does not turn is silent.
@@ -21,7 +23,7 @@ class LoopHeartbeat:
         self, heartbeat: Heartbeat, *, limit_s: float = CONTROL_SILENCE_S, on_silence: Callable[[float], None]
     ) -> None:
         self._heartbeat = heartbeat
-        self._silence = SilenceMonitor(limit_s=limit_s, longest_gap_s=2.0 * PULSE_S)
+        self._silence = SilenceMonitor(limit_s=limit_s, longest_gap_s=_LONGEST_GAP_S)
         self._on_silence = on_silence
         self._timer: asyncio.TimerHandle | None = None
 

@@ -10,8 +10,6 @@ from robots.port import Array
 from robots.sim.commands import AnyCommand
 from robots.sim.snapshot import CellSummary, Snapshot
 
-CONNECT_AGAIN = "connect the cell again: `flexcell cell connect`, or Connect on the page"
-
 
 class HostListener(Protocol):
     """Who hears, on the event loop thread, what happens in the world."""

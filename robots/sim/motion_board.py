@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
+from engine.cell_connection import CONNECT_AGAIN
 from engine.errors import RobotError
 from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped
 from robots.port import MotionEnd, MotionReport
 from robots.sim.commands import AnyCommand, Cancel, Hold, Resume
-from robots.sim.host import CONNECT_AGAIN
 
 
 class SimMotion:
@@ -151,6 +151,10 @@ class MotionBoard:
         motion.take(event)
         if motion.ended:
             del self._motions[event.motion]
+
+    def found(self) -> None:
+        """Take motions again: the world is back."""
+        self.lost_reason = ""
 
     def lost(self, reason: str) -> None:
         """Fail all motions: the world is gone."""

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import msgspec
 
+from engine.cell_connection import CONNECT_AGAIN
 from engine.errors import CellError, RobotError
 from robots.child_process import how_it_ended, start_child
 from robots.port import Array
@@ -18,7 +19,7 @@ from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.loop_heartbeat import LoopHeartbeat
 from robots.sim.commands import AnyCommand, Restore, Shutdown
 from robots.sim.framing import FrameReader, framed
-from robots.sim.host import CONNECT_AGAIN, HostListener
+from robots.sim.host import HostListener
 from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers, new_shared_file
 from robots.sim.snapshot import CellSummary, Snapshot, SnapshotLayout

@@ -14,8 +14,9 @@ from robots.model.robot_model import RobotModel
 from robots.sim.cell_scene import scene_of
 from robots.sim.process_host import NewStopLine
 from robots.sim.scene import ArmPlacement, Scene
+from robots.sim.sim_robot import SimRobot
 from robots.sim.tool_servers import tool_server
-from robots.sim.world import SimRobot, SimWorld
+from robots.sim.world import SimWorld
 from robots.sim.world import new_world as new_sim_world
 from robots.vision.cell_cameras import cell_cameras
 from robots.workspace.live_scene import LiveScene

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import AsyncExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self, runtime_checkable
+from typing import Self
 
 from engine.bus import LeaseTable, SkillBus
 from engine.clock import VirtualLoop
@@ -16,7 +16,6 @@ from engine.errors import RobotError, SkillFailed
 from engine.messages import Vector3
 from engine.robot import DeviceStatus, Robot
 from engine.skills.world import BodyPushed, PartsReset, PushBody, ResetParts
-from robots.gripper.grip_judgement import Grip
 from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
 from robots.sim.commands import Push, StopAll
 from robots.sim.commands import ResetParts as ResetPartsCommand
@@ -31,35 +30,10 @@ from robots.sim.scene_description import describe_scene
 from robots.sim.seal import WorldImage, sealed, unsealed
 from robots.sim.sim_outputs import SimOutputPort
 from robots.sim.sim_ports import SimArmPort
+from robots.sim.sim_robot import DependsOnWorld, Remembers, SimRobot
 from robots.sim.snapshot import ArmSummary, Snapshot
 from robots.sim.tool_ports import ToolPorts
 from robots.sim.tool_summary import tool_summary
-
-
-class SimRobot(Robot, Protocol):
-    """A robot of a simulated world, which tells what it must know again after a restore."""
-
-    def grips(self) -> dict[str, Grip]:
-        """What its grippers were told to grasp and hold, by their names."""
-        ...
-
-    def recall(self, grips: Mapping[str, Grip]) -> None:
-        """Know from now on what `grips` of an earlier life told, other robots' included."""
-        ...
-
-
-@runtime_checkable
-class Remembers(Protocol):
-    """A robot or device that knows more than that, in words of its own."""
-
-    def memo(self) -> bytes:
-        """What it must know again after a restore; empty for nothing."""
-        ...
-
-    def remember(self, memo: bytes) -> None:
-        """Know again what `memo` of an earlier life says; raises RobotError where it cannot be read."""
-        ...
-
 
 RobotMaker = Callable[["SimWorld"], tuple[SimRobot, ...]]
 
@@ -97,6 +71,8 @@ class SimWorld:
             if (count := placement.robot().digital_outputs)
         }
         self._status = DeviceStatus.DISCONNECTED
+        self._at_loss = b""
+        self._tell_connection: Callable[[], None] = _nothing
         self._publisher: WorldPublisher | None = None
         self._bus: SkillBus | None = None
         self._timer: asyncio.Task[None] | None = None
@@ -186,8 +162,13 @@ class SimWorld:
         """
         if self._board.under_way():
             raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
+        await self._take_over(self._unsealed(snapshot))
+
+    def _unsealed(self, snapshot: bytes) -> WorldImage:
         summary = self._host.summary
-        image = unsealed(snapshot, model=summary.model, size=summary.image_size)
+        return unsealed(snapshot, model=summary.model, size=summary.image_size)
+
+    async def _take_over(self, image: WorldImage) -> None:
         self._board.closed_reason = "the world is being restored"
         try:
             for name, settings in image.settings.items():
@@ -202,6 +183,56 @@ class SimWorld:
             robot.recall(image.grips)
             if isinstance(robot, Remembers):
                 robot.remember(image.memos.get(robot.name, b""))
+
+    @property
+    def lost_reason(self) -> str:
+        """Why the world is gone; empty while it is there."""
+        return self._board.lost_reason if self._status is DeviceStatus.FAULT else ""
+
+    def when_connection_changes(self, tell: Callable[[], None]) -> None:
+        """Call `tell` when the world is lost and when it is back."""
+        self._tell_connection = tell
+
+    async def reconnect(self) -> str:
+        """Start a new process for a world that was lost, and bring it to the last instant of the old one, at rest.
+
+        Raises:
+            RobotError: the process does not start, or is lost again at once.
+        """
+        if not self.lost_reason:
+            return ""
+        await self._host.close()
+        await self._open_host()
+        note = await self._go_on_after_loss()
+        self._board.found()
+        self._status, self._at_loss = DeviceStatus.READY, b""
+        self._publish_on()
+        for robot in self._robots:
+            if isinstance(robot, DependsOnWorld):
+                robot.world_back()
+        self._tell_connection()
+        return note
+
+    async def _go_on_after_loss(self) -> str:
+        try:
+            image = self._unsealed(self._at_loss)
+        except RobotError as error:
+            self._begin_ports()
+            self._board.reflexes = {}
+            for robot in self._robots:
+                robot.recall({})
+            return f"the world has begun anew, with everything where the cell document has it: {error.message}"
+        await self._take_over(image)
+        return ""
+
+    async def _open_host(self) -> None:
+        await self._host.open(self._board)
+        if isinstance(self._host, LockstepHost):
+            self._host.begin(asyncio.get_running_loop().time())
+
+    def _begin_ports(self) -> None:
+        for port in (*self._arm_ports.values(), *self._outputs.values()):
+            port.begin()
 
     def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Let a hand push at a body from now on, in world axes, at a point of its frame; replaces its last push.
@@ -231,7 +262,11 @@ class SimWorld:
         self.people.register(bus)
         for device in self._devices:
             device.register(bus)
-        if not isinstance(self._host, LockstepHost):
+        self._publish_on()
+
+    def _publish_on(self) -> None:
+        """Publish in real time; in lockstep every step does."""
+        if self._publisher is not None and not isinstance(self._host, LockstepHost):
             self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
 
     async def _push_body(self, request: PushBody) -> BodyPushed:
@@ -263,15 +298,12 @@ class SimWorld:
             raise RobotError("; ".join(moving) or self._board.lost_reason, where=self.name)
 
     async def __aenter__(self) -> Self:
-        await self._host.open(self._board)
-        for port in (*self._arm_ports.values(), *self._outputs.values()):
-            port.begin()
+        await self._open_host()
+        self._begin_ports()
         self._status = DeviceStatus.READY
         loop = asyncio.get_running_loop()
-        if isinstance(self._host, LockstepHost):
-            self._host.begin(loop.time())
-            if isinstance(loop, VirtualLoop):
-                loop.attach(self)
+        if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
+            loop.attach(self)
         try:
             for device in self._devices:
                 await self._opened_devices.enter_async_context(device)
@@ -343,9 +375,19 @@ class SimWorld:
             if tick % every == 0:
                 self._publisher.publish_frames()
 
-    def _lost(self, _reason: str) -> None:
-        if self._status is DeviceStatus.READY:
-            self._status = DeviceStatus.FAULT
+    def _lost(self, reason: str) -> None:
+        if self._status is not DeviceStatus.READY:
+            return
+        self._at_loss = self.snapshot()
+        self._status = DeviceStatus.FAULT
+        for robot in self._robots:
+            if isinstance(robot, DependsOnWorld):
+                robot.world_lost(reason)
+        self._tell_connection()
+
+
+def _nothing() -> None:
+    """Tell nobody."""
 
 
 def new_world(

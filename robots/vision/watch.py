@@ -100,8 +100,10 @@ class CellWatch:
     def next_look(self, due: tuple[CameraSpec, ...], *, now_s: float) -> Look | None:
         """Return the order to look at the world as it is now with those of the cameras `due` that are needed.
 
-        None where none is.
+        None where none is, or while there is no world.
         """
+        if self._world.lost_reason:
+            return None
         detecting = self.desk.due(due, now_s=now_s)
         wanted = self._wanted()
         is_mapped = self.sight.box is not None and self._needs_images
@@ -126,7 +128,9 @@ class CellWatch:
         self._base = self.map.latest.revision if self.map.latest is not None else 0
 
     def hand_in(self, seen: Seen, *, looked_at_s: float) -> None:
-        """Publish what was seen."""
+        """Publish what was seen; what comes after the world is lost is of no use."""
+        if self._world.lost_reason:
+            return
         self.status = DeviceStatus.READY
         if seen.grid is not None:
             self._looks += 1
@@ -162,6 +166,14 @@ class CellWatch:
         """The world was brought to an earlier state: what was seen since is forgotten."""
         self._forget = True
         self.map.outdated()
+
+    def world_lost(self, reason: str) -> None:
+        """There is nothing to see: images of a world that stands still would look like a cell at rest."""
+        self.fail(reason)
+
+    def world_back(self) -> None:
+        """Look again; what was seen before counts no more."""
+        self.recall({})
 
     def register(self, bus: SkillBus) -> None:
         """Publish what cameras there are; map, images and detections come while somebody reads them."""

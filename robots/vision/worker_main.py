@@ -10,6 +10,7 @@ import sys
 import msgspec
 
 from engine.errors import FlexcellError
+from robots.child_process import end_with_parent
 from robots.sim.framing import FrameReader, framed
 from robots.vision.eye import Eye
 from robots.vision.worker_messages import Answer, Begin, FromWorker, Opened, Order, Refused, Tell, ToWorker
@@ -54,6 +55,7 @@ def main() -> None:
     # Ctrl-C reaches the whole process group; the parent decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     connection = socket.socket(fileno=int(sys.argv[1]))
+    end_with_parent(connection)
     try:
         _serve(_Mailbox(connection))
     except (_ClientGone, ConnectionResetError):

@@ -17,6 +17,7 @@ from engine.bus.access import BusAccess
 from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
 from engine.bus.desk import BusDesk
+from engine.cell_connection import CellConnection
 from engine.clock import LoopClock
 from engine.control import Breakpoint, Control
 from engine.editing import Documents
@@ -78,6 +79,7 @@ class FakeBackend:
         documents: Documents | None = None,
     ) -> None:
         self.cell_name = "dual_panda"
+        self.lost_reason = ""
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
         self.documents = documents or Documents(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
@@ -200,6 +202,15 @@ class FakeBackend:
     async def stop_all(self, *, reason: str) -> None:
         for run_id in self._runs:
             await self.stop(run_id, reason=reason)
+
+    @property
+    def cell_connection(self) -> CellConnection:
+        return CellConnection(connected=not self.lost_reason, reason=self.lost_reason)
+
+    async def connect_cell(self) -> None:
+        if any(not task.done() for task in self._tasks.values()):
+            raise ControlError("a run is under way", hint="stop it first, then connect the cell")
+        self.lost_reason = ""
 
     def interrupted(self) -> tuple[InterruptedRun, ...]:
         return ()

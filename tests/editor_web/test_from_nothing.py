@@ -6,7 +6,6 @@ A real `flexcell serve` with the cell of two Pandas in physics, in real time, an
 from __future__ import annotations
 
 from pathlib import Path
-from shutil import copy
 
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
@@ -17,8 +16,8 @@ from tests.editor_web.editing import card, idle
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.real_server import dashboard_of
 from tests.engine.cli.process import started
+from tests.robots.sim.demo_cell import patient_copy
 
-BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 MADE = "behaviors/my_transfer.yaml"
 
 Steps = tuple[tuple[str, str, dict[str, str]], ...]
@@ -165,9 +164,7 @@ def expect_parts(page: Page) -> None:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """A folder with the cell and its entries, and no behavior."""
-    for folder in ("cells", "entries"):
-        (tmp_path / "behaviors" / folder).mkdir(parents=True)
-        copy(BEHAVIORS / folder / "dual_panda.yaml", tmp_path / "behaviors" / folder)
+    patient_copy(tmp_path)
     return tmp_path
 
 

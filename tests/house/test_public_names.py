@@ -28,6 +28,7 @@ COMMANDS = [
     *(("store", name) for name in ("list", "get", "show", "set", "delete", "history", "undo")),
     *(("store", name) for name in ("export", "import", "migrate", "watch")),
     *(("bus", name) for name in ("list", "echo", "hz", "publish", "call", "goal")),
+    *(("cell", name) for name in ("status", "connect")),
 ]  # fmt: skip
 
 

@@ -11,6 +11,7 @@ import pytest
 from engine.event import AnyEvent, Exited, GoalFinished, GoalSent, RunEnded
 from engine.journal import list_runs
 from tests.engine.cli.process import events_in, started, until
+from tests.robots.sim.demo_cell import patient_copy
 
 BEHAVIOR = Path(__file__).resolve().parents[3] / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 
@@ -23,7 +24,8 @@ def test_both_arms_come_to_rest_in_mid_motion(tmp_path: Path, number: signal.Sig
     """
     # So slow that both are still under way when the signal comes, however late that is.
     slowly = ("-p", "speed=0.05", "-p", "line_speed_m_s=0.02")
-    with started("run", BEHAVIOR, "--clock", "real", "-q", *slowly, cwd=tmp_path) as process:
+    cell = ("--cell", str(patient_copy(tmp_path)))
+    with started("run", BEHAVIOR, "--clock", "real", "-q", *cell, *slowly, cwd=tmp_path) as process:
         until(process, tmp_path, lambda events: len(_moving(events)) == 2)
         process.send_signal(number)
         _, errors = process.communicate(timeout=60)

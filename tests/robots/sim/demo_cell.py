@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from pathlib import Path
+from shutil import copy
 
 from engine.bus import GoalStatus, SkillBus
 from engine.cell import OpenCell
@@ -25,6 +26,23 @@ async def opened_cell(folder: Path, *, seed: int | None = None) -> AsyncGenerato
     """Open the demo cell with a store of its own."""
     async with OpenCell(load_cell(CELL), seed=seed, store_path=str(folder / "store.db")) as cell:
         yield cell
+
+
+def patient_copy(folder: Path) -> Path:
+    """Write the demo cell and its entries below `folder`, for tests in real time, and return the cell's file.
+
+    A busy machine keeps processes waiting for longer than a robot may be left alone.
+    """
+    for kind in ("cells", "entries"):
+        (folder / "behaviors" / kind).mkdir(parents=True, exist_ok=True)
+        copy(CELL.parents[1] / kind / CELL.name, folder / "behaviors" / kind)
+    file = folder / "behaviors" / "cells" / CELL.name
+    hurried = "{kind: mujoco, step_s: 0.001}"
+    text = file.read_text(encoding="utf-8")
+    assert hurried in text
+    patient = "{kind: mujoco, step_s: 0.001, engine_silence_s: 20, world_silence_s: 20}"
+    file.write_text(text.replace(hurried, patient), encoding="utf-8")
+    return file
 
 
 async def pick(bus: SkillBus) -> None:

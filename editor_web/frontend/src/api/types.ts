@@ -210,6 +210,16 @@ export interface ConflictBody {
   readonly conflicts: readonly MergeConflictBody[]
 }
 
+/** A request to connect again what is lost of the cell. */
+export interface ConnectBody {
+}
+
+/** Whether every device of the cell is connected; `reason` says which is lost and why. */
+export interface ConnectionBody {
+  readonly connected: boolean
+  readonly reason: string
+}
+
 /** A kind of node that holds others; `only_in_tree` says where it may stand. */
 export interface ContainerBody {
   readonly kind: string
@@ -1015,6 +1025,7 @@ export interface SessionBody {
   readonly cell_name: string
   readonly has_cell_view: boolean
   readonly epoch: string
+  readonly cell: ConnectionBody
   readonly stop: StopEndpointBody | null
 }
 

@@ -1,0 +1,42 @@
+"""`flexcell cell`: the devices of a running server's cell."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from engine.bus.remote_cell import connect_remote_cell, remote_cell_connection
+from engine.cell_connection import CellConnection
+from engine.cli.exit_code import ExitCode
+
+app = typer.Typer(help="The devices of a running server's cell.", no_args_is_help=True)
+
+Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
+_STATE = Path(".flexcell")
+
+
+@app.command("status")
+def status(server: Folder = _STATE) -> None:
+    """Say whether every device is connected; exit code 1 where one is lost."""
+    _say(asyncio.run(remote_cell_connection(server)))
+
+
+@app.command("connect")
+def connect(server: Folder = _STATE) -> None:
+    """Connect again what is lost, without restarting the server; refused while a run is under way.
+
+    `flexcell cell connect`
+    """
+    _say(asyncio.run(connect_remote_cell(server)))
+
+
+def _say(connection: CellConnection) -> None:
+    sys.stdout.write(("connected" if connection.connected else "lost") + "\n")
+    if connection.reason:
+        sys.stderr.write(f"{connection.reason}\n")
+    if not connection.connected:
+        raise typer.Exit(ExitCode.OTHER_OUTCOME)
