@@ -14,6 +14,7 @@ from engine.cause import cause_of, describe
 from engine.document.behavior import Behavior
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.nearness import near_names
+from engine.type_preparation import prepare_types
 
 
 def is_python_name(name: str) -> bool:
@@ -65,6 +66,7 @@ def _module(file: Path, start: Position) -> ModuleType:
         sys.modules[file.stem] = module
         try:
             loader.exec_module(module)
+            prepare_types()
         except DocumentError:
             del sys.modules[file.stem]
             raise

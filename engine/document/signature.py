@@ -13,6 +13,7 @@ import msgspec
 
 from engine.errors import StateError
 from engine.state import State
+from engine.type_preparation import prepare_type
 
 Schema = Mapping[str, object]
 
@@ -75,6 +76,7 @@ def read_signature(state: type[State]) -> StateSignature:
             raise _broken(
                 state, f"its `unwritten` names an outcome or key it has not: {outcome}", "correct `unwritten`"
             )
+    prepare_type(state)
     return StateSignature(
         name=name,
         doc=inspect.getdoc(state) or "",
