@@ -16,7 +16,7 @@ import py_trees.timers
 from py_trees.behaviour import Behaviour
 
 from engine.document.project import PROJECT_FILE
-from engine.errors import FlexcellError, ModuleNotAllowed, RegistryError
+from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
 from engine.state import State
 
@@ -161,8 +161,3 @@ def _missing(catalogue: Catalogue, name: str) -> RegistryError:
     if ":" in name:
         return not_allowed(name.rpartition(":")[0])
     return RegistryError(f"there is no state `{name}`", hint=near_names(name, catalogue))
-
-
-def failures(catalogue: StateCatalogue) -> tuple[FlexcellError, ...]:
-    """Return what could not be loaded, for the log of whoever starts."""
-    return tuple(catalogue.broken.values())

@@ -19,7 +19,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "invalid-cell": ("error", "the cell that the behavior names, or its entries, cannot be read"),
     "unknown-state": ("error", "no state has this name, or its class is broken"),
     "module-not-allowed": ("error", "a document names a class of a module that the project does not allow"),
-    "broken-behaviour": ("error", "a py_trees behaviour cannot be imported, or is none"),
+    "broken-behaviour": ("error", "a py_trees behaviour cannot be loaded, or is none"),
     "unknown-parameter": ("error", "the state or behavior has no such parameter"),
     "missing-parameter": ("error", "a parameter without default is not given"),
     "bad-parameter": ("error", "a given parameter has the wrong type or is out of range"),
