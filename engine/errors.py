@@ -68,6 +68,10 @@ class RegistryError(FlexcellError):
     """A name resolves to no state, robot or store."""
 
 
+class ModuleNotAllowed(RegistryError):
+    """A document names a class of a module that the project does not allow; nothing was imported."""
+
+
 class BusError(FlexcellError):
     """Root of everything the skill bus refuses."""
 

@@ -12,7 +12,7 @@ from engine.document import node as nodes
 from engine.document.expression import Template, compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
-from engine.errors import DocumentError, ExpressionError
+from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.foreach import ForEach
 from engine.leaf import Leaf
 from engine.measure import Guard, Retry, Timeout
@@ -20,11 +20,11 @@ from engine.nearness import near_names
 from engine.node import Node, Work
 from engine.priority import Priority
 from engine.reference import Reference
-from engine.registry import state_by_path
 from engine.state import State
+from engine.state_catalogue import Catalogue, find_state
 from engine.tree import new_tree
 
-Catalogue = Mapping[str, type[State]]
+__all__ = ["Catalogue", "Plan", "new_plan"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -178,7 +178,7 @@ class _Planner:
         )
 
     def _tree(self, inside: str, node: nodes.Node) -> Work:
-        return new_tree(inside, node, base=self.base, behavior=self.behavior, plan=self.node)
+        return new_tree(inside, node, base=self.base, behavior=self.behavior, catalogue=self.catalogue, plan=self.node)
 
     def _concurrency(self, inside: str, node: nodes.Node) -> Work:
         container = node.concurrency
@@ -203,15 +203,12 @@ class _Planner:
         )
 
     def _state(self, inside: str, name: str) -> type[State]:
-        if name in self.catalogue:
-            return self.catalogue[name]
-        if ":" in name:
-            return state_by_path(name)
-        raise DocumentError(
-            f"there is no state `{name}`",
-            where=self.behavior.position(inside, "state"),
-            hint=near_names(name, self.catalogue),
-        )
+        try:
+            return find_state(self.catalogue, name, self.behavior.classes)
+        except RegistryError as error:
+            raise DocumentError(
+                error.message, where=self.behavior.position(inside, "state"), hint=error.hint
+            ) from error
 
     def _reference(self, inside: str, node: nodes.Node) -> Work:
         target = self.behavior.references[node.behavior or ""]

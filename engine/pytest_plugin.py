@@ -5,7 +5,8 @@ is a test that replays it; its failure is the first difference. Fixtures: `flexc
 behavior file headless in virtual time, `flexcell_replay` replays a recording.
 
 The engine is imported where it is needed and not above: the plugin is loaded in every pytest of an
-environment that has this package, mostly for nothing.
+environment that has this package, mostly for nothing. The project file counts that stands in the
+root folder of pytest, or above it.
 """
 
 from __future__ import annotations
@@ -49,21 +50,21 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 @pytest.fixture
-def flexcell_run(tmp_path: Path) -> object:
+def flexcell_run(tmp_path: Path, pytestconfig: pytest.Config) -> object:
     """Run a behavior file headless in virtual time: an `engine.testing.RunBehavior`."""
     from engine.registry import load_states
     from engine.testing import run_behavior
 
-    return partial(run_behavior, catalogue=load_states(), store=tmp_path / "flexcell-store.db")
+    return partial(run_behavior, catalogue=load_states(pytestconfig.rootpath), store=tmp_path / "flexcell-store.db")
 
 
 @pytest.fixture
-def flexcell_replay() -> object:
+def flexcell_replay(pytestconfig: pytest.Config) -> object:
     """Replay a recording, with another version of its behavior if one is given: an `engine.testing.ReplayFile`."""
     from engine.registry import load_states
     from engine.testing import replay_file
 
-    return partial(replay_file, catalogue=load_states())
+    return partial(replay_file, catalogue=load_states(pytestconfig.rootpath))
 
 
 def _folders(config: pytest.Config) -> list[Path]:

@@ -1,20 +1,29 @@
 """Finds states, worlds, drivers and servers by name, through the entry points of installed packages.
 
 Groups: `flexcell.states` (a mapping of state name → class), `flexcell.worlds` and
-`flexcell.drivers` (a maker per `kind`), `flexcell.servers`. A user's own state is also found as
-`module:Class`. Nothing is imported before its name is asked for.
+`flexcell.drivers` (a maker per `kind`), `flexcell.servers`. A user's own states stand in modules
+that the project file allows, and are found as `module:Class`. `load_states` is the one place where
+such modules are imported: at the start of a command or server, never because a document names them.
 """
 
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Mapping
+from functools import partial
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
 from typing import Any, cast
 
+from engine.contained_load import LoadFailure, load_contained
+from engine.document.project import Project, find_project
 from engine.errors import RegistryError
 from engine.nearness import near_names
 from engine.state import State
+from engine.state_catalogue import StateCatalogue
+from engine.type_preparation import prepare_types
 
 STATES = "flexcell.states"
 WORLDS = "flexcell.worlds"
@@ -22,39 +31,42 @@ DRIVERS = "flexcell.drivers"
 SERVERS = "flexcell.servers"
 
 
-def load_states() -> dict[str, type[State]]:
-    """Return every registered state by name.
+def load_states(start: Path | None = None) -> StateCatalogue:
+    """Load the states of installed packages, and those of the modules that a project allows.
+
+    What raises while it is loaded is left out, and named by the catalogue to whoever needs it.
+
+    Args:
+        start: A file or folder; the nearest project file in its folder or above counts. None for no project.
 
     Raises:
-        RegistryError: two packages offer the same name, or an entry point does not load.
+        DocumentError: the project file is not valid.
     """
-    catalogue: dict[str, type[State]] = {}
+    project = find_project(start) if start is not None else None
+    loading = _Loading()
     for point in entry_points(group=STATES):
-        offered = cast("Mapping[str, type[State]]", _loaded(point))
-        for name, state in offered.items():
-            if name in catalogue and catalogue[name] is not state:
-                raise RegistryError(f"two packages offer the state {name}", where=point.value)
-            catalogue[name] = state
-    return dict(sorted(catalogue.items()))
+        loading.add_entry_point(point)
+    if project is not None:
+        loading.add_project(project)
+    prepare_types()
+    file = str(project.file) if project is not None else None
+    return StateCatalogue(loading.states, modules=loading.modules, broken=loading.broken, project_file=file)
 
 
 def state_by_path(name: str) -> type[State]:
-    """Return the state class named as `package.module:Class`.
+    """Import and return the state class that a person at the command line names as `package.module:Class`.
 
     Raises:
         RegistryError: the module or class does not exist or is not a state.
     """
     module_name, _, class_name = name.partition(":")
-    try:
-        found = getattr(importlib.import_module(module_name), class_name)
-    except (ImportError, AttributeError) as error:
-        raise RegistryError(str(error), where=name, hint="write it as package.module:Class") from error
-    except Exception as error:
-        # Importing runs the module, which may raise anything; nobody but its author can mend that.
-        message = f"importing {module_name!r} raised {type(error).__name__}: {error}"
-        raise RegistryError(message, where=name, hint="write it as package.module:Class") from error
+    module = load_contained(module_name, partial(importlib.import_module, module_name))
+    if isinstance(module, LoadFailure):
+        raise RegistryError(str(module), where=name, hint="write it as package.module:Class")
+    found: object = vars(module).get(class_name)
     if not (isinstance(found, type) and issubclass(found, State)):
-        raise RegistryError("this is not a subclass of engine.state.State", where=name)
+        hint = near_names(class_name, _states_of(module))
+        raise RegistryError("this is not a subclass of engine.state.State", where=name, hint=hint)
     return found
 
 
@@ -69,15 +81,87 @@ def load_maker(group: str, kind: str) -> Any:
         raise RegistryError(
             f"no {group.removeprefix('flexcell.')[:-1]} is named {kind!r}", hint=near_names(kind, points)
         )
-    return _loaded(points[kind])
+    found = load_contained(kind, points[kind].load)
+    if isinstance(found, LoadFailure):
+        raise _broken_point(points[kind], found)
+    return found
 
 
-def _loaded(point: EntryPoint) -> Any:
-    try:
-        return point.load()
-    except ImportError as error:
-        raise RegistryError(
-            f"{point.name} needs a package that is not installed: {error}",
+class _Loading:
+    """What has been loaded so far, and what could not be."""
+
+    def __init__(self) -> None:
+        self.states: dict[str, type[State]] = {}
+        self.modules: dict[str, ModuleType] = {}
+        self.broken: dict[str, RegistryError] = {}
+
+    def add_entry_point(self, point: EntryPoint) -> None:
+        offered = load_contained(point.name, partial(_offered, point))
+        if isinstance(offered, LoadFailure):
+            self.broken[point.name] = _broken_point(point, offered)
+            return
+        for name, state in offered.items():
+            self._add(name, state, point.value)
+
+    def add_project(self, project: Project) -> None:
+        folder = str(project.folder)
+        if folder not in sys.path:
+            # At the end: a module of the project stands in for none of the libraries that are loaded later.
+            sys.path.append(folder)
+        importlib.invalidate_caches()
+        for index, name in enumerate(project.document.states):
+            loaded = load_contained(name, partial(_own_module, name, project.folder))
+            if isinstance(loaded, LoadFailure):
+                where = project.position(index)
+                self.broken[name] = RegistryError(str(loaded), where=where, hint="mend the module and start again")
+                continue
+            self.modules[name], states = loaded
+            for class_name, state in states.items():
+                self.states[f"{name}:{class_name}"] = state
+                if state.state_name and state.__module__ == name:
+                    self._add(state.state_name, state, name)
+
+    def _add(self, name: str, state: type[State], origin: str) -> None:
+        known = self.states.get(name)
+        if name in self.broken or (known is not None and known is not state):
+            self.states.pop(name, None)
+            hint = "rename one of them, or uninstall one package"
+            self.broken[name] = RegistryError(f"two packages offer the state {name}", where=origin, hint=hint)
+        else:
+            self.states[name] = state
+
+
+def _offered(point: EntryPoint) -> dict[str, type[State]]:
+    """Return what an entry point offers, having looked at each: it may be anything."""
+    offered: dict[str, type[State]] = {}
+    for name, state in cast("Mapping[str, object]", point.load()).items():
+        if not (isinstance(state, type) and issubclass(state, State)):
+            raise TypeError(f"{name} is not a subclass of engine.state.State")
+        offered[name] = state
+    return offered
+
+
+def _own_module(name: str, folder: Path) -> tuple[ModuleType, dict[str, type[State]]]:
+    """Import a module with its states; one of the project's folder must not be hidden by another of its name."""
+    module = importlib.import_module(name)
+    path = folder.joinpath(*name.split("."))
+    own = [file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
+    if own and module.__file__ is not None and Path(module.__file__).resolve() not in [file.resolve() for file in own]:
+        raise ImportError(f"another module of this name is loaded from {module.__file__}; rename {own[0]}")
+    return module, _states_of(module)
+
+
+def _states_of(module: ModuleType) -> dict[str, type[State]]:
+    found = ((name, value) for name, value in vars(module).items() if isinstance(value, type))
+    return {name: value for name, value in found if issubclass(value, State) and value is not State}
+
+
+def _broken_point(point: EntryPoint, failure: LoadFailure) -> RegistryError:
+    if failure.raised.startswith(("ImportError", "ModuleNotFoundError")):
+        return RegistryError(
+            f"{point.name} needs a package that is not installed: {failure.raised.partition(': ')[2]}",
             where=point.value,
             hint="pip install 'flexcell[all]'",
-        ) from error
+        )
+    package = point.dist.name if point.dist is not None else "its package"
+    return RegistryError(str(failure), where=point.value, hint=f"mend or uninstall {package}")

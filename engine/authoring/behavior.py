@@ -20,6 +20,7 @@ from engine.document.meaning import meaning_hash
 from engine.document.structure import require_structure
 from engine.document.yaml_source import Source
 from engine.errors import DocumentError
+from engine.state_catalogue import loaded_class
 
 
 def behavior(
@@ -86,7 +87,14 @@ def _read(source: Source, lowering: Lowering) -> Behavior:
     require_structure(draft)
     references = {**lowering.references, **_referred_files(draft, lowering.references)}
     meanings = {written: target.meaning for written, target in references.items()}
-    return replace(draft, references=references, meaning=meaning_hash(document, meanings))
+    meaning = meaning_hash(document, meanings)
+    return replace(draft, references=references, meaning=meaning, classes=_loaded_classes(draft))
+
+
+def _loaded_classes(draft: Behavior) -> dict[str, type]:
+    """Return the classes of this process that nodes name: whoever makes a behavior here has imported them."""
+    names = (name for _, node in draft.nodes() for name in (node.state, node.behaviour) if name and ":" in name)
+    return {name: found for name in names if (found := loaded_class(name)) is not None}
 
 
 def _referred_files(draft: Behavior, known: Mapping[str, Behavior]) -> dict[str, Behavior]:

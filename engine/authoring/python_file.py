@@ -14,6 +14,7 @@ from engine.cause import cause_of, describe
 from engine.document.behavior import Behavior
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.nearness import near_names
+from engine.type_preparation import prepare_types
 
 
 def is_python_name(name: str) -> bool:
@@ -65,6 +66,7 @@ def _module(file: Path, start: Position) -> ModuleType:
         sys.modules[file.stem] = module
         try:
             loader.exec_module(module)
+            prepare_types()
         except DocumentError:
             del sys.modules[file.stem]
             raise
@@ -72,7 +74,7 @@ def _module(file: Path, start: Position) -> ModuleType:
             del sys.modules[file.stem]
             where = error.where if isinstance(error.where, Position) else _raised_at(error, file)
             raise DocumentError(error.message, where=where, hint=error.hint) from error
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             # The user's file may raise anything; what matters is which of its lines did.
             del sys.modules[file.stem]
             raise DocumentError(describe(cause_of(error)), where=_raised_at(error, file)) from error
@@ -94,7 +96,7 @@ def _is_of(module: ModuleType, file: Path) -> bool:
     return module.__file__ is not None and Path(module.__file__).resolve() == file.resolve()
 
 
-def _raised_at(error: Exception, file: Path) -> Position:
+def _raised_at(error: BaseException, file: Path) -> Position:
     """Return the line of the file that led to the error."""
     if isinstance(error, SyntaxError) and error.filename:
         return Position(file=error.filename, line=error.lineno or 1, column=error.offset or 1)

@@ -36,7 +36,7 @@ def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | 
 
     Args:
         behavior: The behavior as loaded.
-        catalogue: The states by name; `module:Class` names are imported.
+        catalogue: The states by name, and what the project allows; nothing is imported.
         entries: Names, by kind, of the entries that the store will have; by default those that the
             behavior's own cell is seeded with. They are left unchecked where it names no cell.
     """

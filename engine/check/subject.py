@@ -11,12 +11,9 @@ from engine.document.behavior import Behavior
 from engine.document.expression import Template, compile_template
 from engine.document.node import FOREACH_OUTCOMES, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
 from engine.document.signature import StateSignature, read_signature
-from engine.errors import ExpressionError, RegistryError, StateError
-from engine.nearness import near_names
-from engine.registry import state_by_path
-from engine.state import State
+from engine.errors import ExpressionError, FlexcellError, RegistryError, StateError
+from engine.state_catalogue import Catalogue, find_state
 
-Catalogue = Mapping[str, type[State]]
 Given = Mapping[str, Template | ExpressionError]
 _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
 _NOTHING_GIVEN: Given = {}
@@ -55,8 +52,10 @@ class Subject:
     """The nodes directly inside each container, by its path."""
     signatures: Mapping[str, StateSignature]
     """By state name; states that are unknown are absent."""
-    unknown: Mapping[str, str]
+    unknown: Mapping[str, FlexcellError]
     """What is wrong with the states that are absent, by state name."""
+    catalogue: Catalogue
+    """What a document may name."""
     references: Mapping[str, Subject]
     """The behaviors referred to, by the path as written."""
     given: Mapping[str, Given]
@@ -172,7 +171,7 @@ def _make(behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], ma
         return known
     references = {name: _make(other, catalogue, bases, made) for name, other in behavior.references.items()}
     nodes, inside = _placed(behavior)
-    signatures, unknown = _signatures(nodes, catalogue)
+    signatures, unknown = _signatures(behavior, nodes, catalogue)
     outcomes: dict[str, tuple[str, ...]] = {}
     nominal: dict[str, frozenset[str]] = {}
     statuses: dict[str, Statuses] = {}
@@ -183,6 +182,7 @@ def _make(behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], ma
         inside=inside,
         signatures=signatures,
         unknown=unknown,
+        catalogue=catalogue,
         references=references,
         given={
             path: {name: template(value) for name, value in placed.node.parameters.items()}
@@ -226,24 +226,19 @@ def _placed(behavior: Behavior) -> tuple[dict[str, Placed], dict[str, tuple[Plac
     return nodes, {path: tuple(children) for path, children in inside.items()}
 
 
-def _signatures(nodes: Mapping[str, Placed], catalogue: Catalogue) -> tuple[dict[str, StateSignature], dict[str, str]]:
+def _signatures(
+    behavior: Behavior, nodes: Mapping[str, Placed], catalogue: Catalogue
+) -> tuple[dict[str, StateSignature], dict[str, FlexcellError]]:
     signatures: dict[str, StateSignature] = {}
-    unknown: dict[str, str] = {}
+    unknown: dict[str, FlexcellError] = {}
     for placed in nodes.values():
         name = placed.node.state
         if name is None or name in signatures or name in unknown:
             continue
         try:
-            state = catalogue.get(name) or (state_by_path(name) if ":" in name else None)
-            if state is None:
-                unknown[name] = near_names(name, catalogue)
-            else:
-                signatures[name] = read_signature(state)
+            signatures[name] = read_signature(find_state(catalogue, name, behavior.classes))
         except (RegistryError, StateError) as error:
-            unknown[name] = str(error)
-        except Exception as error:
-            # A class of the user's may break in any way when it is imported or described.
-            unknown[name] = f"{type(error).__name__}: {error}"
+            unknown[name] = error
     return signatures, unknown
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 from collections.abc import Iterator
-from typing import Any, cast
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject
+from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
+from engine.state_catalogue import find_behaviour
 
 
 def check_trees(subject: Subject) -> Iterator[Finding]:
@@ -51,25 +51,11 @@ def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
 
 
 def _check_behaviour(subject: Subject, placed: Placed, name: str) -> Iterator[Finding]:
-    module_name, _, class_name = name.partition(":")
     try:
-        base = importlib.import_module("py_trees.behaviour").Behaviour
-        found: Any = getattr(importlib.import_module(module_name), class_name)
-    except Exception as error:
-        # Importing a module of the user's runs it, and it may raise anything.
-        said = f"{type(error).__name__}: {error}"
-        message = f"`{name}` cannot be imported: {said}"
-        hint = "write it as package.module:Class"
-        yield subject.finding("broken-behaviour", message, placed.path, "behaviour", hint=hint)
-        return
-    if not (isinstance(found, type) and issubclass(found, cast("type", base))):
-        message = f"`{name}` is no subclass of py_trees.behaviour.Behaviour"
-        yield subject.finding("broken-behaviour", message, placed.path, "behaviour")
-        return
-    if inspect.isabstract(found):
-        message = f"`{name}` is abstract"
-        hint = "name a subclass that has an `update`"
-        yield subject.finding("broken-behaviour", message, placed.path, "behaviour", hint=hint)
+        found = find_behaviour(subject.catalogue, name, subject.behavior.classes)
+    except RegistryError as error:
+        code = "module-not-allowed" if isinstance(error, ModuleNotAllowed) else "broken-behaviour"
+        yield subject.finding(code, error.message, placed.path, "behaviour", hint=error.hint or "")
         return
     yield from _check_arguments(subject, placed, name, found)
 

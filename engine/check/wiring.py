@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject, targets
 from engine.document.node import Node
+from engine.errors import FlexcellError, ModuleNotAllowed
 from engine.nearness import near_names
 
 
@@ -15,12 +16,19 @@ def check_wiring(subject: Subject) -> Iterator[Finding]:
     for placed in subject.nodes.values():
         node = placed.node
         if node.state is not None and node.state in subject.unknown:
-            hint = subject.unknown[node.state]
-            yield subject.finding("unknown-state", f"there is no state `{node.state}`", placed.path, "state", hint=hint)
+            yield _unknown(subject, placed, node.state, subject.unknown[node.state])
         yield from _check_named_outcomes(subject, placed)
         if node.machine is not None or node.priority is not None:
             yield from _check_machine(subject, placed)
     yield from _check_root(subject)
+
+
+def _unknown(subject: Subject, placed: Placed, name: str, error: FlexcellError) -> Finding:
+    if isinstance(error, ModuleNotAllowed):
+        return subject.finding("module-not-allowed", error.message, placed.path, "state", hint=error.hint or "")
+    message = f"there is no state `{name}`"
+    hint = error.hint or "" if error.message == message else str(error)
+    return subject.finding("unknown-state", message, placed.path, "state", hint=hint)
 
 
 def _check_named_outcomes(subject: Subject, placed: Placed) -> Iterator[Finding]:

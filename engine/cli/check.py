@@ -17,6 +17,7 @@ from engine.cli.findings import as_github, as_json, as_sarif
 from engine.document import load_behavior, load_source
 from engine.document.cell import load_cell
 from engine.document.entries import SECTIONS, load_entries
+from engine.document.project import PROJECT_FILE, load_project
 from engine.errors import DocumentError, Position
 from engine.plan import Catalogue
 from engine.registry import load_states
@@ -49,8 +50,8 @@ def check(
         return
     if not files:
         raise typer.BadParameter("give the documents to check", param_hint="FILES")
-    catalogue = load_states()
-    findings = [finding for file in files for finding in findings_of(file, catalogue, store)]
+    catalogues = {folder: load_states(folder) for folder in dict.fromkeys(file.parent for file in files)}
+    findings = [finding for file in files for finding in findings_of(file, catalogues[file.parent], store)]
     chosen = "json" if json else format_
     if chosen == "json":
         sys.stdout.write(as_json(findings) + "\n")
@@ -74,6 +75,9 @@ def findings_of(file: Path, catalogue: Catalogue, store: str = "") -> tuple[Find
         if is_python_name(str(file)):
             behavior = load_python_behavior(str(file))
             return check_behavior(behavior, catalogue, stored_names(behavior, store) if store else None)
+        if file.name == PROJECT_FILE:
+            load_project(file)
+            return ()
         kind = document_kind(file)
         if kind == "behavior":
             return check_file(file, catalogue, stored_names(load_behavior(file), store) if store else None)

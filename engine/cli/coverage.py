@@ -65,7 +65,7 @@ def collect(
     Runs of other behaviors, and of other versions of this one, are left out of a journal; as a
     file of their own they are refused.
     """
-    catalogue = load_states()
+    catalogue = load_states(behavior)
     found, _ = read_behavior(behavior, catalogue)
     coverage = Coverage(found, catalogue)
     coverage.require_same(to)

@@ -28,7 +28,7 @@ def export(
     """Write a behavior made in Python as YAML. Exit code 2, and nothing written, when it has errors."""
     if not is_python_name(str(behavior)):
         raise DocumentError("this is no Python file", where=str(behavior), hint="give FILE.py:NAME")
-    made, findings = read_behavior(behavior, load_states())
+    made, findings = read_behavior(behavior, load_states(behavior))
     sys.stderr.writelines(f"{finding}\n" for finding in findings)
     if any(finding.severity == "error" for finding in findings):
         raise typer.Exit(ExitCode.BAD_INPUT)

@@ -43,7 +43,8 @@ def replay(
     Exit code 0: everything happened again and nothing else. 4: something differs; the first
     difference is named. 2: a recording, or the behavior, cannot be used.
     """
-    catalogue = load_states()
+    # Not from where a recording lies or what it names: that is of whoever made it.
+    catalogue = load_states(Path.cwd())
     results = [_replayed(name, catalogue, behavior, journal) for name in recordings]
     if junit is not None:
         write_junit(junit, [_suite(*each) for each in zip(recordings, results, strict=True)])

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 import typer
 
+from engine.authoring.python_file import is_python_name, load_python_behavior
 from engine.cell import OpenCell
 from engine.cli.execution import Ended, Order, carry_out
 from engine.cli.exit_code import ExitCode
@@ -26,6 +27,7 @@ from engine.registry import load_states
 from engine.resume import RERUN, NeedsAnswers
 from engine.run import Run
 from engine.skill_port import SkillPort
+from engine.state_catalogue import StateCatalogue
 from engine.supervision import Supervision
 
 
@@ -65,9 +67,9 @@ def resume(
     What had ended is not done again. A state in mid-work follows its `resume` policy; one that asks
     is asked for on the terminal, or must be answered with --answer. Exit codes are those of `run`.
     """
-    catalogue = load_states()
     found = read_run(journal, run)
-    file = behavior or Path(found.origin.behavior)
+    file = behavior or _recorded_file(found)
+    catalogue = _known_states(file, named=behavior is not None)
     plan = read_plan(file, catalogue)
     options = OperatorOptions(
         autonomy=autonomy,
@@ -140,6 +142,24 @@ async def _make(
         supervision=supervision,
         skills=skills,
     )
+
+
+def _recorded_file(found: RecordedRun) -> Path:
+    """Return the behavior file that the journal names; Python is not run because a journal says so."""
+    file = found.origin.behavior
+    if is_python_name(file):
+        hint = f"say that you want it with --behavior {file}"
+        raise ControlError("the run was made by a Python file, which runs when it is read", where=found.id, hint=hint)
+    return Path(file)
+
+
+def _known_states(file: Path, *, named: bool) -> StateCatalogue:
+    """Load the states of the behavior's project, if the user named the file or works in its folder; else those here."""
+    here = Path.cwd()
+    catalogue = load_states(file if named or file.resolve().is_relative_to(here) else here)
+    if not is_python_name(str(file)):
+        return catalogue
+    return catalogue.including(load_python_behavior(str(file)).classes)
 
 
 def _read_cell(file: Path | None, found: RecordedRun) -> Cell | None:

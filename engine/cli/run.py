@@ -108,7 +108,7 @@ def run(
     Exit code 0: its outcome is a success. 1: another outcome. 2: nothing was started.
     3: it ended with an error. 130: interrupted; robots are at rest and the journal is closed.
     """
-    catalogue = load_states()
+    catalogue = load_states(file)
     behavior = read_sound_behavior(file, catalogue)
     plan = new_plan(behavior, catalogue)
     options = OperatorOptions(

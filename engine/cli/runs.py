@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Annotated
 
 import msgspec
@@ -13,6 +14,7 @@ from rich.console import Console
 from rich.table import Column, Table
 
 from engine.cli.run_report import cause_links, print_cause
+from engine.errors import DocumentError
 from engine.event import (
     Cause,
     Commanded,
@@ -25,7 +27,7 @@ from engine.event import (
 )
 from engine.history import History
 from engine.journal import RunRecord, encode_event, list_runs
-from engine.plan import Plan, new_plan
+from engine.plan import new_plan
 from engine.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.resume import read_history
@@ -143,8 +145,15 @@ def _end(found: RecordedRun) -> RunEnded | None:
 def _history(found: RecordedRun) -> History | None:
     """Return where it stood; the behavior it executed is in the journal itself."""
     behavior = found.behavior()
-    plan: Plan | None = new_plan(behavior, load_states()) if behavior is not None else None
-    return read_history(plan, found.id, found.events) if plan is not None else None
+    if behavior is None:
+        return None
+    try:
+        plan = new_plan(behavior, load_states(Path.cwd()))
+    except DocumentError as error:
+        # A run of somebody else's, whose states are not here: its events can be shown all the same.
+        sys.stderr.write(f"flexcell: without userdata: {error}\n")
+        return None
+    return read_history(plan, found.id, found.events)
 
 
 def _print(summary: RunSummary, end: RunEnded | None) -> None:

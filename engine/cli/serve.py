@@ -24,6 +24,7 @@ from engine.journal import Journal
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
 from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
+from engine.state_catalogue import Catalogue
 from engine.stop import StopEndpoint, StopRelay
 from engine.teaching import HelpingHand, teachable
 from engine.watchdog import Watchdog
@@ -59,6 +60,8 @@ def serve(
 ) -> None:
     """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
     loaded = load_cell(cell) if cell is not None else None
+    catalogue = load_states(project)
+    sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
     state.mkdir(parents=True, exist_ok=True)
     recordings = (
         SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
@@ -66,6 +69,7 @@ def serve(
     asyncio.run(
         _serve(
             loaded,
+            catalogue,
             port=port,
             host=host,
             stop_port=stop_port,
@@ -81,6 +85,7 @@ def serve(
 
 async def _serve(
     cell: Cell | None,
+    catalogue: Catalogue,
     *,
     port: int,
     host: str,
@@ -92,7 +97,6 @@ async def _serve(
     open_page: bool,
 ) -> None:
     new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
-    catalogue = load_states()
     server_file = state / SERVER_FILE
 
     def ready(dashboard: Any) -> None:

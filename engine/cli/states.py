@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import Annotated
 
 import msgspec
@@ -12,10 +14,9 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.document.signature import KeySignature, StateSignature, read_signature
-from engine.errors import RegistryError
-from engine.nearness import near_names
 from engine.registry import load_states, state_by_path
 from engine.state import State
+from engine.state_catalogue import Catalogue, find_state
 
 app = typer.Typer(help="Show the states that behaviors can use.", invoke_without_command=True)
 
@@ -27,7 +28,9 @@ def list_states(context: typer.Context, json: AsJson = False) -> None:
     """List all states; `states show NAME` tells all about one."""
     if context.invoked_subcommand is not None:
         return
-    signatures = [read_signature(state) for state in load_states().values()]
+    catalogue = load_states(Path.cwd())
+    sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
+    signatures = _signatures(catalogue)
     if json:
         sys.stdout.write(msgspec.json.encode([_plain(signature) for signature in signatures]).decode() + "\n")
         return
@@ -58,13 +61,16 @@ def show(
             console.print(table)
 
 
+def _signatures(catalogue: Catalogue) -> list[StateSignature]:
+    """Describe every state once, by the name that documents give it."""
+    found = [(name, read_signature(state)) for name, state in catalogue.items()]
+    return [replace(each, name=name) for name, each in found if name == each.name or each.name not in catalogue]
+
+
 def _find(name: str) -> type[State]:
-    if ":" in name:
-        return state_by_path(name)
-    catalogue = load_states()
-    if name not in catalogue:
-        raise RegistryError(f"there is no state {name}", hint=near_names(name, catalogue))
-    return catalogue[name]
+    catalogue = load_states(Path.cwd())
+    # Whoever types the name of a module at the command line wants it imported; no document can.
+    return state_by_path(name) if ":" in name and name not in catalogue else find_state(catalogue, name)
 
 
 def _tables(signature: StateSignature) -> dict[str, list[tuple[str, str, str, str]]]:

@@ -43,6 +43,8 @@ class Behavior:
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
     source: Source = field(repr=False)
+    classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
+    """The classes that Python gave it, by the `module:Class` written for each; a document brings none."""
 
     @property
     def name(self) -> str:

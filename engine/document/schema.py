@@ -13,9 +13,16 @@ from engine.document.cell import CellDocument
 from engine.document.entries import EntriesDocument
 from engine.document.faults import FaultsDocument
 from engine.document.parameter import any_value
+from engine.document.project import ProjectDocument
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
-_MODELS = {"behavior": BehaviorDocument, "cell": CellDocument, "entries": EntriesDocument, "faults": FaultsDocument}
+_MODELS = {
+    "behavior": BehaviorDocument,
+    "cell": CellDocument,
+    "entries": EntriesDocument,
+    "faults": FaultsDocument,
+    "project": ProjectDocument,
+}
 
 
 def schema_texts() -> dict[str, str]:

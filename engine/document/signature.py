@@ -13,6 +13,7 @@ import msgspec
 
 from engine.errors import StateError
 from engine.state import State
+from engine.type_preparation import prepare_type
 
 Schema = Mapping[str, object]
 
@@ -64,6 +65,16 @@ def read_signature(state: type[State]) -> StateSignature:
     Raises:
         StateError: the class breaks the rules of states; names the class and the rule.
     """
+    try:
+        return _describe(state)
+    except StateError:
+        raise
+    except (Exception, SystemExit) as error:
+        # Its annotations and default factories are code of its author, which may raise anything.
+        raise _broken(state, f"describing it raised {type(error).__name__}: {error}", "correct the class") from error
+
+
+def _describe(state: type[State]) -> StateSignature:
     name = state.state_name or f"{state.__module__}:{state.__qualname__}"
     if not state.outcomes:
         raise _broken(state, "it declares no outcomes", "add `outcomes: ClassVar[tuple[str, ...]] = (…)`")
@@ -75,6 +86,7 @@ def read_signature(state: type[State]) -> StateSignature:
             raise _broken(
                 state, f"its `unwritten` names an outcome or key it has not: {outcome}", "correct `unwritten`"
             )
+    prepare_type(state)
     return StateSignature(
         name=name,
         doc=inspect.getdoc(state) or "",

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from engine.check.subject import Catalogue
 from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.errors import StateError
 from engine.library import Library
+from engine.state_catalogue import Catalogue
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,9 +86,11 @@ def state_views(catalogue: Catalogue) -> tuple[StateView, ...]:
     found: list[StateView] = []
     for name in sorted(catalogue):
         try:
-            found.append(_state(read_signature(catalogue[name])))
+            signature = read_signature(catalogue[name])
         except StateError:
             continue
+        if name == signature.name or signature.name not in catalogue:
+            found.append(_state(replace(signature, name=name)))
     return tuple(found)
 
 

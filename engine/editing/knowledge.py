@@ -13,8 +13,7 @@ from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
 from engine.document.yaml_source import load_source
 from engine.editing.outline import MACHINES, Outline, Plain, Spot, leads
-from engine.errors import DocumentError, RegistryError, StateError
-from engine.registry import state_by_path
+from engine.errors import DocumentError, StateError
 
 
 @dataclass(frozen=True)
@@ -49,9 +48,9 @@ class Knowledge:
     def signature(self, state: str) -> StateSignature | None:
         """Return what a state declares; None where there is none, or it is broken."""
         try:
-            found = self.catalogue.get(state) or (state_by_path(state) if ":" in state else None)
+            found = self.catalogue.get(state)
             return read_signature(found) if found is not None else None
-        except (RegistryError, StateError):
+        except StateError:
             return None  # the check says what is wrong with it
 
     def file_of(self, reference: str) -> Path | None:

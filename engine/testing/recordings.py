@@ -35,7 +35,7 @@ class RecordingItem(pytest.Item):
         description = recording.description
         for name, value in (("run", description.run), ("document_sha256", description.document)):
             self.user_properties.append((name, value))
-        report = replay(recording, load_states())
+        report = replay(recording, load_states(self.config.rootpath))
         if report.difference is not None:
             raise ReplayDiffers(report.difference)
 

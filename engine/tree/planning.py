@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import inspect
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
@@ -12,10 +10,11 @@ from py_trees.behaviour import Behaviour as PyTreesBehaviour
 from engine.document import node as nodes
 from engine.document.behavior import Behavior
 from engine.document.expression import Template, compile_template
-from engine.errors import DocumentError, ExpressionError
+from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.leaf import Leaf
 from engine.nearness import near_names
 from engine.node import Node
+from engine.state_catalogue import Catalogue, find_behaviour
 from engine.tree.arguments import takes_name, wrong_arguments
 from engine.tree.part import ForeignPlan, LeafPlan, Part
 from engine.tree.tree import Tree
@@ -23,7 +22,9 @@ from engine.tree.tree import Tree
 PlanNode = Callable[[str, str, nodes.Node], Node]
 
 
-def new_tree(inside: str, node: nodes.Node, *, base: str, behavior: Behavior, plan: PlanNode) -> Tree:
+def new_tree(
+    inside: str, node: nodes.Node, *, base: str, behavior: Behavior, catalogue: Catalogue, plan: PlanNode
+) -> Tree:
     """Plan the tree of a node.
 
     Args:
@@ -31,18 +32,20 @@ def new_tree(inside: str, node: nodes.Node, *, base: str, behavior: Behavior, pl
         node: The node, whose kind is `tree`.
         base: The path of the document's root in the run.
         behavior: The document.
+        catalogue: What it may name.
         plan: Plans a state or container; given its name, its path in the document, and itself.
 
     Raises:
         DocumentError: something in it cannot be run; `where` is the position.
     """
-    return Tree(root=_Planner(base, behavior, plan).children(inside, node)[0])
+    return Tree(root=_Planner(base, behavior, catalogue, plan).children(inside, node)[0])
 
 
 @dataclass(frozen=True)
 class _Planner:
     base: str
     behavior: Behavior
+    catalogue: Catalogue
     plan: PlanNode
 
     def children(self, inside: str, node: nodes.Node) -> tuple[Part, ...]:
@@ -86,19 +89,11 @@ class _Planner:
         )
 
     def _class(self, inside: str, name: str) -> type[PyTreesBehaviour]:
-        where = self.behavior.position(inside, "behaviour")
-        module_name, _, class_name = name.partition(":")
         try:
-            found = getattr(importlib.import_module(module_name), class_name)
-        except (ImportError, AttributeError, ValueError) as error:
-            raise DocumentError(str(error), where=where, hint="write it as package.module:Class") from error
-        if not (isinstance(found, type) and issubclass(found, PyTreesBehaviour)) or inspect.isabstract(found):
-            raise DocumentError(
-                f"`{name}` is not a py_trees behaviour that can be made",
-                where=where,
-                hint="it must be a subclass of py_trees.behaviour.Behaviour with an `update`",
-            )
-        return found
+            return find_behaviour(self.catalogue, name, self.behavior.classes)
+        except RegistryError as error:
+            where = self.behavior.position(inside, "behaviour")
+            raise DocumentError(error.message, where=where, hint=error.hint) from error
 
     def _template(self, inside: str, key: str, value: object) -> Template:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -12,8 +13,10 @@ from engine.cell import OpenCell
 from engine.control import Breakpoint
 from engine.errors import DocumentError, FlexcellError
 from engine.journal import Journal, list_runs
+from engine.registry import load_states
 from engine.session import Session
 from tests.engine.fake_states import CATALOGUE
+from tests.engine.project_folder import ProjectFolder, is_imported
 
 BEHAVIOR = """
 flexcell: 1
@@ -148,3 +151,29 @@ async def test_everything_is_stopped_at_once(project: Path) -> None:
         assert [(await session.wait(run)).status for run in runs] == ["stopped", "stopped"]
         later = await session.start("behaviors/quick.yaml", parameters={}, seed=1)
         assert (await session.wait(later)).outcome == "good"
+
+
+async def test_a_behavior_whose_module_is_not_allowed_or_broken_hurts_no_list_and_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is imported by looking, and the others start."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    folder = ProjectFolder(tmp_path)
+    bad = folder.module("raise SystemExit(3)")
+    folder.allow(bad)
+    folder.behavior("broken", f"{bad}:Nod")
+    folder.behavior("theirs", "this:Zen")
+    folder.behavior("good")
+    with Journal.open(tmp_path / "journal") as journal:
+        async with (
+            OpenCell(None) as cell,
+            Session(cell, project=tmp_path, catalogue=load_states(tmp_path), journal=journal) as session,
+        ):
+            codes = {view.name: [finding.code for finding in view.findings] for view in session.behaviors()}
+            assert codes == {"broken": ["unknown-state"], "theirs": ["module-not-allowed"], "good": []}
+            run_id = await session.start("behaviors/good.yaml", parameters={}, seed=0)
+            assert (await session.wait(run_id)).success
+            for name in ("broken", "theirs"):
+                with pytest.raises(DocumentError):
+                    await session.start(f"behaviors/{name}.yaml", parameters={}, seed=0)
+    assert not is_imported("this")

@@ -120,7 +120,16 @@ CASES: dict[str, list[Case]] = {
             at="arm.Mvoe, with",
             says="did you mean arm.Move",
         ),
-        Case(good=MACHINE, old="arm.Move", new="no.such:State", path="root/go", at="no.such:State,", says="no.such"),
+    ],
+    "module-not-allowed": [
+        Case(
+            good=MACHINE,
+            old="arm.Move",
+            new="no.such:State",
+            path="root/go",
+            at="no.such:State,",
+            says="states: [no.such]",
+        ),
     ],
     "unknown-parameter": [
         Case(

@@ -16,7 +16,7 @@ from tests.engine.check.data_states import CATALOGUE as DATA_STATES
 from tests.engine.check.random_behaviors import behaviors
 
 ROOT = Path(__file__).resolve().parents[3]
-CATALOGUE = {**load_states(), **DATA_STATES}
+CATALOGUE = {**load_states(), **DATA_STATES, "tests.engine.check.data_states:Put": DATA_STATES["data.Put"]}
 SHIPPED = [
     cast("dict[str, Any]", load_source(file).data)
     for file in sorted((ROOT / "behaviors").rglob("*.yaml"))

@@ -90,11 +90,11 @@ def test_an_end_that_never_occurs_need_not_be_connected() -> None:
         ("py_trees.behaviours:TickCounter", "duration: 2", "missing-parameter"),
         ("py_trees.behaviours:TickCounter", "duration: 2, completion_status: SUCCESS, x: 1", "unknown-parameter"),
         ("py_trees.behaviours:Nothing", "", "broken-behaviour"),
-        ("no.such.module:Thing", "", "broken-behaviour"),
-        ("pathlib:Path", "", "broken-behaviour"),
-        ("py_trees.behaviour:Behaviour", "", "broken-behaviour"),
-        ("py_trees", "", "broken-behaviour"),
-        (":", "", "broken-behaviour"),
+        ("no.such.module:Thing", "", "module-not-allowed"),
+        ("pathlib:Path", "", "module-not-allowed"),
+        ("py_trees.behaviour:Behaviour", "", "module-not-allowed"),
+        ("py_trees", "", "module-not-allowed"),
+        (":", "", "module-not-allowed"),
     ],
 )
 def test_a_py_trees_class_must_be_there_and_take_what_it_is_given(name: str, given: str, expected: str | None) -> None:

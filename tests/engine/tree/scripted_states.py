@@ -6,7 +6,9 @@ import asyncio
 from typing import ClassVar
 
 from engine.state import Context, Outcome, State
+from engine.state_catalogue import StateCatalogue
 from tests.engine.fake_states import CATALOGUE as FAKE_STATES
+from tests.engine.tree import foreign_behaviours
 
 COUNTS: dict[str, int] = {}
 """Activations so far, by path; cleared by `run_tree`."""
@@ -49,4 +51,6 @@ class Act(Check, frozen=True, kw_only=True):
         return (self.robot,) if self.robot else ()
 
 
-CATALOGUE: dict[str, type[State]] = {**FAKE_STATES, "test.Check": Check, "test.Act": Act}
+CATALOGUE = StateCatalogue(
+    {**FAKE_STATES, "test.Check": Check, "test.Act": Act}, modules={foreign_behaviours.__name__: foreign_behaviours}
+)

@@ -176,9 +176,10 @@ def test_nothing_stays_on_the_common_blackboard() -> None:
 @pytest.mark.parametrize(
     ("tree", "message"),
     [
-        (f"behaviour: {HERE}:Missing", "has no attribute 'Missing'"),
-        ("behaviour: nowhere.at.all:Thing", "No module named 'nowhere'"),
-        ("behaviour: json:loads", "is not a py_trees behaviour that can be made"),
+        (f"behaviour: {HERE}:Missing", "has no `Missing`"),
+        ("behaviour: nowhere.at.all:Thing", "does not allow documents to name the module `nowhere.at.all`"),
+        ("behaviour: json:loads", "does not allow documents to name the module `json`"),
+        (f"behaviour: {HERE}:CALLS", "is not a py_trees behaviour that can be made"),
         (f"behaviour: {HERE}:Abstract", "is not a py_trees behaviour that can be made"),
         (f"{{behaviour: '{HERE}:Counter', with: {{limits: 3}}}}", "Counter takes no argument `limits`"),
         (f"behaviour: {HERE}:Counter", "Counter needs the argument `limit`"),

@@ -1,0 +1,83 @@
+"""Project files: which Python modules the documents of a folder may name.
+
+    flexcell: 1
+    states: [my_cell.settle, my_cell.inspection]
+
+`flexcell.yaml` stands in the project folder, beside `behaviors/`. Modules in that folder can be
+imported. Nothing else makes flexcell import a module: neither behaviors nor recordings nor journals.
+"""
+
+from __future__ import annotations
+
+import stat
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+from msgspec import Meta
+
+from engine.document.conversion import Strict, convert
+from engine.document.yaml_source import Source, load_source
+from engine.errors import Position
+
+PROJECT_FILE = "flexcell.yaml"
+
+ModuleName = Annotated[
+    str,
+    Meta(
+        pattern=r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$",
+        max_length=256,
+        description="A Python module such as `my_cell.settle`, without a class",
+    ),
+]
+
+
+class ProjectDocument(Strict, frozen=True, kw_only=True):
+    """A project as written. `states` are the modules whose classes documents may name as `module:Class`."""
+
+    flexcell: Literal[1]
+    states: Annotated[tuple[ModuleName, ...], Meta(max_length=1000)] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Project:
+    """A project document with the file it came from."""
+
+    document: ProjectDocument
+    file: Path
+    source: Source = field(repr=False)
+
+    @property
+    def folder(self) -> Path:
+        """The project folder; modules in it can be imported."""
+        return self.file.parent
+
+    def position(self, index: int) -> Position:
+        """Return where a module of `states` stands."""
+        return self.source.position(("states", index))
+
+
+def load_project(file: Path) -> Project:
+    """Read a project file.
+
+    Raises:
+        DocumentError: it cannot be read or is no valid project file; `where` is the position.
+    """
+    source = load_source(file)
+    return Project(document=convert(source, ProjectDocument), file=file.resolve(), source=source)
+
+
+def find_project(start: Path) -> Project | None:
+    """Read the project file of the folder `start` (or of the file's folder), or of the nearest one around it.
+
+    A file in a folder that everybody may write to, such as `/tmp`, is nobody's project and left out.
+
+    Raises:
+        DocumentError: there is one that is not valid.
+    """
+    here = start.resolve()
+    for folder in (here, *here.parents):
+        file = folder / PROJECT_FILE
+        if file.is_file() and not folder.stat().st_mode & stat.S_IWOTH:
+            return load_project(file)
+    return None

@@ -1,0 +1,163 @@
+"""The classes that documents may name; looking one up imports nothing.
+
+A catalogue is made once, at the start of a command or server, by `engine.registry.load_states`. Any
+mapping of names to states serves as one where no modules are allowed.
+"""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType, ModuleType
+
+import py_trees.behaviours
+import py_trees.timers
+from py_trees.behaviour import Behaviour
+
+from engine.document.project import PROJECT_FILE
+from engine.errors import ModuleNotAllowed, RegistryError
+from engine.nearness import near_names
+from engine.state import State
+
+Catalogue = Mapping[str, type[State]]
+
+_NO_CLASSES: Mapping[str, type] = MappingProxyType({})
+_PY_TREES: Mapping[str, ModuleType] = {module.__name__: module for module in (py_trees.behaviours, py_trees.timers)}
+"""Modules of py_trees' own, whose behaviours every document may name."""
+
+
+class StateCatalogue(Mapping[str, type[State]]):
+    """The states by name: registered ones, and those of the modules that the project allows.
+
+    Args:
+        states: By registered name, and as `module:Class`.
+        modules: The modules that the project allows, loaded.
+        broken: Why a name, a module or an entry point is not there.
+        project_file: Where modules are allowed; None where there is no project file yet.
+    """
+
+    def __init__(
+        self,
+        states: Catalogue,
+        *,
+        modules: Mapping[str, ModuleType] | None = None,
+        broken: Mapping[str, RegistryError] | None = None,
+        project_file: str | None = None,
+    ) -> None:
+        self._states = dict(sorted(states.items()))
+        self.modules: Mapping[str, ModuleType] = dict(modules or {})
+        self.broken: Mapping[str, RegistryError] = dict(broken or {})
+        self._project_file = project_file
+
+    def __getitem__(self, name: str) -> type[State]:
+        return self._states[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._states)
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def including(self, classes: Mapping[str, type]) -> StateCatalogue:
+        """Return a catalogue with these states besides, such as those that a Python file gave its behavior."""
+        states = {name: kind for name, kind in classes.items() if issubclass(kind, State)}
+        return StateCatalogue(
+            {**self._states, **states}, modules=self.modules, broken=self.broken, project_file=self._project_file
+        )
+
+    def missing(self, name: str) -> RegistryError:
+        """Return why there is no state of this name, and what can be done about it."""
+        module = name.rpartition(":")[0]
+        known = self.broken.get(name) or self.broken.get(module)
+        if known is not None:
+            return known
+        if module and module not in self.modules:
+            return not_allowed(module, self._project_file)
+        missing = "; ".join(map(str, self.broken.values()))
+        hint = near_names(name, self._states)
+        return RegistryError(f"there is no state `{name}`", hint=f"{hint}; {missing}" if missing else hint)
+
+    def module(self, name: str) -> ModuleType:
+        """Return a module that documents may name; raises RegistryError where it is not allowed, or broken."""
+        found = self.modules.get(name)
+        if found is None:
+            raise self.broken.get(name) or not_allowed(name, self._project_file)
+        return found
+
+
+def not_allowed(module: str, project_file: str | None = None) -> ModuleNotAllowed:
+    """Return the refusal of a module that a document names and no project file allows."""
+    if not module:
+        return ModuleNotAllowed("this names no module", hint="write it as package.module:Class")
+    if project_file is None:
+        advice = f"write `flexcell: 1` and `states: [{module}]` into {PROJECT_FILE} in your project folder"
+    else:
+        advice = f"add `{module}` to `states` in {project_file}"
+    return ModuleNotAllowed(f"the project does not allow documents to name the module `{module}`", hint=advice)
+
+
+def loaded_class(name: str) -> type | None:
+    """Return the class `module:Class` of a module that this process has loaded; imports nothing."""
+    module_name, _, class_name = name.partition(":")
+    module = sys.modules.get(module_name)
+    found = vars(module).get(class_name) if module is not None else None
+    return found if isinstance(found, type) else None
+
+
+def find_state(catalogue: Catalogue, name: str, given: Mapping[str, type] = _NO_CLASSES) -> type[State]:
+    """Return the state that a document names.
+
+    Args:
+        catalogue: The states by name.
+        name: As written.
+        given: The classes that the behavior was made with in Python.
+
+    Raises:
+        ModuleNotAllowed: it is in a module that the project does not allow.
+        RegistryError: there is none of this name, or what would bring it could not be loaded.
+    """
+    found = given.get(name) or catalogue.get(name)
+    if found is None:
+        raise _missing(catalogue, name)
+    if not issubclass(found, State):
+        raise RegistryError("this is not a subclass of engine.state.State", where=name)
+    return found
+
+
+def find_behaviour(catalogue: Catalogue, name: str, given: Mapping[str, type] = _NO_CLASSES) -> type[Behaviour]:
+    """Return the py_trees behaviour that a document names; arguments and errors as in `find_state`."""
+    module_name, _, class_name = name.partition(":")
+    found: object = given.get(name)
+    if found is None:
+        module = _module(catalogue, module_name)
+        if class_name not in vars(module):
+            known = [each for each, value in vars(module).items() if _is_behaviour(value)]
+            raise RegistryError(f"`{module_name}` has no `{class_name}`", hint=near_names(class_name, known))
+        found = vars(module)[class_name]
+    if not (isinstance(found, type) and issubclass(found, Behaviour)) or inspect.isabstract(found):
+        raise RegistryError(
+            f"`{name}` is not a py_trees behaviour that can be made",
+            hint="it must be a subclass of py_trees.behaviour.Behaviour with an `update`",
+        )
+    return found
+
+
+def _is_behaviour(value: object) -> bool:
+    return isinstance(value, type) and issubclass(value, Behaviour) and not inspect.isabstract(value)
+
+
+def _module(catalogue: Catalogue, name: str) -> ModuleType:
+    if name in _PY_TREES:
+        return _PY_TREES[name]
+    if isinstance(catalogue, StateCatalogue):
+        return catalogue.module(name)
+    raise not_allowed(name)
+
+
+def _missing(catalogue: Catalogue, name: str) -> RegistryError:
+    if isinstance(catalogue, StateCatalogue):
+        return catalogue.missing(name)
+    if ":" in name:
+        return not_allowed(name.rpartition(":")[0])
+    return RegistryError(f"there is no state `{name}`", hint=near_names(name, catalogue))

@@ -1,0 +1,27 @@
+"""What loaded code raises is kept, but the operator's Ctrl-C is none of it."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+
+from engine.contained_load import LoadFailure, load_contained
+
+
+def leave() -> None:
+    raise KeyboardInterrupt
+
+
+def test_what_is_raised_comes_back_with_its_line() -> None:
+    failure = load_contained("mine", leave)
+    assert isinstance(failure, LoadFailure)
+    assert str(failure).startswith(f"loading `mine` raised KeyboardInterrupt at {__file__}:")
+    assert load_contained("mine", lambda: 7) == 7
+
+
+def test_ctrl_c_passes() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        load_contained("slow", lambda: signal.raise_signal(signal.SIGINT))
+    assert signal.getsignal(signal.SIGINT) is before
