@@ -25,6 +25,26 @@ class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
     token: str
     pid: int
 
+    @classmethod
+    def read(cls, folder: Path) -> ServerRecord:
+        """Return the record of the server that keeps its state in `folder`.
+
+        Raises:
+            BusError: no server runs there.
+        """
+        file = server_file(folder)
+        try:
+            return msgspec.json.decode(file.read_bytes(), type=ServerRecord)
+        except (OSError, msgspec.DecodeError) as error:
+            raise BusError(
+                "no server runs here", where=file, hint="start one with `flexcell serve`, or give --cell FILE"
+            ) from error
+
+
+def server_file(folder: Path) -> Path:
+    """Return where the server of a state folder says how it is reached."""
+    return folder / SERVER_FILE
+
 
 class _Failure(msgspec.Struct):
     message: str = ""
@@ -52,7 +72,7 @@ class RemoteBus:
         Raises:
             BusError: no server runs there.
         """
-        record = _record(folder)
+        record = ServerRecord.read(folder)
         headers = {"Authorization": f"Bearer {record.token}"}
         async with httpx.AsyncClient(base_url=record.url, headers=headers, timeout=10.0, trust_env=False) as client:
             try:
@@ -65,14 +85,14 @@ class RemoteBus:
     async def listing(self) -> tuple[BusEntry, ...]:
         """Return everything on the bus."""
         response = await self._client.get("/api/v1/bus")
-        return msgspec.json.decode(_verified(response).content, type=tuple[BusEntry, ...])
+        return msgspec.json.decode(verified(response).content, type=tuple[BusEntry, ...])
 
     async def echo(self, topic: str) -> AsyncGenerator[str, None]:
         """Go through the messages of a topic as JSON, the latest one first."""
         async with self._client.stream("GET", "/api/v1/bus/echo", params={"topic": topic}, timeout=None) as response:
             if not response.is_success:
                 await response.aread()
-            _verified(response)
+            verified(response)
             async for line in response.aiter_lines():
                 if line:
                     yield line
@@ -80,32 +100,23 @@ class RemoteBus:
     async def publish(self, topic: str, message: object) -> None:
         """Publish a message on a topic that takes commands."""
         body = {"topic": topic, "message": message}
-        _verified(await self._client.post("/api/v1/bus/publish", json=body))
+        verified(await self._client.post("/api/v1/bus/publish", json=body))
 
     async def call(self, address: str, request: object) -> str:
         """Ask a service; returns its answer as JSON."""
         body = {"address": address, "request": request}
-        return _verified(await self._client.post("/api/v1/bus/call", json=body)).text
+        return verified(await self._client.post("/api/v1/bus/call", json=body)).text
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
         """Send a goal and wait for its end; the server cancels it when this connection is lost."""
         body = {"address": address, "request": goal}
-        response = _verified(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
+        response = verified(await self._client.post("/api/v1/bus/goal", json=body, timeout=None))
         end = msgspec.json.decode(response.content, type=_End)
         return GoalEnd(GoalStatus(end.status), end.result, end.cause)
 
 
-def _record(folder: Path) -> ServerRecord:
-    file = folder / SERVER_FILE
-    try:
-        return msgspec.json.decode(file.read_bytes(), type=ServerRecord)
-    except (OSError, msgspec.DecodeError) as error:
-        raise BusError(
-            "no server runs here", where=file, hint="start one with `flexcell serve`, or give --cell FILE"
-        ) from error
-
-
-def _verified(response: httpx.Response) -> httpx.Response:
+def verified(response: httpx.Response) -> httpx.Response:
+    """Return an answer of the server, or raise what it refused as `BusError`."""
     if response.is_success:
         return response
     try:

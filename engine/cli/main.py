@@ -11,7 +11,22 @@ from typing import Annotated
 
 import typer
 
-from engine.cli import bus, check, coverage, export, replay, resume, run, runs, schema, serve, states, store, teach
+from engine.cli import (
+    bus,
+    check,
+    coverage,
+    export,
+    login,
+    replay,
+    resume,
+    run,
+    runs,
+    schema,
+    serve,
+    states,
+    store,
+    teach,
+)
 from engine.cli.exit_code import ExitCode
 from engine.errors import FlexcellError
 
@@ -28,6 +43,7 @@ app.command("check")(check.check)
 app.command("replay")(replay.replay)
 app.command("export")(export.export)
 app.command("serve")(serve.serve)
+app.command("login")(login.login)
 app.add_typer(coverage.app, name="coverage")
 app.add_typer(states.app, name="states")
 app.add_typer(store.app, name="store")

@@ -289,7 +289,7 @@ async def test_without_a_token_and_from_other_pages_nothing_is_answered(client: 
     bare.headers.pop("Authorization")
     for path in (AT, f"{AT}/versions", "/catalogue"):
         assert (await bare.get(path)).status_code == 401
-    cookie = {"Cookie": f"flexcell_session_8642={client.access.session('operator')}"}
+    cookie = {"Cookie": f"flexcell_session_8642={client.sessions.begin('operator')}"}
     evil = {**cookie, "Origin": "http://evil.example"}
     assert (await bare.put(AT, json={"text": SHIFT, "base_hash": "0" * 64}, headers=evil)).status_code == 403
     assert (await bare.get(AT, headers={**cookie, "Host": "evil.example"})).status_code == 421

@@ -119,7 +119,7 @@ def test_new_keys_of_the_server_ask_for_a_new_log_in(visit: Visit, site: Site) -
         page.get_by_label("Token").fill("wrong")
         page.get_by_role("button", name="Log in").click()
         expect(page.get_by_role("alert")).to_have_text("That token is not valid for this server.")
-        page.get_by_label("Token").fill(site.running.login_url.partition("t=")[2])
+        page.get_by_label("Token").fill(site.running.new_login_url().partition("t=")[2])
         page.get_by_role("button", name="Log in").click()
         expect(page.locator(".connection")).to_have_text("Live")
 
@@ -221,7 +221,7 @@ def test_the_cell_is_drawn_in_three_dimensions(visit: Visit, tmp_path: Path, loo
     with Site(host=loopback, folder=folder, cell_view=True) as site:
         context = browser.new_context(locale="en-US", viewport={"width": 900, "height": 600})
         page = context.new_page()
-        page.goto(site.running.login_url)
+        page.goto(site.running.new_login_url())
         cell = page.frame_locator("iframe[title='3D view of the cell']")
         drawn = cell.locator("canvas[data-engine]")
         expect(drawn).to_be_visible(timeout=GUARD_MS)
