@@ -11,7 +11,7 @@ from collections.abc import Callable
 from editor_web.connection import WaitingConnections
 
 _BACKLOG = 256
-_RETRY_S = 0.5
+RETRY_S = 0.5
 _LOG_PERIOD_S = 60.0
 _log = logging.getLogger("flexcell.server")
 
@@ -91,7 +91,7 @@ class Acceptor:
     async def _make_room(self, problem: str) -> None:
         self._tell(problem)
         # Closing takes a round of the loop; where nobody makes room, only time does.
-        await asyncio.sleep(0 if self._waiting.close_longest() else _RETRY_S)
+        await asyncio.sleep(0 if self._waiting.close_longest() else RETRY_S)
 
     def _tell(self, problem: str) -> None:
         now_s = time.monotonic()

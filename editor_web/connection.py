@@ -18,7 +18,7 @@ from editor_web import bodies
 HEAD_LIMIT_S = 10.0
 WRITE_LIMIT_S = 30.0
 """A peer that takes nothing of an answer for longer is gone."""
-_BODY_GRACE_S = 1.0
+BODY_GRACE_S = 1.0
 _CLOSE_GRACE_S = 1.0
 _BAD_HANDSHAKE = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 _INVALID_TEXT = 1007
@@ -124,7 +124,7 @@ class TimedConnection(H11Protocol):
             self._stop_timer()
             self._timed_state = owed
             if owed is not None:
-                limit_s = HEAD_LIMIT_S if owed is h11.IDLE else bodies.BODY_LIMIT_S + _BODY_GRACE_S
+                limit_s = HEAD_LIMIT_S if owed is h11.IDLE else bodies.BODY_LIMIT_S + BODY_GRACE_S
                 self._timer = self.loop.call_later(limit_s, self.transport.close)
 
     @property
@@ -164,12 +164,16 @@ class PageSocket(WebSocketsSansIOProtocol):
                 return
         super().send_receive_event_to_app()
 
-    def handle_parser_exception(self) -> None:
-        """Close with the code of what is wrong; a handshake that is none has no such code."""
-        if self.conn.close_sent is None:
+    def data_received(self, data: bytes) -> None:
+        """Take what came; uvicorn itself would wait for ever where the handshake is none."""
+        super().data_received(data)
+        if not self.handshake_initiated and self.conn.handshake_exc is not None:
             self.transport.write(_BAD_HANDSHAKE)
             self.transport.close()
-        elif not self.close_sent:
+
+    def handle_parser_exception(self) -> None:
+        """Close with the code of what is wrong, once."""
+        if not self.close_sent:
             super().handle_parser_exception()
             self._abort_soon()
 

@@ -14,6 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from http.cookies import CookieError, SimpleCookie
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from editor_web.access import OPERATOR, Access, AttemptLimit, Role
@@ -111,8 +112,12 @@ class Gate:
             receive = while_logged_in(receive, send, self._sessions, found.session, kind=scope["type"])
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
-        else:
+            return
+        try:
             await self._app(scope, bounded(receive), _with_headers(self._headers(scope), send))
+        except ClientDisconnect:
+            # Whoever goes in the middle of a request wants no answer; that is no fault of ours to be logged.
+            return
 
     async def _refuse(self, scope: Scope, receive: Receive, send: Send, refusal: Refusal) -> None:
         if scope["type"] == "websocket":
