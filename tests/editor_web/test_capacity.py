@@ -15,10 +15,13 @@ def limits(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Soft and hard limit of a process with 20 open files."""
     pair = [1024, 4096]
 
+    def getrlimit(_: int) -> tuple[int, int]:
+        return pair[0], pair[1]
+
     def setrlimit(_: int, new: tuple[int, int]) -> None:
         pair[:] = new
 
-    monkeypatch.setattr(resource, "getrlimit", lambda _: tuple(pair))
+    monkeypatch.setattr(resource, "getrlimit", getrlimit)
     monkeypatch.setattr(resource, "setrlimit", setrlimit)
     monkeypatch.setattr(capacity, "_open_descriptors", lambda: 20)
     return pair

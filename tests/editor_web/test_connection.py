@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from collections.abc import AsyncGenerator
+from contextlib import asynccontextmanager
 
 import pytest
 
@@ -25,15 +27,16 @@ class RawPeer:
         self._loop = asyncio.get_running_loop()
 
     @classmethod
-    async def connect(cls, served: Served, *, buffer: int = 0) -> RawPeer:
+    @asynccontextmanager
+    async def connected(cls, served: Served, *, buffer: int = 0) -> AsyncGenerator[RawPeer]:
         """Connect; with `buffer` bytes for what comes, where given."""
         host, port = served.origin.removeprefix("http://").split(":")
-        wire = socket.socket()
-        wire.setblocking(False)
-        if buffer:
-            wire.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
-        await asyncio.get_running_loop().sock_connect(wire, (host, int(port)))
-        return cls(wire)
+        with socket.socket() as wire:
+            wire.setblocking(False)
+            if buffer:
+                wire.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer)
+            await asyncio.get_running_loop().sock_connect(wire, (host, int(port)))
+            yield cls(wire)
 
     async def send(self, text: str) -> None:
         """Send it."""
@@ -49,7 +52,6 @@ class RawPeer:
                     parts.append(part)
             except ConnectionResetError:
                 pass  # it was closed on what we had sent
-        self._wire.close()
         return b"".join(parts)
 
     async def some(self) -> bytes:
@@ -70,8 +72,7 @@ async def test_a_body_that_drips_ends_also_where_nobody_reads_it(
     """Refused at the gate or read by a route: each byte prolongs nothing."""
     monkeypatch.setattr(bodies, "BODY_LIMIT_S", 0.3)
     monkeypatch.setattr(connection, "BODY_GRACE_S", 0.1)
-    async with serve() as served:
-        peer = await RawPeer.connect(served)
+    async with serve() as served, RawPeer.connected(served) as peer:
         await peer.send(head(served, f"POST {path} HTTP/1.1", f"Origin: {served.origin}", "Content-Length: 1000"))
         dripping = asyncio.create_task(drip(peer))
         answer = await peer.all()
@@ -99,8 +100,7 @@ async def test_a_websocket_that_is_silent_is_closed(
     """One that answers no ping of the protocol, whatever it is for; it does not even take what it is sent."""
     monkeypatch.setattr(server, "PING_S", 0.2)
     monkeypatch.setattr(server, "SILENCE_S", 0.5)
-    async with serve(cell_view=path.startswith("/cell/")) as served:
-        peer = await RawPeer.connect(served)
+    async with serve(cell_view=path.startswith("/cell/")) as served, RawPeer.connected(served) as peer:
         cookie = f"Cookie: {served.cookie['Cookie']}"
         await peer.send(
             head(served, f"GET {path} HTTP/1.1", f"Origin: {served.origin}", cookie, (UPGRADE + VISER + KEY).strip())
@@ -113,8 +113,7 @@ async def test_a_websocket_that_is_silent_is_closed(
 async def test_a_peer_that_takes_no_answer_is_closed(serve: Serve, monkeypatch: pytest.MonkeyPatch) -> None:
     """It asks again and again and reads nothing, which needs no token."""
     monkeypatch.setattr(connection, "WRITE_LIMIT_S", 0.3)
-    async with serve() as served:
-        peer = await RawPeer.connect(served, buffer=4096)
+    async with serve() as served, RawPeer.connected(served, buffer=4096) as peer:
         question = head(served, "GET /login HTTP/1.1") * 200
         with pytest.raises(ConnectionError):
             await flood(peer, question)
@@ -146,8 +145,7 @@ async def test_a_handshake_that_is_none_is_refused(
     serve: Serve, line: str, lines: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Before anybody is asked who they are; without a traceback."""
-    async with serve() as served:
-        peer = await RawPeer.connect(served)
+    async with serve() as served, RawPeer.connected(served) as peer:
         await peer.send(head(served, line, (UPGRADE + lines).strip()))
         status = int((await peer.all()).split(b" ", 2)[1])
         assert 400 <= status < 500

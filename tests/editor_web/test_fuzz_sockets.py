@@ -34,9 +34,9 @@ JSON_PATHS = PATHS[:5]
 DEEP = ("[" * 100_000, '{"k":' * 50_000, '{"k":"look","fields":' + "[" * 100_000)
 KINDS = ("watch", "operate", "show", "pong", "look", "jog", "go", "rest", "button", "take", "held")
 FIELDS = ("run", "page", "groups", "number", "fields", "topic", "arm", "velocity", "time_s", "space", "axes", "place")
-VALUES: tuple[object, ...] = (
+VALUES: list[object] = [
     None, True, -1, 2**70, 1e308, "", "\0", "\ud800", "x" * 10_000, [], [[]], {}, {"__proto__": 1}, [1] * 1000,
-)  # fmt: skip
+]  # fmt: skip
 # What a page that is at fault is told: refused, too large, no text, or that it may not be here.
 CODES = {1002, 1003, 1007, REFUSED, 1009, 1013}
 

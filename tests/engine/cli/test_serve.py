@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-import re
 import resource
 import socket
 from pathlib import Path
 
 import httpx
+import pytest
 
 from engine.bus.remote import ServerRecord
+from engine.cli.login import login
+from engine.cli.serve import serve
+from engine.errors import BusError, FlexcellError
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import started
 
@@ -41,17 +44,16 @@ def test_one_server_keeps_the_folder_and_prints_links_that_log_in_once(tmp_path:
 
 
 def test_logging_in_where_no_server_runs_says_so(tmp_path: Path) -> None:
-    """Exit code 2, and how to start one."""
-    said = flexcell("login", cwd=tmp_path)
-    assert (said.code, "no server runs here" in said.err) == (2, True)
+    """And how to start one."""
+    with pytest.raises(BusError, match=r"no server runs here.*flexcell serve"):
+        login(state=tmp_path)
 
 
 def test_a_state_folder_that_cannot_be_written_is_told_at_the_start(tmp_path: Path) -> None:
-    """Path and what to do, exit code 2."""
+    """Before anything is opened: path and what to do."""
     (tmp_path / "file").write_text("")
-    said = flexcell("serve", "--state", "file/state", cwd=tmp_path)
-    assert said.code == 2
-    assert re.search(r"file/state: the state folder cannot be written: .*--state", said.err)
+    with pytest.raises(FlexcellError, match=r"file/state: the state folder cannot be written: .*--state"):
+        serve(state=tmp_path / "file" / "state")
 
 
 def test_a_flood_of_connections_stops_no_stop_and_writes_no_log(tmp_path: Path) -> None:
@@ -66,6 +68,7 @@ def test_a_flood_of_connections_stops_no_stop_and_writes_no_log(tmp_path: Path) 
         answer = httpx.post(
             f"{record.url}api/v1/cell/stop",
             headers={"Authorization": f"Bearer {record.token}"},
+            json={},
             trust_env=False,
             timeout=LIMIT_S,
         )
