@@ -1,4 +1,4 @@
-"""Who may enter: the tokens, the session cookie made from them, and the limit on wrong guesses."""
+"""Who may enter: the permanent tokens of a server, and the limit on wrong ones."""
 
 from __future__ import annotations
 
@@ -6,14 +6,18 @@ import hashlib
 import hmac
 import os
 import secrets
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Final, Literal
 
 from engine.errors import FlexcellError
 
-OPERATOR = "operator"
-VIEWER = "viewer"
+Role = Literal["operator", "viewer"]
+OPERATOR: Final = "operator"
+VIEWER: Final = "viewer"
+_MAX_PEERS = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,22 +27,17 @@ class Access:
     operator: str
     viewer: str
 
-    def role_of_token(self, token: str) -> str | None:
+    def role_of_token(self, token: str) -> Role | None:
         """Return the role a token opens, or None."""
         return self._match(token, {self.operator: OPERATOR, self.viewer: VIEWER})
 
-    def role_of_session(self, session: str) -> str | None:
-        """Return the role of a session cookie's value, or None."""
-        return self._match(session, {self.session(OPERATOR): OPERATOR, self.session(VIEWER): VIEWER})
-
-    def session(self, role: str) -> str:
-        """Return the cookie value of a role; it outlives a restart, and ends when the token file is replaced."""
-        token = self.operator if role == OPERATOR else self.viewer
-        return hmac.new(token.encode(), f"flexcell session {role}".encode(), hashlib.sha256).hexdigest()
+    def fingerprint(self) -> str:
+        """Return a hash of both tokens; sessions that were made under other tokens end."""
+        return hashlib.sha256(f"{self.operator} {self.viewer}".encode()).hexdigest()
 
     @staticmethod
-    def _match(given: str, known: dict[str, str]) -> str | None:
-        found = None
+    def _match(given: str, known: dict[str, Role]) -> Role | None:
+        found: Role | None = None
         for secret, role in known.items():
             # Every secret is compared, so the time taken says nothing.
             if hmac.compare_digest(secret.encode(), given.encode("utf-8", "surrogateescape")):
@@ -78,25 +77,27 @@ def _create(file: Path) -> None:
 
 @dataclass(kw_only=True)
 class AttemptLimit:
-    """Allows `burst` wrong log-ins at once and one more every `refill_s` seconds."""
+    """Counts wrong tokens of each peer: `burst` at once, then one every `refill_s` seconds.
+
+    It is asked only about tokens that are wrong: all programs of this machine share one address, so what
+    one of them does must not refuse the right token of another.
+    """
 
     now_s: Callable[[], float]
     burst: int = 10
     refill_s: float = 6.0
-    _spent: float = field(default=0.0, init=False)
-    _since_s: float = field(default=0.0, init=False)
+    _attempts: OrderedDict[str, tuple[float, float]] = field(
+        default_factory=OrderedDict[str, tuple[float, float]], init=False
+    )
 
-    def wait_s(self) -> float:
-        """Return how long the next attempt has to wait; 0 when it may come now."""
-        self._refill()
-        return max(0.0, (self._spent + 1.0 - self.burst) * self.refill_s)
-
-    def failed(self) -> None:
-        """Count one wrong attempt."""
-        self._refill()
-        self._spent += 1.0
-
-    def _refill(self) -> None:
+    def failed(self, peer: str) -> float:
+        """Count one wrong token of a peer and return the seconds it has to wait; 0 within the burst."""
         now_s = self.now_s()
-        self._spent = max(0.0, self._spent - (now_s - self._since_s) / self.refill_s)
-        self._since_s = now_s
+        count, since_s = self._attempts.pop(peer, (0.0, now_s))
+        left = max(0.0, count - (now_s - since_s) / self.refill_s)
+        wait_s = max(0.0, (left + 1.0 - self.burst) * self.refill_s)
+        # What comes too early counts no further, or a busy peer would wait for ever.
+        self._attempts[peer] = (left if wait_s > 0 else left + 1.0, now_s)
+        while len(self._attempts) > _MAX_PEERS:
+            self._attempts.popitem(last=False)
+        return wait_s

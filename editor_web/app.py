@@ -19,6 +19,7 @@ from starlette.types import ASGIApp
 
 from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
+from editor_web.capacity import MAX_CONNECTIONS
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
 from editor_web.past import Pasts
@@ -46,6 +47,7 @@ from editor_web.routes import (
 )
 from editor_web.routes.services import Services
 from editor_web.security import Gate
+from editor_web.sessions import LoginSessions
 from editor_web.teaching.jogging import Jogger
 from editor_web.wire import AskBody, ErrorBody, QuestionBody
 from engine.errors import ControlError, FlexcellError
@@ -55,7 +57,7 @@ from engine.stop import StopEndpoint
 STATIC = Path(__file__).parent / "static"
 # Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none.
 _REFUSALS: dict[int | str, dict[str, Any]] = {
-    status: {"model": ErrorBody} for status in (400, 401, 403, 404, 408, 413, 421, 422, 429)
+    status: {"model": ErrorBody} for status in (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503)
 }
 
 
@@ -68,6 +70,8 @@ def new_app(
     cell_view: CellView | None = None,
     static: Path = STATIC,
     stop: StopEndpoint | None = None,
+    sessions: LoginSessions | None = None,
+    capacity: int = MAX_CONNECTIONS,
 ) -> ASGIApp:
     """Return the whole server as one ASGI application.
 
@@ -79,13 +83,18 @@ def new_app(
         cell_view: The 3D view; opened and closed with the application.
         static: Folder of the built page.
         stop: Where an operator's page sends STOP, beside here.
+        sessions: The sessions of browsers; without it, sessions in memory only.
+        capacity: Requests and websockets served at once; an operator's commands are served beyond it.
     """
+    if sessions is None:
+        sessions = LoginSessions(file=None, tokens=access.fingerprint())
     limit = AttemptLimit(now_s=time.monotonic)
     app = api()
     app.state.services = Services(
         backend=backend,
         hub=LiveHub(backend),
         access=access,
+        sessions=sessions,
         limit=limit,
         cell_view=cell_view,
         static=static,
@@ -95,7 +104,16 @@ def new_app(
     app.state.started = OrderedDict[str, str]()
     app.state.pasts = Pasts(backend)
     app.state.joggers = dict[str, Jogger]()
-    return Gate(app, access=access, limit=limit, hosts=hosts, port=port, stop=stop)
+    return Gate(
+        app,
+        access=access,
+        sessions=sessions,
+        limit=limit,
+        hosts=hosts,
+        port=port,
+        capacity=capacity,
+        connect_sources=(stop.origin,) if stop is not None else (),
+    )
 
 
 def api() -> FastAPI:

@@ -6,23 +6,27 @@ same-origin policy to them.
 
 from __future__ import annotations
 
+import asyncio
 import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from http.cookies import CookieError, SimpleCookie
-from urllib.parse import urlsplit
 
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from editor_web.access import OPERATOR, Access, AttemptLimit
+from editor_web.access import OPERATOR, Access, AttemptLimit, Role
 from editor_web.bodies import TOO_LARGE, bounded, told_too_large
-from engine.stop import StopEndpoint
+from editor_web.capacity import MAX_CONNECTIONS
+from editor_web.request_rules import Refusal, foreign, is_unsafe, malformed, unproven
+from editor_web.sessions import LoginSession, LoginSessions
 
 PAGE_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self' data:; "
-    "worker-src 'self' blob:; connect-src 'self'; frame-src 'self'; frame-ancestors 'self'; object-src 'none'; "
-    "base-uri 'none'; form-action 'self'"
+    "worker-src 'self' blob:; connect-src 'self'{sources}; frame-src 'self'; frame-ancestors 'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'self'"
 )
 # viser's page is one file with inlined scripts and wasm; it gets what it needs, under its own path only.
 CELL_POLICY = (
@@ -30,19 +34,10 @@ CELL_POLICY = (
     "img-src 'self' data: blob:; font-src 'self' data:; worker-src 'self' blob: data:; "
     "connect-src 'self' data: blob:; frame-ancestors 'self'; object-src 'none'; base-uri 'none'"
 )
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 OPEN_PATHS = frozenset({"/login", "/favicon.svg"})
+LOG_OUT = "/api/v1/logout"
 
 _audit = logging.getLogger("flexcell.audit")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Refusal:
-    """Why a request is turned away, and how."""
-
-    status: int
-    message: str
-    headers: Mapping[str, str]
 
 
 def cookie_name(port: int) -> str:
@@ -50,16 +45,28 @@ def cookie_name(port: int) -> str:
     return f"flexcell_session_{port}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class Admission:
+    """Who a request is of: a role, and the session of the browser; None for a token, and at the open addresses."""
+
+    role: Role | None
+    session: LoginSession | None
+
+
 class Gate:
-    """Admit a request to `app` when host, origin and session are right.
+    """Admit a request to `app` when its form, host, origin and credentials are right.
+
+    A right token or session is always admitted: no failure of others is held against it.
 
     Args:
         app: The application behind the gate.
         access: The tokens.
+        sessions: The sessions of logged-in browsers.
         limit: Counts wrong bearer tokens, shared with the log-in page.
         hosts: Values of the Host header to answer to, with port, in lower case.
         port: Our own port, for the cookie's name.
-        stop: Where pages may send STOP, besides here.
+        capacity: Requests and websockets served at once; beyond it only an operator's commands are, such as a stop.
+        connect_sources: Further origins that the page may connect to.
     """
 
     def __init__(
@@ -67,92 +74,145 @@ class Gate:
         app: ASGIApp,
         *,
         access: Access,
+        sessions: LoginSessions,
         limit: AttemptLimit,
         hosts: frozenset[str],
         port: int,
-        stop: StopEndpoint | None = None,
+        capacity: int = MAX_CONNECTIONS,
+        connect_sources: Sequence[str] = (),
     ) -> None:
         self._app = app
         self._access = access
+        self._sessions = sessions
         self._limit = limit
         self._hosts = hosts
         self._cookie = cookie_name(port)
-        self._connects = (_origin(stop.url),) if stop is not None else ()
+        self._capacity = capacity
+        self._connect_sources = tuple(connect_sources)
+        self._open = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve or refuse one request or websocket."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
-        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
-        refusal = self._refusal(scope, headers)
-        if refusal is None and scope["type"] == "websocket":
+        verdict = malformed(scope) or self._judge(scope)
+        if isinstance(verdict, Refusal):
+            await self._refuse(scope, receive, send, verdict)
+            return
+        self._open += 1
+        try:
+            await self._serve(scope, receive, send, verdict)
+        finally:
+            self._open -= 1
+
+    async def _serve(self, scope: Scope, receive: Receive, send: Send, found: Admission) -> None:
+        scope.setdefault("state", {}).update(role=found.role, session=found.session)
+        if found.session is not None:
+            receive = while_logged_in(receive, send, self._sessions, found.session, kind=scope["type"])
+        if scope["type"] == "websocket":
             await self._app(scope, receive, send)
-        elif refusal is None:
-            await self._app(scope, bounded(receive), _with_headers(scope, send, self._connects))
-        elif scope["type"] == "websocket":
+            return
+        try:
+            await self._app(scope, bounded(receive), _with_headers(self._headers(scope), send))
+        except ClientDisconnect:
+            # Whoever goes in the middle of a request wants no answer; that is no fault of ours to be logged.
+            return
+
+    async def _refuse(self, scope: Scope, receive: Receive, send: Send, refusal: Refusal) -> None:
+        if scope["type"] == "websocket":
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": refusal.message})
         else:
-            await _answer(scope, send, refusal)
+            await _answer(self._headers(scope), send, refusal)
 
-    def _refusal(self, scope: Scope, headers: Mapping[str, str]) -> Refusal | None:
-        host = headers.get("host", "").lower()
-        if host not in self._hosts:
-            return _refuse(421, "this server does not answer to that host name")
-        if told_too_large(headers):
-            return _refuse(413, TOO_LARGE)
-        origin = headers.get("origin")
-        is_websocket = scope["type"] == "websocket"
-        unsafe = is_websocket or scope["method"] not in SAFE_METHODS
+    def _headers(self, scope: Scope) -> dict[str, str]:
+        return response_headers(scope["path"], connect_sources=self._connect_sources)
+
+    def _judge(self, scope: Scope) -> Admission | Refusal:
+        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         bearer = _bearer(headers)
-        if unsafe:
-            if origin is None and not bearer:
-                return _refuse(403, "the Origin header is missing")
-            if origin is not None and origin.lower() != f"http://{host}":
-                return _refuse(403, "requests from other pages are refused")
-            if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
-                return _refuse(403, "requests from other sites are refused")
-        if scope["path"] in OPEN_PATHS and not is_websocket:
-            return None
-        if bearer and self._limit.wait_s() > 0:
-            return Refusal(
-                status=429,
-                message="too many wrong tokens",
-                headers={"retry-after": str(int(self._limit.wait_s()) + 1)},
-            )
-        role = self._role(headers, bearer)
-        if role is None:
-            return self._not_logged_in(scope, headers)
-        if unsafe and not is_websocket and role != OPERATOR:
-            return _refuse(403, "a viewer may look only; log in with the operator token")
-        if unsafe and not is_websocket:
-            # The query is left out: it could carry a secret.
-            _audit.info("%s %s by %s", scope["method"], scope["path"], role)
-        scope.setdefault("state", {})["role"] = role
-        return None
+        is_open = scope["path"] in OPEN_PATHS and scope["type"] == "http"
+        if headers.get("host", "").lower() not in self._hosts:
+            return Refusal(status=421, message="this server does not answer to that host name")
+        if told_too_large(headers):
+            return Refusal(status=413, message=TOO_LARGE)
+        if (not is_open or is_unsafe(scope)) and (refusal := foreign(scope, headers, has_token=bool(bearer))):
+            return refusal
+        if is_open:
+            return Admission(role=None, session=self._session(headers))
+        found = self._by_token(scope, bearer) if bearer else self._by_cookie(scope, headers)
+        if isinstance(found, Refusal):
+            return found
+        return self._forbidden(scope, found) or found
 
-    def _role(self, headers: Mapping[str, str], bearer: str) -> str | None:
-        if bearer:
-            role = self._access.role_of_token(bearer)
-            if role is None:
-                self._limit.failed()
-            return role
+    def _by_token(self, scope: Scope, token: str) -> Admission | Refusal:
+        role = self._access.role_of_token(token)
+        if role is not None:
+            return Admission(role=role, session=None)
+        wait_s = self._limit.failed(peer_of(scope))
+        if wait_s == 0:
+            return _not_logged_in()
+        return Refusal(status=429, message="too many wrong tokens", headers={"retry-after": str(int(wait_s) + 1)})
+
+    def _by_cookie(self, scope: Scope, headers: Mapping[str, str]) -> Admission | Refusal:
+        session = self._session(headers)
+        if session is not None:
+            return unproven(scope, headers) or Admission(role=session.role, session=session)
+        wants_page = scope["type"] == "http" and "text/html" in headers.get("accept", "") and scope["method"] == "GET"
+        if wants_page:
+            return Refusal(status=303, message="log in first", headers={"location": "/login"})
+        return _not_logged_in()
+
+    def _session(self, headers: Mapping[str, str]) -> LoginSession | None:
         try:
             cookie = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
         except CookieError:
             return None
-        return self._access.role_of_session(cookie.value) if cookie else None
+        return self._sessions.find(cookie.value) if cookie else None
 
-    def _not_logged_in(self, scope: Scope, headers: Mapping[str, str]) -> Refusal:
-        wants_page = scope["type"] == "http" and "text/html" in headers.get("accept", "") and scope["method"] == "GET"
-        if wants_page:
-            return Refusal(status=303, message="log in first", headers={"location": "/login"})
-        return Refusal(
-            status=401,
-            message="not logged in: open the address that `flexcell serve` printed",
-            headers={"www-authenticate": "Bearer"},
-        )
+    def _forbidden(self, scope: Scope, found: Admission) -> Refusal | None:
+        """Refuse what a role may not do, or what there is no room for; note what is done."""
+        is_command = is_unsafe(scope) and scope["type"] == "http"
+        is_leaving = found.session is not None and scope["path"] == LOG_OUT
+        if is_command and found.role != OPERATOR and not is_leaving:
+            return Refusal(status=403, message="a viewer may look only; log in with the operator token")
+        if self._open >= self._capacity and not is_command:
+            return Refusal(status=503, message="too many pages and requests at once", headers={"retry-after": "1"})
+        if is_command:
+            # The query is left out: it could carry a secret.
+            _audit.info("%s %s by %s", scope["method"], scope["path"], found.role)
+        return None
+
+
+def peer_of(scope: Scope) -> str:
+    """Return the address of who sends a request; all programs of this machine share one."""
+    client: tuple[str, int] | None = scope.get("client")
+    return client[0] if client else ""
+
+
+def while_logged_in(
+    receive: Receive, send: Send, sessions: LoginSessions, session: LoginSession, *, kind: str
+) -> Receive:
+    """Return `receive` of a request or websocket so that it ends with the session that it belongs to."""
+
+    async def received() -> Message:
+        try:
+            async with asyncio.timeout(0 if session.is_over else sessions.left_s(session)) as limit:
+                now_s = asyncio.get_running_loop().time
+                with session.calling(lambda: None if limit.expired() else limit.reschedule(now_s())):
+                    message = await receive()
+            sessions.use(session)
+        except TimeoutError:
+            if kind == "http":
+                return {"type": "http.disconnect"}
+            # Whoever has gone meanwhile, or was sent away, need not hear of it.
+            with suppress(RuntimeError, OSError):
+                await send({"type": "websocket.close", "code": 1008, "reason": "logged out"})
+            return {"type": "websocket.disconnect", "code": 1008, "reason": "logged out"}
+        return message
+
+    return received
 
 
 def _bearer(headers: Mapping[str, str]) -> str:
@@ -160,15 +220,23 @@ def _bearer(headers: Mapping[str, str]) -> str:
     return token.strip() if scheme.lower() == "bearer" else ""
 
 
-def _refuse(status: int, message: str) -> Refusal:
-    return Refusal(status=status, message=message, headers={})
+def _not_logged_in() -> Refusal:
+    return Refusal(
+        status=401,
+        message="not logged in: open the address that `flexcell login` prints",
+        headers={"www-authenticate": "Bearer"},
+    )
 
 
-def response_headers(path: str, *, connects: tuple[str, ...] = ()) -> dict[str, str]:
-    """Return the headers that every answer under `path` carries; `connects` are origins that a page may talk to."""
-    page_policy = PAGE_POLICY.replace("connect-src 'self'", " ".join(("connect-src 'self'", *connects)))
+def response_headers(path: str, *, connect_sources: Sequence[str] = ()) -> dict[str, str]:
+    """Return the headers that every answer under `path` carries; the page may also connect to `connect_sources`."""
+    policy = (
+        CELL_POLICY
+        if path.startswith("/cell/")
+        else PAGE_POLICY.format(sources="".join(f" {s}" for s in connect_sources))
+    )
     headers = {
-        "content-security-policy": CELL_POLICY if path.startswith("/cell/") else page_policy,
+        "content-security-policy": policy,
         "x-content-type-options": "nosniff",
         # Under no-referrer a browser sends `Origin: null` with a form, and the log-in's would be refused.
         "referrer-policy": "same-origin" if path == "/login" else "no-referrer",
@@ -180,13 +248,8 @@ def response_headers(path: str, *, connects: tuple[str, ...] = ()) -> dict[str, 
     return headers
 
 
-def _origin(url: str) -> str:
-    parts = urlsplit(url)
-    return f"{parts.scheme}://{parts.netloc}"
-
-
-def _with_headers(scope: Scope, send: Send, connects: tuple[str, ...]) -> Send:
-    extra = [(k.encode(), v.encode()) for k, v in response_headers(scope["path"], connects=connects).items()]
+def _with_headers(headers: Mapping[str, str], send: Send) -> Send:
+    extra = [(k.encode(), v.encode()) for k, v in headers.items()]
 
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
@@ -196,14 +259,19 @@ def _with_headers(scope: Scope, send: Send, connects: tuple[str, ...]) -> Send:
     return send_with_headers
 
 
-async def _answer(scope: Scope, send: Send, refusal: Refusal) -> None:
+async def _answer(headers: Mapping[str, str], send: Send, refusal: Refusal) -> None:
     body = json.dumps({"message": refusal.message, "where": "", "hint": ""}).encode()
-    headers = {"content-type": "application/json", **response_headers(scope["path"]), **refusal.headers}
+    every = {
+        "content-type": "application/json",
+        "content-length": str(len(body)),
+        **headers,
+        **refusal.headers,
+    }
     await send(
         {
             "type": "http.response.start",
             "status": refusal.status,
-            "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
+            "headers": [(k.encode(), v.encode()) for k, v in every.items()],
         }
     )
     await send({"type": "http.response.body", "body": body})

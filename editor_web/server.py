@@ -7,39 +7,72 @@ import ipaddress
 import socket
 from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import uvicorn
 
-from editor_web.access import load_access
+from editor_web.acceptor import Acceptor
+from editor_web.access import OPERATOR, Role, load_access
 from editor_web.app import STATIC, new_app
 from editor_web.backend import Backend
+from editor_web.capacity import COMMAND_RESERVE, connection_limit, raise_descriptor_limit
 from editor_web.cell_view import CellView
-from editor_web.connection import TimedConnection
+from editor_web.connection import PageSocket, TimedConnection, WaitingConnections
+from editor_web.repeated_log import repeats_left_out
+from editor_web.sessions import LoginSessions
 from engine.errors import FlexcellError
 from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3
+PING_S = 5.0
+SILENCE_S = 12.0
+"""A websocket that answers no ping of the protocol for longer is closed, whatever it is for."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Dashboard:
-    """A running server: `url` is the page, `login_url` opens it with the operator's token, `token`."""
+    """A running server: `url` is the page, `token` the operator's, which commands the cell."""
 
     url: str
-    login_url: str
-    token: str
+    token: str = field(repr=False)
     port: int
+    sessions: LoginSessions = field(repr=False)
+
+    def new_login_url(self, role: Role = OPERATOR) -> str:
+        """Return an address that logs a browser in, once."""
+        return f"{self.url}login?t={self.sessions.new_link(role)}"
 
 
 class _Server(uvicorn.Server):
-    """uvicorn without its signal handlers: Ctrl-C belongs to whoever runs the cell."""
+    """uvicorn without its signal handlers, as Ctrl-C belongs to whoever runs the cell, and with our own acceptor."""
+
+    def __init__(self, config: uvicorn.Config, listener: socket.socket, *, limit: int) -> None:
+        super().__init__(config)
+        self._listener = listener
+        self._limit = limit
 
     @contextmanager
     def capture_signals(self) -> Generator[None, None, None]:
         """Leave the process's signal handlers alone."""
         yield
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Start the application, then accept connections."""
+        await self.lifespan.startup()
+        if self.lifespan.should_exit:
+            raise FlexcellError("the dashboard ended while it was starting", hint="see the log above")
+        waiting = WaitingConnections()
+        acceptor = Acceptor(
+            self._listener,
+            new_protocol=lambda: TimedConnection(self.config, self.server_state, self.lifespan.state, waiting=waiting),
+            limit=self._limit,
+            count=lambda: len(self.server_state.connections),
+            waiting=waiting,
+        )
+        acceptor.open()
+        self.servers = [acceptor]  # pyright: ignore[reportAttributeAccessIssue] # it is closed and waited for like one
+        self.started = True
 
 
 @asynccontextmanager
@@ -53,28 +86,33 @@ async def dashboard(
     shadows: bool = True,
     static: Path = STATIC,
     relay: StopRelay | None = None,
+    max_connections: int | None = None,
 ) -> AsyncGenerator[Dashboard]:
     """Serve the page while the block runs.
 
     Args:
         backend: The engine.
-        token_file: Where the log-in tokens are kept; made when missing.
+        token_file: Where the log-in tokens are kept; made when missing. Sessions are kept beside it.
         host: A loopback address or name.
         port: TCP port; 0 takes a free one.
         cell_view: Whether to draw the cell in 3D.
         shadows: Whether the 3D view casts shadows.
         static: Folder of the built page.
         relay: Takes STOP from the page where this server does not answer.
+        max_connections: Connections at once; as many as the open files allow by default.
 
     Raises:
         FlexcellError: The host is not loopback, the port is taken, or the token file cannot be used.
     """
     access = load_access(token_file)
+    sessions = LoginSessions(file=token_file.with_name("sessions"), tokens=access.fingerprint())
+    sessions.load()
     listener = _bind(host, port)
     bound = int(listener.getsockname()[1])
     hosts = frozenset(f"{name}:{bound}" for name in (_in_url(host), "127.0.0.1", "localhost", "[::1]"))
     if relay is not None:
         relay.allow_origins(f"http://{name}" for name in hosts)
+    limit = connection_limit() if max_connections is None else max_connections
     app = new_app(
         backend,
         access=access,
@@ -82,30 +120,35 @@ async def dashboard(
         port=bound,
         cell_view=CellView(backend, shadows=shadows) if cell_view else None,
         static=static,
+        sessions=sessions,
+        capacity=limit - COMMAND_RESERVE,
         stop=relay.endpoint if relay is not None else None,
     )
-    server = _Server(
-        uvicorn.Config(
-            app,
-            log_config=None,
-            access_log=False,
-            server_header=False,
-            http=TimedConnection,
-            ws="websockets-sansio",
-            ws_max_size=1_000_000,
-            ws_per_message_deflate=False,
-            timeout_graceful_shutdown=STOP_LIMIT_S,
-        )
+    config = uvicorn.Config(
+        app,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        ws=PageSocket,
+        ws_max_size=1_000_000,
+        ws_per_message_deflate=False,
+        ws_ping_interval=PING_S,
+        ws_ping_timeout=SILENCE_S - PING_S,
+        timeout_graceful_shutdown=STOP_LIMIT_S,
     )
-    serving = asyncio.create_task(server.serve(sockets=[listener]), name="dashboard")
-    try:
-        await _started(server, serving)
-        url = f"http://{_in_url(host)}:{bound}/"
-        yield Dashboard(url=url, login_url=f"{url}login?t={access.operator}", token=access.operator, port=bound)
-    finally:
-        server.should_exit = True
-        await serving
-        listener.close()
+    server = _Server(config, listener, limit=limit)
+    with repeats_left_out():
+        serving = asyncio.create_task(server.serve(), name="dashboard")
+        try:
+            await _started(server, serving)
+            yield Dashboard(
+                url=f"http://{_in_url(host)}:{bound}/", token=access.operator, port=bound, sessions=sessions
+            )
+        finally:
+            server.should_exit = True
+            await serving
+            listener.close()
+            sessions.save()
 
 
 async def serve(
@@ -118,6 +161,7 @@ async def serve(
     on_ready: Callable[[Dashboard], None],
 ) -> None:
     """Serve the page until cancelled; `on_ready` is told the address once it answers."""
+    raise_descriptor_limit()
     async with dashboard(backend, token_file=token_file, host=host, port=port, relay=relay) as running:
         on_ready(running)
         await asyncio.Event().wait()

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from editor_web.access import OPERATOR, Role
+
 
 class Wire(BaseModel):
     """Root of the HTTP bodies: frozen, read from attributes, unknown keys refused."""
@@ -149,6 +151,19 @@ class SessionBody(Wire):
     epoch: str
     cell: ConnectionBody
     stop: StopEndpointBody | None = None
+
+
+class LoginLinkRequest(Wire):
+    """Whose log-in link is wanted."""
+
+    role: Role = OPERATOR
+
+
+class LoginLinkBody(Wire):
+    """A token that logs a browser in once, at `/login?t=<token>`."""
+
+    token: str
+    expires_in_s: float
 
 
 class QuestionBody(Wire):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import re
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
@@ -12,11 +13,12 @@ from fastapi import APIRouter, HTTPException, WebSocket
 from fastapi.responses import HTMLResponse, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
-from websockets.exceptions import ConnectionClosed
+from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, CellView, page
 from editor_web.routes.services import ServicesOf, role_of, services_of
+from editor_web.routes.sockets import send_away
 
 router = APIRouter(include_in_schema=False)
 # As viser's own limit: its render answers are large.
@@ -24,6 +26,8 @@ MAX_MESSAGE_BYTES = 50 * 1024 * 1024
 UNAVAILABLE = 1013
 # What a page calls itself; it goes into a header.
 _PAGE = re.compile(r"[0-9a-z]{1,40}")
+_PROTOCOL = re.compile(r"viser-v[0-9.]{1,20}")
+_log = logging.getLogger("flexcell.cell_view")
 
 
 class _Closed(Exception):
@@ -59,21 +63,27 @@ async def cell_socket(socket: WebSocket, name: str = "") -> None:
                 tasks.create_task(_inwards(socket, inner), name="cell-inwards")
                 tasks.create_task(_outwards(socket, inner), name="cell-outwards")
     except* _Closed:
-        pass
+        # Also where there is nothing to pass through yet: the page tries again.
+        await send_away(socket, "the cell view has ended")
 
 
 @asynccontextmanager
 async def _viser(
     view: CellView, offered: list[str], *, name: str, role: str
 ) -> AsyncGenerator[websockets.asyncio.client.ClientConnection]:
-    connection = await websockets.asyncio.client.connect(
-        f"ws://127.0.0.1:{view.port}/",
-        subprotocols=[Subprotocol(p) for p in offered if p.startswith("viser-v")],
-        additional_headers={KEY_HEADER: view.key, PAGE_HEADER: name, ROLE_HEADER: role},
-        max_size=MAX_MESSAGE_BYTES,
-        compression=None,
-        proxy=None,
-    )
+    try:
+        connection = await websockets.asyncio.client.connect(
+            f"ws://127.0.0.1:{view.port}/",
+            subprotocols=[Subprotocol(p) for p in offered if _PROTOCOL.fullmatch(p)],
+            additional_headers={KEY_HEADER: view.key, PAGE_HEADER: name, ROLE_HEADER: role},
+            max_size=MAX_MESSAGE_BYTES,
+            compression=None,
+            proxy=None,
+        )
+    except (OSError, InvalidHandshake) as error:
+        # The server ends, or has no file descriptor left.
+        _log.warning("the 3D view cannot be reached: %s", error)
+        raise _Closed from error
     async with connection:
         yield connection
 

@@ -13,6 +13,7 @@ from editor_web.access import Access, AttemptLimit
 from editor_web.backend import Backend
 from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
+from editor_web.sessions import LoginSessions
 from engine.editing import Documents
 from engine.stop import StopEndpoint
 
@@ -24,6 +25,7 @@ class Services:
     backend: Backend
     hub: LiveHub
     access: Access
+    sessions: LoginSessions
     limit: AttemptLimit
     cell_view: CellView | None
     static: Path

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import cast
 from urllib.parse import parse_qs
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, HTTPException, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from editor_web.access import OPERATOR
+from editor_web.access import OPERATOR, Role
 from editor_web.routes.services import Services, ServicesOf, role_of
-from editor_web.security import cookie_name
-from editor_web.wire import ConnectionBody, SessionBody, StopEndpointBody
+from editor_web.security import LOG_OUT, cookie_name, peer_of
+from editor_web.sessions import ABSOLUTE_LIMIT_S, LINK_LIMIT_S, LoginSession
+from editor_web.wire import ConnectionBody, LoginLinkBody, LoginLinkRequest, SessionBody, StopEndpointBody
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000
-SESSION_S = 30 * 24 * 3600
+_SPENT = "This link was used already, or is too old: <code>flexcell login</code> prints a new one."
 
 
 @router.get("/api/v1/session")
-def get_session(request: Request, services: ServicesOf) -> SessionBody:
+async def get_session(request: Request, services: ServicesOf) -> SessionBody:
     """Say who is logged in and what this server has."""
     role, stop = role_of(request), services.stop
     return SessionBody(
@@ -32,50 +34,77 @@ def get_session(request: Request, services: ServicesOf) -> SessionBody:
     )
 
 
-@router.post("/api/v1/logout", status_code=204)
-def log_out(services: ServicesOf) -> Response:
-    """Take the session cookie back."""
+@router.post(LOG_OUT, status_code=204)
+async def log_out(request: Request, services: ServicesOf) -> Response:
+    """End the session for good; its websockets close."""
+    session = _session_of(request)
+    if session is not None:
+        services.sessions.end(session)
     response = Response(status_code=204)
     response.delete_cookie(cookie_name(services.port), httponly=True, samesite="strict")
     return response
 
 
+@router.post("/api/v1/login-links", status_code=201)
+async def new_login_link(body: LoginLinkRequest, request: Request, services: ServicesOf) -> LoginLinkBody:
+    """Make the token of a link that logs in once: `/login?t=<token>`."""
+    if _session_of(request) is not None:
+        # Or a page that somebody misuses could outlive its own log-out.
+        raise HTTPException(403, "log-in links are made with the operator token: run `flexcell login`")
+    return LoginLinkBody(token=services.sessions.new_link(body.role), expires_in_s=LINK_LIMIT_S)
+
+
 @router.get("/login", include_in_schema=False)
-def log_in_page(request: Request, services: ServicesOf) -> Response:
-    """Exchange the token of the printed link for the cookie, or show the form."""
+async def log_in_page(request: Request, services: ServicesOf) -> Response:
+    """Exchange the token of a log-in link for a session, or show the form."""
     token = request.query_params.get("t")
-    if token is None or request.headers.get("sec-fetch-site") == "cross-site":
+    # Neither another page nor a browser that loads ahead may spend the link.
+    is_opened = request.headers.get("sec-fetch-site", "none") in ("none", "same-origin")
+    if token is None or not is_opened or "prefetch" in request.headers.get("sec-purpose", ""):
         return _form(problem="")
-    return _enter(token, services)
+    role = services.sessions.take_link(token)
+    if role is not None:
+        return _enter(role, services)
+    if _session_of(request) is not None:
+        return RedirectResponse("/", status_code=303)
+    return _wrong(request, services, problem=_SPENT)
 
 
 @router.post("/login", include_in_schema=False)
 async def log_in(request: Request, services: ServicesOf) -> Response:
-    """Exchange a pasted token for the cookie."""
+    """Exchange a pasted token, of a link or permanent, for a session."""
     body = bytearray()
     async for chunk in request.stream():
         body += chunk
         if len(body) > MAX_FORM_BYTES:
             return _form(problem="That is not a token.", status=413)
     fields = parse_qs(body.decode("ascii", "replace"))
-    return _enter(fields.get("token", [""])[0].strip(), services)
-
-
-def _enter(token: str, services: Services) -> Response:
-    wait_s = services.limit.wait_s()
-    if wait_s > 0:
-        response = _form(problem=f"Too many wrong tokens. Try again in {int(wait_s) + 1} seconds.", status=429)
-        response.headers["retry-after"] = str(int(wait_s) + 1)
-        return response
-    role = services.access.role_of_token(token)
+    token = fields.get("token", [""])[0].strip()
+    role = services.sessions.take_link(token) or services.access.role_of_token(token)
     if role is None:
-        services.limit.failed()
-        return _form(problem="That token is not valid for this server.", status=401)
+        return _wrong(request, services, problem="That token is not valid for this server.")
+    return _enter(role, services)
+
+
+def _session_of(request: Request) -> LoginSession | None:
+    return cast("LoginSession | None", request.state.session)
+
+
+def _wrong(request: Request, services: Services, *, problem: str) -> Response:
+    wait_s = services.limit.failed(peer_of(request.scope))
+    if wait_s == 0:
+        return _form(problem=problem, status=401)
+    response = _form(problem=f"Too many wrong tokens. Try again in {int(wait_s) + 1} seconds.", status=429)
+    response.headers["retry-after"] = str(int(wait_s) + 1)
+    return response
+
+
+def _enter(role: Role, services: Services) -> Response:
     response = RedirectResponse("/", status_code=303)
     response.set_cookie(
         cookie_name(services.port),
-        services.access.session(role),
-        max_age=SESSION_S,
+        services.sessions.begin(role),
+        max_age=int(ABSOLUTE_LIMIT_S),
         httponly=True,
         samesite="strict",
         path="/",

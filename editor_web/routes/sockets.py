@@ -34,8 +34,8 @@ async def read(socket: WebSocket, decoder: msgspec.json.Decoder[T], *, expected:
         return decoder.decode(await socket.receive_text())
     except WebSocketDisconnect as error:
         raise Gone from error
-    except (msgspec.ValidationError, msgspec.DecodeError, KeyError) as error:
-        # Starlette raises KeyError for bytes where text is due.
+    except (msgspec.ValidationError, msgspec.DecodeError, KeyError, RecursionError) as error:
+        # Starlette raises KeyError for bytes where text is due, msgspec RecursionError for what is nested too deeply.
         await send_away(socket, f"expected {expected}", code=REFUSED)
         raise Gone from error
 

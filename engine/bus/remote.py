@@ -28,6 +28,26 @@ class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):
     """Where STOP is taken whatever the server does; empty where it is not."""
     stop_token: str = ""
 
+    @classmethod
+    def read(cls, folder: Path) -> ServerRecord:
+        """Return the record of the server that keeps its state in `folder`.
+
+        Raises:
+            BusError: no server runs there.
+        """
+        file = server_file(folder)
+        try:
+            return msgspec.json.decode(file.read_bytes(), type=ServerRecord)
+        except (OSError, msgspec.DecodeError) as error:
+            raise BusError(
+                "no server runs here", where=file, hint="start one with `flexcell serve`, or give --cell FILE"
+            ) from error
+
+
+def server_file(folder: Path) -> Path:
+    """Return where the server of a state folder says how it is reached."""
+    return folder / SERVER_FILE
+
 
 class _Failure(msgspec.Struct):
     message: str = ""
@@ -48,7 +68,7 @@ async def server_client(folder: Path) -> AsyncGenerator[httpx.AsyncClient]:
     Raises:
         BusError: no server runs there, or it does not answer.
     """
-    record = _record(folder)
+    record = ServerRecord.read(folder)
     headers = {"Authorization": f"Bearer {record.token}"}
     async with httpx.AsyncClient(base_url=record.url, headers=headers, timeout=10.0, trust_env=False) as client:
         try:
@@ -109,18 +129,8 @@ class RemoteBus:
         return GoalEnd(GoalStatus(end.status), end.result, end.cause)
 
 
-def _record(folder: Path) -> ServerRecord:
-    file = folder / SERVER_FILE
-    try:
-        return msgspec.json.decode(file.read_bytes(), type=ServerRecord)
-    except (OSError, msgspec.DecodeError) as error:
-        raise BusError(
-            "no server runs here", where=file, hint="start one with `flexcell serve`, or give --cell FILE"
-        ) from error
-
-
 def verified(response: httpx.Response) -> httpx.Response:
-    """Return a response that says that all went well; raises BusError with the server's words otherwise."""
+    """Return an answer of the server, or raise what it refused as `BusError`."""
     if response.is_success:
         return response
     try:

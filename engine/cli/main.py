@@ -17,6 +17,7 @@ from engine.cli import (
     check,
     coverage,
     export,
+    login,
     replay,
     resume,
     run,
@@ -44,6 +45,7 @@ app.command("check")(check.check)
 app.command("replay")(replay.replay)
 app.command("export")(export.export)
 app.command("serve")(serve.serve)
+app.command("login")(login.login)
 app.add_typer(coverage.app, name="coverage")
 app.add_typer(states.app, name="states")
 app.add_typer(store.app, name="store")

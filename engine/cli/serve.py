@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import signal
 import sys
 import webbrowser
@@ -13,10 +12,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any
 
-import msgspec
 import typer
 
-from engine.bus.remote import SERVER_FILE, ServerRecord
 from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
@@ -25,7 +22,8 @@ from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
 from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
 from engine.state_catalogue import Catalogue
-from engine.stop import StopEndpoint, StopRelay
+from engine.state_folder import StateFolder, locked_state_folder
+from engine.stop import StopRelay
 from engine.teaching import HelpingHand, teachable
 from engine.watchdog import Watchdog
 
@@ -62,24 +60,24 @@ def serve(
     loaded = load_cell(cell) if cell is not None else None
     catalogue = load_states(project)
     sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
-    state.mkdir(parents=True, exist_ok=True)
-    recordings = (
-        SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
-    )
-    asyncio.run(
-        _serve(
-            loaded,
-            catalogue,
-            port=port,
-            host=host,
-            stop_port=stop_port,
-            project=project,
-            state=state,
-            seed=seed,
-            recordings=recordings,
-            open_page=open_,
+    with locked_state_folder(state) as folder:
+        recordings = (
+            SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
         )
-    )
+        asyncio.run(
+            _serve(
+                loaded,
+                catalogue,
+                port=port,
+                host=host,
+                stop_port=stop_port,
+                project=project,
+                folder=folder,
+                seed=seed,
+                recordings=recordings,
+                open_page=open_,
+            )
+        )
     raise typer.Exit(ExitCode.INTERRUPTED)
 
 
@@ -91,22 +89,23 @@ async def _serve(
     host: str,
     stop_port: int,
     project: Path,
-    state: Path,
+    folder: StateFolder,
     seed: int | None,
     recordings: SessionRecordings | None,
     open_page: bool,
 ) -> None:
     new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
-    server_file = state / SERVER_FILE
+    state = folder.path
 
     def ready(dashboard: Any) -> None:
-        _write_private(server_file, _record(dashboard, relay.endpoint))
+        folder.announce(url=dashboard.url, token=dashboard.token, stop=relay.endpoint)
         # What is late before is late for nobody.
         watched.enter_context(Watchdog())
-        sys.stdout.write(f"Dashboard: {dashboard.login_url}\nStop with Ctrl-C.\n")
+        sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")
+        sys.stdout.write("It logs in once; `flexcell login` prints another. Stop with Ctrl-C.\n")
         sys.stdout.flush()
         if open_page:
-            webbrowser.open(dashboard.login_url)
+            webbrowser.open(dashboard.new_login_url())
 
     if cell is not None:
         sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
@@ -129,8 +128,6 @@ async def _serve(
                     await serving
             except asyncio.CancelledError:
                 sys.stderr.write("stopping: bringing the robots to rest\n")
-            finally:
-                server_file.unlink(missing_ok=True)
 
 
 def _on_signals(loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:
@@ -141,22 +138,3 @@ def _on_signals(loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> N
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, caught)
-
-
-def _record(dashboard: Any, stop: StopEndpoint | None) -> ServerRecord:
-    return ServerRecord(
-        url=dashboard.url,
-        token=dashboard.token,
-        pid=os.getpid(),
-        stop_url=stop.url if stop is not None else "",
-        stop_token=stop.token if stop is not None else "",
-    )
-
-
-def _write_private(file: Path, record: ServerRecord) -> None:
-    """Write the record so that only the owner can ever read it."""
-    part = file.with_suffix(".part")
-    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(descriptor, "wb") as stream:
-        stream.write(msgspec.json.encode(record))
-    part.replace(file)

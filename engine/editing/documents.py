@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import logging
 import re
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -30,6 +32,7 @@ from engine.library import FindingView, Library
 
 _ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
 _LATER = re.compile(r"\.breakpoints\.ya?ml$")
+_log = logging.getLogger("flexcell.documents")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +128,7 @@ class Documents:
         opened = self._read(document_id, file)
         _require_behavior(opened.text, document_id)
         with self._writing:
-            self._versions.keep(document_id, opened.text)
+            self._remember(document_id, opened.text)
         return opened
 
     def examine(self, document_id: str, text: str) -> Examination:
@@ -173,7 +176,7 @@ class Documents:
         """
         file = self.file_of(document_id)
         _require_document(text, document_id)
-        with self._writing:
+        with self._changing(document_id):
             there = self._read(document_id, file)
             if there.hash == hash_of(text):
                 return there
@@ -218,7 +221,7 @@ class Documents:
         file, new = self.file_of(document_id), self.file_of(new_id)
         if (file.suffix == ".json") != (new.suffix == ".json"):
             raise DocumentError("a rename does not turn YAML into JSON", where=new_id, hint="keep the ending")
-        with self._writing:
+        with self._changing(document_id):
             there = self._read(document_id, file)
             _require_free(new, new_id)
             self._versions.keep(document_id, there.text)
@@ -234,7 +237,7 @@ class Documents:
             NoSuchDocument: there is none.
         """
         file = self.file_of(document_id)
-        with self._writing:
+        with self._changing(document_id):
             self._versions.keep(document_id, self._read(document_id, file).text)
             file.unlink()
 
@@ -247,7 +250,7 @@ class Documents:
         file = self.file_of(document_id)
         with self._writing:
             if file.is_file():
-                self._versions.keep(document_id, self._read(document_id, file).text)
+                self._remember(document_id, self._read(document_id, file).text)
             found = self._versions.all(document_id)
         if not found:
             raise NoSuchDocument("there is no such document", where=document_id)
@@ -295,6 +298,26 @@ class Documents:
         except DocumentError:
             return None  # deleted, or no text: either way nothing to compare with
 
+    @contextmanager
+    def _changing(self, document_id: str) -> Generator[None]:
+        """Hold the files of the project; what the system refuses is told with the document and what to do."""
+        with self._writing:
+            try:
+                yield
+            except OSError as error:
+                raise DocumentError(
+                    f"the document cannot be written: {error.strerror}",
+                    where=document_id,
+                    hint="let this server write in the folder of the project, or make room on its disk",
+                ) from error
+
+    def _remember(self, document_id: str, text: str) -> None:
+        """Keep what was found in a file as a version; a project that cannot be written is read all the same."""
+        try:
+            self._versions.keep(document_id, text)
+        except OSError as error:
+            _log.warning("no version of %s can be kept: %s", document_id, error)
+
     def _conflict(self, there: Opened, text: str, base_hash: str) -> DocumentConflict:
         try:
             base = self._versions.text(there.id, base_hash)
@@ -311,7 +334,7 @@ class Documents:
         return DocumentConflict(there, merged.text, merged.conflicts)
 
     def _put(self, document_id: str, file: Path, text: str) -> Opened:
-        with self._writing:
+        with self._changing(document_id):
             _require_free(file, document_id)
             file.parent.mkdir(parents=True, exist_ok=True)
             write_whole(file, text)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Self
+from urllib.parse import urlsplit
 
 import msgspec
 
@@ -54,6 +55,12 @@ class StopEndpoint:
 
     url: str
     token: str
+
+    @property
+    def origin(self) -> str:
+        """The origin of `url`, as a browser has it."""
+        parts = urlsplit(self.url)
+        return f"{parts.scheme}://{parts.netloc}"
 
 
 class StopRelay:

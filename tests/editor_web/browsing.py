@@ -54,7 +54,7 @@ def opened_page(
     page.on("console", listen)
     page.on("pageerror", lambda error: said.append(str(error)))
     try:
-        page.goto(login or running.login_url)
+        page.goto(login or running.new_login_url())
         page.goto(running.url.rstrip("/") + path)
         yield page
     finally:

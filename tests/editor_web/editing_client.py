@@ -9,6 +9,7 @@ import httpx
 
 from editor_web.access import load_access
 from editor_web.app import new_app
+from editor_web.sessions import LoginSessions
 from engine.editing import Documents
 from tests.editor_web.fake_backend import FakeBackend
 from tests.engine.editing.bench import STATES
@@ -43,7 +44,8 @@ class EditingClient:
         self.access = load_access(project / "tokens")
         self.documents = Documents(project, STATES)
         backend = FakeBackend(documents=self.documents)
-        self.app = new_app(backend, access=self.access, hosts=frozenset({HOST}), port=8642)
+        self.sessions = LoginSessions(file=None, tokens="")
+        self.app = new_app(backend, access=self.access, sessions=self.sessions, hosts=frozenset({HOST}), port=8642)
         token = self.access.operator if role == "operator" else self.access.viewer
         self.http = httpx.AsyncClient(
             transport=httpx.ASGITransport(app=self.app),

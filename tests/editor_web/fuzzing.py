@@ -177,7 +177,7 @@ class Target:
         """Nothing was stored, changed or removed outside of the project, nor anything but YAML in its behaviors."""
         assert self.outside() == self._around
         top = {each.name for each in self.shop.project.iterdir()}
-        assert top <= {"behaviors", ".flexcell", "tokens"}, top
+        assert top <= {"behaviors", ".flexcell", "tokens", "sessions"}, top
         assert {Path(name).suffix for name in self.inside()} <= {".yaml"}
 
 

@@ -3,15 +3,28 @@
 from __future__ import annotations
 
 import subprocess
+from pathlib import Path
 
+from editor_web.access import OPERATOR, Role
 from editor_web.server import Dashboard
+from editor_web.sessions import LoginSessions
+from engine.bus.remote import ServerRecord
+from engine.cli.login import new_login_url
 
 
-def dashboard_of(process: subprocess.Popen[str]) -> Dashboard:
-    """Where a `flexcell serve` says that its page is."""
+class ServerProcess(Dashboard):
+    """A dashboard whose log-in links are made by the process that serves it."""
+
+    def new_login_url(self, role: Role = OPERATOR) -> str:
+        """Ask the server, as `flexcell login` does."""
+        return new_login_url(ServerRecord(url=self.url, token=self.token, pid=0), role=role)
+
+
+def dashboard_of(process: subprocess.Popen[str], folder: Path) -> Dashboard:
+    """Where a `flexcell serve` that keeps its state in `folder` says that its page is."""
     assert process.stdout is not None
     line = process.stdout.readline()
-    login = line.removeprefix("Dashboard: ").strip()
-    assert "/login?t=" in login, (line, process.poll())
-    url, token = login.split("login?t=")
-    return Dashboard(url=url, login_url=login, token=token, port=int(url.rstrip("/").rsplit(":", 1)[1]))
+    assert "/login?t=" in line, (line, process.poll())
+    record = ServerRecord.read(folder)
+    port = int(record.url.rstrip("/").rsplit(":", 1)[1])
+    return ServerProcess(url=record.url, token=record.token, port=port, sessions=LoginSessions(file=None, tokens=""))

@@ -11,10 +11,15 @@ from typing import Any
 import httpx
 import websockets.asyncio.client
 
-from editor_web.access import OPERATOR, Access
+from editor_web.access import OPERATOR, Access, Role
 from editor_web.security import cookie_name
 from editor_web.server import Dashboard
 from tests.editor_web.fake_backend import FakeBackend
+
+
+def session_cookie(running: Dashboard, role: Role = OPERATOR) -> dict[str, str]:
+    """Headers of a browser that has just logged in, without an origin."""
+    return {"Cookie": f"{cookie_name(running.port)}={running.sessions.begin(role)}"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +38,8 @@ class Served:
 
     @property
     def cookie(self) -> dict[str, str]:
-        """Headers of a logged-in browser without an origin."""
-        return {"Cookie": f"{cookie_name(self.running.port)}={self.access.session(OPERATOR)}"}
+        """Headers of an operator's browser without an origin."""
+        return session_cookie(self.running)
 
     @asynccontextmanager
     async def live(self, run: str | None = None) -> AsyncGenerator[Live]:

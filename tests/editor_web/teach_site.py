@@ -13,7 +13,7 @@ from unittest.mock import patch
 import numpy as np
 import websockets.asyncio.client
 
-from editor_web.access import OPERATOR, Access, load_access
+from editor_web.access import OPERATOR, Access, Role, load_access
 from editor_web.security import cookie_name
 from editor_web.server import Dashboard, dashboard
 from editor_web.teaching import jogging
@@ -195,12 +195,12 @@ class TeachSite:
         await self.bus.send_goal(goal, to="left", holder=VISITOR).result()
         self.bus.leases.release_run(VISITOR.run)
 
-    def socket(self, role: str = OPERATOR, *, page: str = "") -> websockets.asyncio.client.connect:
+    def socket(self, role: Role = OPERATOR, *, page: str = "") -> websockets.asyncio.client.connect:
         """Connect as the page does, which calls itself so."""
         origin = self.running.url.rstrip("/")
         return websockets.asyncio.client.connect(
             f"{origin.replace('http', 'ws', 1)}/api/v1/teach/live?page={page}",
-            additional_headers={"Cookie": f"{cookie_name(self.running.port)}={self.access.session(role)}"},
+            additional_headers={"Cookie": f"{cookie_name(self.running.port)}={self.running.sessions.begin(role)}"},
             origin=websockets.Origin(origin),
             compression=None,
             proxy=None,

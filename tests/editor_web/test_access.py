@@ -41,25 +41,30 @@ def test_a_damaged_token_file_is_refused(tmp_path: Path, content: bytes) -> None
 
 
 def test_each_token_opens_its_own_role_and_nothing_else_opens_any(tmp_path: Path) -> None:
-    """Tokens, sessions and garbage."""
+    """Tokens and garbage."""
     access = load_access(tmp_path / "tokens")
     assert access.role_of_token(access.operator) == OPERATOR
     assert access.role_of_token(access.viewer) == VIEWER
-    assert access.role_of_session(access.session(VIEWER)) == VIEWER
-    for wrong in ("", "x", access.operator[:-1], access.session(OPERATOR), "ü\udcff"):
+    for wrong in ("", "x", access.operator[:-1], access.fingerprint(), "ü\udcff"):
         assert access.role_of_token(wrong) is None
-    assert access.role_of_session(access.operator) is None
 
 
-def test_wrong_attempts_are_limited_and_the_limit_refills() -> None:
-    """A burst of three, then one every ten seconds."""
+def test_wrong_tokens_are_limited_and_the_limit_refills() -> None:
+    """A burst of three, then one every ten seconds; what comes too early makes the wait no longer."""
     now_s = [100.0]
     limit = AttemptLimit(now_s=lambda: now_s[0], burst=3, refill_s=10.0)
-    for _ in range(3):
-        assert limit.wait_s() == 0
-        limit.failed()
-    assert limit.wait_s() == pytest.approx(10.0)
+    assert [limit.failed("peer") for _ in range(3)] == [0, 0, 0]
+    assert [limit.failed("peer") for _ in range(50)] == [pytest.approx(10.0)] * 50
     now_s[0] += 10.0
-    assert limit.wait_s() == 0
-    limit.failed()
-    assert limit.wait_s() > 0
+    assert limit.failed("peer") == 0
+    assert limit.failed("peer") > 0
+
+
+def test_each_peer_is_limited_by_itself() -> None:
+    """And however many there are, only so many are remembered."""
+    limit = AttemptLimit(now_s=lambda: 0.0, burst=1)
+    assert [limit.failed("one"), limit.failed("other")] == [0, 0]
+    assert limit.failed("one") > 0
+    for number in range(5000):
+        limit.failed(f"peer {number}")
+    assert limit.failed("one") == 0

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from editor_web.access import VIEWER
 from engine.bus import Holder, SkillBus
 from engine.messages import JointState
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible
@@ -177,8 +178,7 @@ def test_a_parameter_is_set_and_a_topic_that_takes_commands_published_on(
 
 def test_viewers_see_the_bus_and_cannot_send(browser: Browser, shop: Workshop) -> None:
     """The form says why."""
-    viewer = shop.running.login_url.replace(shop.access.operator, shop.access.viewer)
-    assert viewer != shop.running.login_url
+    viewer = shop.running.new_login_url(VIEWER)
     with at_bus(browser, shop, kind="Actions", login=viewer) as page:
         entry(page, "travel").click()
         expect(page.get_by_text("You may look only")).to_be_visible()

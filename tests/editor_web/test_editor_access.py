@@ -10,6 +10,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 import hatch_build
+from editor_web.access import VIEWER
 from tests.editor_web.browsing import PHONE, Scheme, require_accessible, require_fit
 from tests.editor_web.editing import at_editor, card, file_text, idle
 from tests.editor_web.workshop import SHIFT_ID, Workshop
@@ -76,7 +77,7 @@ def test_a_behavior_is_edited_by_touch(browser: Browser, shop: Workshop) -> None
 
 def test_who_may_look_only_cannot_save(browser: Browser, shop: Workshop) -> None:
     """It says why, and the file stays."""
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     with at_editor(browser, shop, SHIFT_ID, login=login) as page:
         expect(page.get_by_role("button", name="Save", exact=True)).to_have_attribute("aria-disabled", "true")
         expect(card(page, "root/first")).to_be_visible()

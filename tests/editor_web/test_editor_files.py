@@ -7,6 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+from editor_web.access import VIEWER
 from tests.editor_web.browsing import Scheme, require_accessible
 from tests.editor_web.editing import at_editor, card, file_text, idle, save
 from tests.editor_web.test_editor_project import OUTER, OUTER_ID
@@ -134,7 +135,7 @@ def test_a_viewer_compares_versions_and_changes_no_file(browser: Browser, shop: 
     with at_editor(browser, shop, SHIFT_ID):
         pass
     (shop.project / SHIFT_ID).write_text(text, encoding="utf-8")
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     with at_editor(browser, shop, SHIFT_ID, login=login) as page:
         page.keyboard.press("h")
         dialog = page.get_by_role("dialog", name="Versions")

@@ -13,7 +13,7 @@ import pytest
 import websockets
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import OPERATOR, VIEWER
+from editor_web.access import VIEWER
 from engine.demonstration import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import WriteEntry
@@ -131,7 +131,7 @@ def preview_of(page: Page, name: str) -> Locator:
 def seeing(site: TeachSite, name: str) -> Generator[ViserPage]:
     """A 3D view beside that of the page, of the same name or another."""
     with ExitStack() as stack:
-        view = served_view(site.running, site.access.session(OPERATOR), name)
+        view = served_view(site.running, name)
         opened = site.call(view.__aenter__())
         stack.callback(lambda: site.call(view.__aexit__(None, None, None)))
         yield opened
@@ -244,7 +244,7 @@ async def look(site: TeachSite, page: str) -> None:
     """Look at an entry, and be lost without a word."""
     async with (
         site.socket(VIEWER, page=page) as socket,
-        served_view(site.running, site.access.session(VIEWER), page) as view,
+        served_view(site.running, page, role=VIEWER) as view,
     ):
         await socket.send('{"k": "look", "arm": "left", "kind": "joints", "name": "aside"}')
         await view.until(lambda: is_ghost(view, "left"))

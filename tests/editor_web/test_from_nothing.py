@@ -177,7 +177,7 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
     cell = ("--cell", "behaviors/cells/dual_panda.yaml")
     with (
         started("serve", "--host", loopback, "--port", "0", *cell, cwd=project) as process,
-        opened_page(browser, dashboard_of(process), "/", size=(1600, 1000)) as page,
+        opened_page(browser, dashboard_of(process, project / ".flexcell"), "/", size=(1600, 1000)) as page,
     ):
         page.set_default_timeout(60_000)
         page.get_by_role("button", name="New", exact=True).click()

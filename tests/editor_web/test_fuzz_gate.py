@@ -10,7 +10,8 @@ from urllib.parse import quote
 import pytest
 
 from editor_web.access import OPERATOR
-from editor_web.security import SAFE_METHODS, cookie_name
+from editor_web.request_rules import SAFE_METHODS
+from editor_web.security import cookie_name
 from tests.editor_web.fuzzing import HOSTILE_PATHS, Operation, Target, opened_target, operations
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID
@@ -46,7 +47,7 @@ def ask(target: Target, operation: Operation, path: str, body: bytes, **headers:
 
 def session(target: Target) -> str:
     """The cookie of an operator's browser."""
-    return f"{cookie_name(target.shop.running.port)}={target.shop.access.session(OPERATOR)}"
+    return f"{cookie_name(target.shop.running.port)}={target.shop.running.sessions.begin(OPERATOR)}"
 
 
 @pytest.mark.parametrize("operation", operations(), ids=lambda each: f"{each[0]} {each[1]}")

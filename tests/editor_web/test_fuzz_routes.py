@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 
 from editor_web.access import OPERATOR, VIEWER
-from editor_web.security import SAFE_METHODS
+from editor_web.request_rules import SAFE_METHODS
 from tests.editor_web.fuzzing import (
     CHECKS,
     ENDLESS,

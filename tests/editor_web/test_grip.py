@@ -13,7 +13,7 @@ import pytest
 import websockets.asyncio.client
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from editor_web.access import OPERATOR, VIEWER
+from editor_web.access import OPERATOR, VIEWER, Role
 from editor_web.security import cookie_name
 from engine.bus.access import VISITOR
 from engine.messages import FramePoses, JointState, Vector3
@@ -112,11 +112,11 @@ class Hand:
             await asyncio.sleep(0.05)
 
 
-def cookie(site: TeachSite, role: str = OPERATOR) -> dict[str, str]:
-    return {"Cookie": f"{cookie_name(site.running.port)}={site.access.session(role)}"}
+def cookie(site: TeachSite, role: Role = OPERATOR) -> dict[str, str]:
+    return {"Cookie": f"{cookie_name(site.running.port)}={site.running.sessions.begin(role)}"}
 
 
-def connect(site: TeachSite, path: str, *, role: str = OPERATOR, **options: Any) -> websockets.asyncio.client.connect:
+def connect(site: TeachSite, path: str, *, role: Role = OPERATOR, **options: Any) -> websockets.asyncio.client.connect:
     origin = site.running.url.rstrip("/")
     return websockets.asyncio.client.connect(
         f"{origin.replace('http', 'ws', 1)}{path}",

@@ -15,6 +15,7 @@ from typing import Self
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from editor_web.access import OPERATOR
 from editor_web.routes import live as live_route
 from engine.control.control import LossPolicy
 from engine.event import OperatorChanged
@@ -37,7 +38,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
     (tmp_path / "behaviors").mkdir()
     (tmp_path / NAP_ID).write_text(NAP, encoding="utf-8")
     with started("serve", "--host", loopback, "--port", "0", cwd=tmp_path) as first:
-        served = dashboard_of(first)
+        served = dashboard_of(first, tmp_path / ".flexcell")
         with opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page:
             page.get_by_role("button", name="Start").click()
             expect(node(page, "root/only")).to_have_attribute("data-status", "active")
@@ -49,7 +50,7 @@ def test_a_killed_server_is_missed_found_again_and_its_run_goes_on(
             for name in ("Pause", "Operate", "Stop the cell"):
                 expect(page.get_by_role("button", name=name, exact=True)).to_have_attribute("aria-disabled", "true")
             with started("serve", "--host", loopback, "--port", str(served.port), cwd=tmp_path) as second:
-                dashboard_of(second)
+                dashboard_of(second, tmp_path / ".flexcell")
                 expect(page.get_by_role("alert")).to_have_count(0)
                 expect(page.locator(".page-head .badge")).to_have_count(0)
                 expect(page.get_by_role("button", name="Stop", exact=True)).to_have_count(0)
@@ -107,7 +108,7 @@ def test_a_killed_browser_is_an_operator_lost_and_another_takes_over(
     with opened_page(browser, shop.running, f"/runs/{run}") as second:
         with killable_browser(browser, tmp_path / "profile") as (doomed, kill):
             first = doomed.new_context().new_page()
-            first.goto(shop.running.login_url)
+            first.goto(shop.running.new_login_url())
             first.goto(f"{shop.running.url}runs/{run}")
             first.get_by_role("button", name="Operate", exact=True).click()
             expect(first.get_by_text("You operate this run. If this page is lost, 0.3 s later")).to_be_visible()
@@ -191,7 +192,7 @@ def test_a_cut_wire_is_noticed_on_both_sides(
         page = context.new_page()
         page.clock.install()
         through = f"http://127.0.0.1:{port}/"
-        page.goto(f"{through}login?t={shop.access.operator}")
+        page.goto(f"{through}login?t={shop.running.sessions.new_link(OPERATOR)}")
         page.goto(f"{through}runs/{run}")
         page.get_by_role("button", name="Operate", exact=True).click()
         expect(page.get_by_text("You operate this run.")).to_be_visible()

@@ -207,7 +207,7 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
 def test_a_viewer_sees_the_state_and_no_command_is_open(browser: Browser, shop: Workshop) -> None:
     """State yes, commands no, each with the reason."""
     shop.start(supervision=Supervision(start_paused=True))
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     assert VIEWER == "viewer"
     with at_shift(browser, shop, login=login) as page:
         expect(standing(page)).to_have_text("Paused, everything rests")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
+from editor_web.access import VIEWER
 from engine.bus import Holder
 from engine.event import OperatorChanged, RunStarted
 from engine.supervision import Supervision
@@ -139,7 +140,7 @@ def test_the_page_operates_one_run_at_a_time(browser: Browser, shop: Workshop) -
 def test_a_viewer_sees_all_runs_and_commands_none(browser: Browser, shop: Workshop) -> None:
     """Each button says why."""
     three_runs(shop)
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     with opened_page(browser, shop.running, "/runs", login=login) as page:
         shift = card(page, "shift")
         expect(standing(shift, "shift")).to_have_text("Asks for 2 answers")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from editor_web.access import VIEWER
 from engine.primitive import JointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.jogging import JogCommand
@@ -298,7 +299,7 @@ def test_a_phone_shows_everything_without_scrolling_sideways(browser: Browser, s
 
 
 def test_a_viewer_sees_the_arm_and_is_told_why_nothing_can_be_moved(browser: Browser, site: TeachSite) -> None:
-    login = f"{site.running.url}login?t={site.access.viewer}"
+    login = site.running.new_login_url(VIEWER)
     with opened_page(browser, site.running, "/teach", login=login, size=LAPTOP, quiet=False) as page:
         button = page.get_by_role("button", name="Z plus", exact=True)
         expect(button).to_have_attribute("aria-disabled", "true")

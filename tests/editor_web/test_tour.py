@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from editor_web.access import VIEWER
 from engine.document import load_behavior
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit
 from tests.editor_web.editing import LAPTOP, card, drag, pill, port
@@ -176,7 +177,7 @@ def test_the_tour_is_left_and_gone_on_with(browser: Browser, shop: Workshop) -> 
 
 def test_a_viewer_is_not_invited_to_what_he_may_not_do(browser: Browser, shop: Workshop) -> None:
     """He can make nothing and run nothing."""
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     with opened_page(browser, shop.running, login=login) as page:
         expect(page.get_by_role("heading", name="Latest runs")).to_be_visible()
         expect(page.get_by_text("No runs yet").first).to_be_visible()

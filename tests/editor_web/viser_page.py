@@ -13,6 +13,7 @@ import websockets.asyncio.client
 import zstandard
 from websockets.typing import Subprotocol
 
+from editor_web.access import OPERATOR, Role
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView
 from editor_web.security import cookie_name
 from editor_web.server import Dashboard
@@ -119,10 +120,10 @@ async def viser_page(
 
 
 @asynccontextmanager
-async def served_view(running: Dashboard, session: str, page: str) -> AsyncGenerator[ViserPage]:
+async def served_view(running: Dashboard, page: str, *, role: Role = OPERATOR) -> AsyncGenerator[ViserPage]:
     """Connect as a browser does whose page has this name, through the server and with the cookie of a log-in."""
     origin = running.url.rstrip("/")
-    cookie = {"Cookie": f"{cookie_name(running.port)}={session}"}
+    cookie = {"Cookie": f"{cookie_name(running.port)}={running.sessions.begin(role)}"}
     address = f"{origin.replace('http', 'ws', 1)}/cell/{page}/"
     async with _connected(address, cookie, origin=websockets.Origin(origin)) as opened:
         yield opened

@@ -19,12 +19,14 @@ FACES = [
     "engine.journal",
     "engine.recording",
     "engine.replay",
+    "engine.stop",
     "engine.store",
     "engine.testing",
     "states",
 ]
 COMMANDS = [
-    ("run",), ("check",), ("export",), ("replay",), ("serve",), ("schema",), ("states",), ("states", "show"),
+    ("run",), ("check",), ("export",), ("replay",), ("serve",), ("login",), ("stop",),
+    ("schema",), ("states",), ("states", "show"),
     *(("store", name) for name in ("list", "get", "show", "set", "delete", "history", "undo")),
     *(("store", name) for name in ("export", "import", "migrate", "watch")),
     *(("bus", name) for name in ("list", "echo", "hz", "publish", "call", "goal")),

@@ -14,13 +14,12 @@ import websockets.asyncio.client
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from editor_web.access import VIEWER
-from editor_web.security import cookie_name
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.past_recording import write_recording
-from tests.editor_web.served import Served
+from tests.editor_web.served import Served, session_cookie
 from tests.editor_web.viser_page import VISER, ViserPage
 
 PAGE = "a1b2"
@@ -113,7 +112,7 @@ async def test_a_run_without_a_recording_is_told_in_words(serve: Serve, backend:
 
 async def test_a_viewer_may_look_at_the_past_too(serve: Serve, backend: FakeBackend) -> None:
     async with serve(backend, cell_view=True) as served:
-        cookie = {"Cookie": f"{cookie_name(served.running.port)}={served.access.session(VIEWER)}"}
+        cookie = session_cookie(served.running, VIEWER)
         async with shown(served), past_of(served, cookie=cookie) as past:
             await ask(past, 2.0)
             assert (await told(past, 2.0))["problem"] == ""

@@ -44,6 +44,32 @@ def test_a_file_keeps_its_mode_and_leaves_nothing_behind(documents: Documents) -
     assert [each.name for each in file.parent.iterdir()] == ["x.yaml"]
 
 
+def test_a_project_that_cannot_be_written_is_read_and_says_so_when_it_is_saved(tmp_path: Path) -> None:
+    """A file stands where the versions would be kept, which stops root too."""
+    (tmp_path / ID).parent.mkdir(parents=True)
+    (tmp_path / ID).write_text(TEXT)
+    (tmp_path / ".flexcell").write_text("")
+    documents = Documents(tmp_path, STATES)
+    assert documents.open(ID).text == TEXT
+    refused = rf"{ID}: the document cannot be written: .*let this server write"
+    with pytest.raises(DocumentError, match=refused):
+        documents.save(ID, TEXT + "# more\n", base_hash=hash_of(TEXT))
+    with pytest.raises(DocumentError, match=refused):
+        documents.rename(ID, "behaviors/a/y.yaml")
+    with pytest.raises(DocumentError, match=refused):
+        documents.delete(ID)
+    assert (tmp_path / ID).read_text() == TEXT
+
+
+def test_a_folder_that_cannot_be_written_is_told(documents: Documents) -> None:
+    """The file stays as it was."""
+    file = documents.file_of(ID)
+    (file.parent / f".{file.name}.new").mkdir()
+    with pytest.raises(DocumentError, match="the document cannot be written"):
+        documents.save(ID, TEXT + "# more\n", base_hash=hash_of(TEXT))
+    assert file.read_text() == TEXT
+
+
 def test_a_version_that_comes_again_is_kept_once(documents: Documents) -> None:
     first = documents.open(ID)
     documents.save(ID, TEXT + "# more\n", base_hash=first.hash)

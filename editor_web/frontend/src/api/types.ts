@@ -691,6 +691,17 @@ export interface LogLine {
   readonly causes: readonly CauseLine[]
 }
 
+/** A token that logs a browser in once, at `/login?t=<token>`. */
+export interface LoginLinkBody {
+  readonly token: string
+  readonly expires_in_s: number
+}
+
+/** Whose log-in link is wanted. */
+export interface LoginLinkRequest {
+  readonly role: "operator" | "viewer"
+}
+
 /** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of all that is shown; 1 to 4 are beside that, each in its colour. */
 export interface LookAt {
   readonly k: "look"

@@ -1,0 +1,42 @@
+"""How many connections the server takes: as its file descriptors allow, whose limit is raised as far as it may be."""
+
+from __future__ import annotations
+
+import logging
+import os
+import resource
+from pathlib import Path
+
+MAX_CONNECTIONS = 512
+COMMAND_RESERVE = 8
+"""Of the connections, so many are left for an operator's commands, whatever pages and viewers do."""
+_MIN_CONNECTIONS = 16
+_WANTED_DESCRIPTORS = 65_536
+# Files, child processes and databases that are opened while the server runs.
+_SPARE_DESCRIPTORS = 12
+_OPEN_DESCRIPTORS = Path("/proc/self/fd")
+_log = logging.getLogger("flexcell.server")
+
+
+def raise_descriptor_limit() -> None:
+    """Raise the limit of open files of this process as far as the system allows."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = _WANTED_DESCRIPTORS if hard == resource.RLIM_INFINITY else min(hard, _WANTED_DESCRIPTORS)
+    if soft != resource.RLIM_INFINITY and soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+
+
+def connection_limit() -> int:
+    """Return how many connections may be open at once, and say so where it is fewer than wanted."""
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft == resource.RLIM_INFINITY:
+        return MAX_CONNECTIONS
+    # A page's 3D view takes its own connection and both ends of the one to viser.
+    limit = max(_MIN_CONNECTIONS, min(MAX_CONNECTIONS, (soft - _open_descriptors() - _SPARE_DESCRIPTORS) // 2))
+    if limit < MAX_CONNECTIONS:
+        _log.warning("%d open files allow only %d connections at once; raise `ulimit -n`", soft, limit)
+    return limit
+
+
+def _open_descriptors() -> int:
+    return len(os.listdir(_OPEN_DESCRIPTORS)) if _OPEN_DESCRIPTORS.is_dir() else 64
