@@ -1,5 +1,5 @@
 /** The skill bus over HTTP: what there is, forms, calls, publishing, parameters, and goals with their course. */
-import { call, post, sent, ServerError } from './client'
+import { call, post, request as ask, sent, ServerError } from './client'
 import type { ErrorBody } from './types'
 
 export interface TopicFacts {
@@ -71,7 +71,7 @@ export async function sendGoal(
   onLine: (line: GoalStreamLine) => void,
   signal: AbortSignal,
 ): Promise<void> {
-  const response = await fetch('/api/v1/bus/goals', {
+  const response = await ask('/bus/goals', {
     method: 'POST',
     headers: { 'content-type': 'application/json' },
     body: JSON.stringify({ address, request }),

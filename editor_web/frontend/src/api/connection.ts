@@ -8,7 +8,7 @@ export interface ConnectionEvents {
   readonly onOpen: () => void
   readonly onFrame: (frame: Frame) => void
   readonly onLost: () => void
-  /** The server does not know this page any more; nothing is tried again. */
+  /** The server does not know this page any more; it is asked again until somebody has logged in. */
   readonly onDenied: () => void
 }
 
@@ -21,6 +21,7 @@ export interface LiveConnection {
 const SILENCE_MS = 12_000
 const ANSWER_MS = 4000
 const RETRY_MS = [250, 500, 1000, 2000, 3000]
+const LOGGED_OUT_MS = 2000
 
 /** Open a connection and keep it open. */
 export function keepConnected(events: ConnectionEvents): LiveConnection {
@@ -76,6 +77,8 @@ export function keepConnected(events: ConnectionEvents): LiveConnection {
     if (ended) return
     if (denied) {
       events.onDenied()
+      attempt = 0
+      retry = setTimeout(() => void again(), LOGGED_OUT_MS)
       return
     }
     retry = setTimeout(open, RETRY_MS[Math.min(attempt, RETRY_MS.length - 1)])

@@ -1,11 +1,12 @@
 /** The form's behavior: values, checks, and the request to start. */
 import { useMemo, useState } from 'react'
 import { useKept } from '../../api/breakpoints'
+import { lookAtCell } from '../../api/cellConnection'
 import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
-import { send } from '../../api/refusal'
-import type { BehaviorBody, ErrorBody, StartBody } from '../../api/types'
+import { forgive, refuse, send } from '../../api/refusal'
+import type { BehaviorBody, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
@@ -16,7 +17,6 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
   const [values, setValues] = useState<Values>(() => Object.fromEntries(fields.map((f) => [f.name, f.initial])))
   const [problems, setProblems] = useState<Problems>({})
-  const [refusal, setRefusal] = useState<ErrorBody>()
   const [seed, setSeed] = useState<string | number>('')
   const [inputs, setInputs] = useState('')
   const data = inputsOf(inputs)
@@ -43,7 +43,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   async function submit(): Promise<void> {
     const found = problemsOf(fields, values)
     setProblems(found)
-    setRefusal(undefined)
+    forgive()
     if (Object.values(found).some(Boolean) || !data) return
     try {
       const body: StartBody = {
@@ -60,7 +60,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
       const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
       const name = fields.find((f) => said.where === f.name || said.where.endsWith(`.${f.name}`))?.name
       if (name) setProblems({ [name]: said.hint ? `${said.message} (${said.hint})` : said.message })
-      else setRefusal(said)
+      else refuse('Start', said.message, said.hint)
+      void lookAtCell()
     }
   }
 
@@ -77,7 +78,6 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     values,
     set,
     problems,
-    refusal,
     submit,
     repeat,
     seed,

@@ -5,6 +5,7 @@ import { useEffect, useLayoutEffect, useRef, useState, type KeyboardEvent, type 
 import type { Previewed } from '../../api/preview'
 import { connectTeach, lookAt, lookAway, useTeach } from '../../api/teaching'
 import type { ArmCard } from '../../api/types'
+import { useModal } from '../../components/modal'
 import { PLACED } from '../../document/editing/preview'
 import { EntryFacts } from './EntryFacts'
 import { useEntryCourse } from './useEntryCourse'
@@ -125,9 +126,7 @@ function ArmChoice({ arms, arm, onChoose }: ArmChoiceProps) {
 /** The browser's own dialog: it keeps the keyboard inside, and closes with Escape. */
 function Sheet({ label, onClose, children }: { readonly label: string; readonly onClose: () => void; readonly children: ReactNode }) {
   const element = useRef<HTMLDialogElement>(null)
-  useEffect(() => {
-    if (!element.current?.open) element.current?.showModal()
-  }, [])
+  useModal(element)
   return (
     <dialog ref={element} className="entry-preview is-sheet" aria-label={label} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
       {children}
