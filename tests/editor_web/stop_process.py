@@ -79,10 +79,10 @@ class StopProcess:
                 self.end_headers()
                 self.wfile.write(stop._answer())
 
-            do_POST = _take
-            do_OPTIONS = _take
+            do_POST = _take  # noqa: N815 - the library finds it by this name
+            do_OPTIONS = _take  # noqa: N815 - the same
 
-            def log_message(self, format: str, *args: Any) -> None:
+            def log_message(self, *args: object) -> None:
                 """Say nothing."""
 
         return Handler

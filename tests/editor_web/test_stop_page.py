@@ -1,4 +1,4 @@
-"""STOP of the cell in a real browser: with the engine frozen and dead, over dialogs, by its key, and where nobody answers."""
+"""STOP of the cell in a real browser: with the engine frozen and dead, over dialogs, by its key."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
+import { lookup } from '../../document/dict'
 import './styles/index.css'
 import { Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
@@ -59,7 +60,7 @@ export function EditorPage(props: EditorPageProps) {
   const { id } = props
   const phase = useEditor((s) => (s.id === id ? s.phase : 'loading'))
   const problem = useEditor((s) => s.problem)
-  const onDisk = useLive((s) => s.documents[id])
+  const onDisk = useLive((s) => lookup(s.documents, id))
   const written = useLive((s) => s.documents)
   useEffect(() => {
     forgetDataFlow()

@@ -1,4 +1,5 @@
 /** The form that sets a behavior's parameters for one run. */
+import { lookup } from '../../document/dict'
 import { Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
 import { IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
@@ -43,8 +44,8 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
         <ParameterField
           key={field.name}
           field={field}
-          value={values[field.name]}
-          problem={problems[field.name]}
+          value={lookup(values, field.name)}
+          problem={lookup(problems, field.name)}
           onChange={(value) => set(field.name, value)}
         />
       ))}

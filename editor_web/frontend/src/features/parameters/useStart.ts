@@ -1,4 +1,5 @@
 /** The form's behavior: values, checks, and the request to start. */
+import { lookup, type Dict } from '../../document/dict'
 import { useMemo, useState } from 'react'
 import { useKept } from '../../api/breakpoints'
 import { lookAtCell } from '../../api/cellConnection'
@@ -10,8 +11,8 @@ import type { BehaviorBody, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
-type Values = Readonly<Record<string, unknown>>
-type Problems = Readonly<Record<string, string | undefined>>
+type Values = Dict<unknown>
+type Problems = Dict<string | undefined>
 
 export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
@@ -33,8 +34,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   async function repeat(run: string): Promise<void> {
     const origin = await send('Take the values of the run', () => originOf(run))
     if (!origin) return
-    const known = fields.filter((field) => field.name in origin.parameters)
-    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, origin.parameters[name])])) })
+    const known = fields.filter((field) => lookup(origin.parameters, field.name) !== undefined)
+    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, lookup(origin.parameters, name))])) })
     setSeed(origin.seed)
     setInputs(inputsText(origin.inputs))
     setProblems({})
@@ -92,7 +93,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
 }
 
 function problemsOf(fields: readonly Field[], values: Values): Problems {
-  return Object.fromEntries(fields.map((field) => [field.name, problemWith(field, values[field.name])]))
+  return Object.fromEntries(fields.map((field) => [field.name, problemWith(field, lookup(values, field.name))]))
 }
 
 function seedOf(seed: string | number): number | null {

@@ -1,4 +1,5 @@
 /** A named entry as an arm would be there, in 3D and in numbers; it is seen by this page only, until it is closed. */
+import { lookup } from '../../document/dict'
 import './preview.css'
 import { CloseButton } from '@mantine/core'
 import { useEffect, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
@@ -35,7 +36,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
     <>
       <header className="preview-head">
         <h2>
-          {title} <span className="quiet">{PLACED[shown.kind]}</span>
+          {title} <span className="quiet">{lookup(PLACED, shown.kind)}</span>
         </h2>
         <span className="spacer" />
         {arms && arms.length > 0 && <ArmChoice arms={arms} arm={arm} onChoose={choose} />}
