@@ -1,5 +1,6 @@
 /** Keeps a view that fails from taking others with it: says what failed, tries again, hands out the details. */
 import { Component, useState, type ErrorInfo, type ReactNode } from 'react'
+import { forgetFailedLoads } from './lazyView'
 import './viewBoundary.css'
 
 interface ViewBoundaryProps {
@@ -33,6 +34,7 @@ export class ViewBoundary extends Component<ViewBoundaryProps, State> {
   }
 
   override componentDidCatch(error: unknown, { componentStack }: ErrorInfo): void {
+    forgetFailedLoads()
     this.setState({ failure: { error, stack: componentStack ?? '' } })
   }
 
