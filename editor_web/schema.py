@@ -40,6 +40,7 @@ def typescript() -> str:
     """Return the TypeScript types of all HTTP bodies and websocket frames."""
     schemas = {**_http_schemas(), **_live_schemas(), **_edit_schemas()}
     parts = ["// Made by `python -m editor_web.schema`; edit the Python models instead.\n"]
+    parts.append("import type { Dict } from '../document/dict'\n")
     parts += [_interface(name, schemas[name]) for name in sorted(schemas)]
     parts.append("export type Frame = Hello | Snapshot | Delta | DocumentsChanged | Ping\n")
     parts.append(f"export type Edit = {' | '.join(_EDITS)}\n")
@@ -128,7 +129,7 @@ def _type(schema: Schema) -> str:
     if schema.get("type") == "object":
         given = schema.get("additionalProperties")
         inner = cast(Schema, given) if isinstance(given, dict) else {}
-        return f"Readonly<Record<string, {_type(inner)}>>"
+        return f"Dict<{_type(inner)}>"
     return _SIMPLE.get(str(schema.get("type")), "unknown")
 
 

@@ -137,7 +137,7 @@ def test_the_cell_is_stopped_with_everything_in_it(browser: Browser, shop: Works
         stop = page.get_by_role("button", name="Stop the cell")
         expect(stop).to_have_attribute("title", re.compile("This is no emergency stop"))
         stop.click()
-        expect(page.get_by_text("Everything is at rest")).to_be_visible()
+        expect(page.get_by_role("status", name="What became of the stop")).to_contain_text("All arms at rest")
         expect(page.get_by_role("table").locator(".badge", has_text="stopped")).to_have_count(2)
     for run in runs:
         reasons = [event.reason for event in shop.events(run) if isinstance(event, StopRequested)]

@@ -1,5 +1,6 @@
 /** The skill bus over HTTP: what there is, forms, calls, publishing, parameters, and goals with their course. */
-import { call, post, sent, ServerError } from './client'
+import type { Dict } from '../document/dict'
+import { call, post, request as ask, sent, ServerError } from './client'
 import type { ErrorBody } from './types'
 
 export interface TopicFacts {
@@ -21,7 +22,7 @@ export interface ParameterFacts {
   readonly name: string
   readonly doc: string
   readonly value: unknown
-  readonly schema: Readonly<Record<string, unknown>>
+  readonly schema: Dict<unknown>
 }
 
 export interface BusBoard {
@@ -33,7 +34,7 @@ export interface BusBoard {
 
 export interface BusForm {
   readonly name: string
-  readonly schema: Readonly<Record<string, unknown>>
+  readonly schema: Dict<unknown>
 }
 
 export interface SignalField {
@@ -58,8 +59,8 @@ export const bus = {
   fields: () => call<{ readonly topics: readonly TopicFields[] }>('/bus/fields'),
   requestForm: (address: string) => call<BusForm>(`/bus/form?address=${encodeURIComponent(address)}`),
   messageForm: (topic: string) => call<BusForm>(`/bus/form?topic=${encodeURIComponent(topic)}`),
-  call: (address: string, request: Record<string, unknown>) => post<unknown>('/bus/call', { address, request }),
-  publish: (topic: string, message: Record<string, unknown>) => post<void>('/bus/publish', { topic, message }),
+  call: (address: string, request: Dict<unknown>) => post<unknown>('/bus/call', { address, request }),
+  publish: (topic: string, message: Dict<unknown>) => post<void>('/bus/publish', { topic, message }),
   setParameter: (name: string, value: unknown) => sent<unknown>('PUT', '/bus/parameter', { name, value }),
   cancel: (goal: string) => post<void>(`/bus/goals/${encodeURIComponent(goal)}/cancel`, {}),
 }
@@ -67,11 +68,11 @@ export const bus = {
 /** Send a goal and hear its course until it has ended; whoever aborts cancels it. */
 export async function sendGoal(
   address: string,
-  request: Record<string, unknown>,
+  request: Dict<unknown>,
   onLine: (line: GoalStreamLine) => void,
   signal: AbortSignal,
 ): Promise<void> {
-  const response = await fetch('/api/v1/bus/goals', {
+  const response = await ask('/bus/goals', {
     method: 'POST',
     headers: { 'content-type': 'application/json' },
     body: JSON.stringify({ address, request }),

@@ -1,4 +1,5 @@
 /** The HTTP interface: typed calls, and errors that carry the server's words. */
+import { keepSession, loseSession, type Session } from './session'
 import type {
   BehaviorBody,
   BehaviorSummaryBody,
@@ -9,7 +10,6 @@ import type {
   InterruptedBody,
   QuestionBody,
   ResumeBody,
-  SessionBody,
   StartBody,
   StartedBody,
   StepBody,
@@ -30,9 +30,16 @@ export class ServerError extends Error {
   }
 }
 
+/** Ask `/api/v1…` and look only at whether the server still knows this page. */
+export async function request(path: string, init?: RequestInit): Promise<Response> {
+  const response = await fetch(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
+  if (response.status === 401) loseSession()
+  return response
+}
+
 /** Ask `/api/v1…`; a refusal is a ServerError. */
 export async function call<T>(path: string, init?: RequestInit): Promise<T> {
-  const response = await fetch(`/api/v1${path}`, { headers: { accept: 'application/json' }, ...init })
+  const response = await request(path, init)
   const text = await response.text()
   const body: unknown = text ? parse(text) : undefined
   if (!response.ok) throw new ServerError(response.status, errorOf(body, response.statusText), questionsOf(body), body)
@@ -79,13 +86,20 @@ function command(run: string, name: string, body: unknown = {}): Promise<Control
   return post<ControlBody>(`/runs/${encodeURIComponent(run)}/control/${name}`, body)
 }
 
+/** Ask who this page is, and keep the answer for all of it. */
+async function session(): Promise<Session> {
+  const told = await call<Session>('/session')
+  keepSession(told)
+  return told
+}
+
 /** An id as a part of an address; its slashes stay. */
 export function idPath(id: string): string {
   return id.split('/').map(encodeURIComponent).join('/')
 }
 
 export const api = {
-  session: () => call<SessionBody>('/session'),
+  session,
   behaviors: () => call<readonly BehaviorSummaryBody[]>('/behaviors'),
   behavior: (id: string) => call<BehaviorBody>(`/behaviors/${idPath(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
@@ -108,7 +122,7 @@ export const api = {
   interrupted: () => call<readonly InterruptedBody[]>('/interrupted'),
   resumeInterrupted: (run: string, body: ResumeBody) =>
     post<StartedBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
-  stopCell: () => post<void>('/cell/stop', { reason: 'the cell was stopped in the dashboard' }),
+  stopCell: (reason: string) => post<void>('/cell/stop', { reason }),
   setSpeed: (arm: string, share: number) =>
     post<unknown>('/bus/call', { address: `${arm}/set_speed_override`, request: { share } }),
   recover: (arm: string) => post<unknown>('/bus/call', { address: `${arm}/recover_from_error`, request: {} }),

@@ -8,7 +8,7 @@ export interface ConnectionEvents {
   readonly onOpen: () => void
   readonly onFrame: (frame: Frame) => void
   readonly onLost: () => void
-  /** The session of this page has ended; asked again now and then, as somebody may log in in another tab. */
+  /** The server does not know this page any more; it is asked again until somebody has logged in. */
   readonly onDenied: () => void
 }
 
@@ -20,8 +20,8 @@ export interface LiveConnection {
 
 const SILENCE_MS = 12_000
 const ANSWER_MS = 4000
-const DENIED_MS = 5000
 const RETRY_MS = [250, 500, 1000, 2000, 3000]
+const LOGGED_OUT_MS = 2000
 
 /** Open a connection and keep it open. */
 export function keepConnected(events: ConnectionEvents): LiveConnection {
@@ -77,7 +77,8 @@ export function keepConnected(events: ConnectionEvents): LiveConnection {
     if (ended) return
     if (denied) {
       events.onDenied()
-      retry = setTimeout(() => void again(), DENIED_MS)
+      attempt = 0
+      retry = setTimeout(() => void again(), LOGGED_OUT_MS)
       return
     }
     retry = setTimeout(open, RETRY_MS[Math.min(attempt, RETRY_MS.length - 1)])

@@ -1,4 +1,5 @@
 /** The data stream: traffic, messages, samples, userdata and goals, each only while somebody looks at it. */
+import type { Dict } from '../document/dict'
 import { useEffect, useRef } from 'react'
 import { openSocket } from './socket'
 
@@ -41,7 +42,7 @@ export interface GoalLine {
 export interface TrafficFrame {
   readonly k: 'traffic'
   readonly shape: string
-  readonly topics: Readonly<Record<string, TopicLine>>
+  readonly topics: Dict<TopicLine>
   readonly leases: readonly LeaseLine[]
   readonly goals: readonly GoalLine[]
 }
@@ -73,14 +74,14 @@ export interface DataLine {
 export interface ScopeLine {
   readonly is_open: boolean
   readonly since_s: number
-  readonly values: Readonly<Record<string, DataLine>>
+  readonly values: Dict<DataLine>
 }
 
 export interface UserdataFrame {
   readonly k: 'userdata'
   readonly run: string
   readonly first: boolean
-  readonly scopes: Readonly<Record<string, ScopeLine | null>>
+  readonly scopes: Dict<ScopeLine | null>
   readonly problem: string
 }
 
@@ -94,7 +95,7 @@ export interface GoalProgress {
 export interface GoalsFrame {
   readonly k: 'goals'
   readonly run: string
-  readonly goals: Readonly<Record<string, GoalProgress>>
+  readonly goals: Dict<GoalProgress>
 }
 
 export type DataFrame = TrafficFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | { readonly k: 'ping' }

@@ -1,4 +1,5 @@
 /** Named entries of the cell's store: who changed one last, and what is in it. */
+import type { Dict } from '../document/dict'
 import { call, post } from './client'
 import type { EntryPage, EntryRow } from './types'
 
@@ -9,8 +10,8 @@ export const entries = {
     return page.entries.find((entry) => entry.name === name)
   },
   /** For those who may call services. */
-  value: async (kind: string, name: string): Promise<Readonly<Record<string, unknown>>> => {
-    const record = await post<{ readonly value: Readonly<Record<string, unknown>> }>('/bus/call', {
+  value: async (kind: string, name: string): Promise<Dict<unknown>> => {
+    const record = await post<{ readonly value: Dict<unknown> }>('/bus/call', {
       address: 'store/read_entry',
       request: { kind, name },
     })

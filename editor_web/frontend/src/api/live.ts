@@ -1,8 +1,11 @@
 /** The live connection: one websocket, reopened when it is lost, folded into one store. */
 import { EMPTY, fold, isActive, type LiveState } from '../document/live'
 import { atMoment, type ShownMoment } from '../document/timelineMoment'
+import { wallTime } from '../document/time'
+import { api } from './client'
 import { keepConnected, type LiveConnection } from './connection'
 import { OPERATED, useLive } from './liveStore'
+import { useSession } from './session'
 import { PAGE, useShown } from './shown'
 import type { Frame } from './types'
 
@@ -19,6 +22,13 @@ export function showMoment(past: ShownMoment | undefined): void {
 /** The last event of the watched run that the stream has told of. */
 export function streamedSeq(): number {
   return streamed.seq
+}
+
+let heardS = 0
+
+/** When the server has told anything last, as a time of day; empty before it has. */
+export function lastHeard(): string {
+  return heardS > 0 ? wallTime(heardS) : ''
 }
 
 let connection: LiveConnection | undefined
@@ -60,6 +70,8 @@ export function serverNow(): number {
 export function connect(): () => void {
   const opened = keepConnected({
     onOpen: () => {
+      // Another server process has another stop process.
+      api.session().catch(() => undefined)
       sendShow()
       if (watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
@@ -73,13 +85,19 @@ export function connect(): () => void {
   })
   connection = opened
   const unsubscribe = useShown.subscribe(sendShow)
+  const forgetSession = useSession.subscribe((now, before) => {
+    // What was asked for meanwhile was refused.
+    if (before.isLoggedOut && !now.isLoggedOut) useLive.setState((live) => ({ generation: live.generation + 1 }))
+  })
   return () => {
     unsubscribe()
+    forgetSession()
     opened.close()
   }
 }
 
 function receive(frame: Frame): void {
+  heardS = Date.now() / 1000
   const before = useLive.getState()
   const next = fold(streamed, frame, performance.now())
   if (next === 'gap') {

@@ -1,4 +1,5 @@
 /** Parts of what is live, for the many that each show one: who shows a node hears of that node only. */
+import { lookup } from '../document/dict'
 import { useCallback, useSyncExternalStore } from 'react'
 import type { StoreApi } from 'zustand'
 import { useLiveStore, type LiveStore } from './liveStore'
@@ -15,7 +16,7 @@ class Listeners {
     store.subscribe((now, before) => {
       if (now.nodes !== before.nodes) {
         for (const [path, listeners] of this.ofNodes) {
-          if (now.nodes[path] !== before.nodes[path]) for (const listener of listeners) listener()
+          if (lookup(now.nodes, path) !== lookup(before.nodes, path)) for (const listener of listeners) listener()
         }
       }
       if (now.control !== before.control || now.past !== before.past) for (const listener of this.ofHolds) listener()
@@ -51,7 +52,7 @@ function listenersOf(store: StoreApi<LiveStore>): Listeners {
 export function useNodePart<T>(path: string, select: (live: NodeLive | undefined) => T): T {
   const store = useLiveStore()
   const subscribe = useCallback((listener: Listener) => listenersOf(store).hearOfNode(path, listener), [store, path])
-  return useSyncExternalStore(subscribe, () => select(store.getState().nodes[path]))
+  return useSyncExternalStore(subscribe, () => select(lookup(store.getState().nodes, path)))
 }
 
 /** The state of one node. */

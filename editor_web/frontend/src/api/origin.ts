@@ -1,12 +1,13 @@
 /** What a run was started with, from the first of its events. */
+import type { Dict } from '../document/dict'
 import { call } from './client'
 import type { EventsBody } from './types'
 
 export interface Origin {
-  readonly parameters: Readonly<Record<string, unknown>>
+  readonly parameters: Dict<unknown>
   readonly seed: number
   /** Userdata that it began with in the place of what its document says. */
-  readonly inputs: Readonly<Record<string, unknown>>
+  readonly inputs: Dict<unknown>
 }
 
 /** Fails where the run is not in the journal. */

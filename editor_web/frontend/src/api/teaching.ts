@@ -1,4 +1,5 @@
 /** The connection of the page for teaching: what jogs and presses ends with it; and what it asks over HTTP. */
+import type { Dict } from '../document/dict'
 import { create } from 'zustand'
 import { call, post } from './client'
 import { useLive } from './live'
@@ -38,7 +39,7 @@ export interface TeachStore {
   readonly canPush: boolean
   /** The names of all frames of the cell. */
   readonly frames: readonly string[]
-  readonly now: Readonly<Record<string, ArmNow>>
+  readonly now: Dict<ArmNow>
   /** Null where there is no Helping Hand, undefined until told. */
   readonly hand: TeachStatus | null | undefined
   /** Whether something is shown in the cell. */
@@ -172,7 +173,7 @@ export interface EntryChange {
 
 /** What an entry was, or is. */
 export interface EntryValue {
-  readonly value: Readonly<Record<string, unknown>>
+  readonly value: Dict<unknown>
   readonly tags: readonly string[] | null
 }
 
@@ -195,7 +196,7 @@ function ask<T>(address: string, request: unknown): Promise<T> {
   return post<T>('/bus/call', { address, request })
 }
 
-function query(fields: Readonly<Record<string, string | number>>): string {
+function query(fields: Dict<string | number>): string {
   return new URLSearchParams(Object.entries(fields).map(([name, value]) => [name, String(value)])).toString()
 }
 

@@ -1,4 +1,5 @@
 /** Looking at the past of a run: its timeline, its moments one after the other, its failure; past runs and recordings. */
+import type { Dict } from '../document/dict'
 import { create } from 'zustand'
 import { nextMoment } from '../document/timelineMoment'
 import { withTimeline, type Course } from '../document/timeline'
@@ -30,7 +31,7 @@ export function recordingSubject(path: string, run: string): Subject {
 /** The userdata of a moment. */
 export interface PastValues {
   readonly seq: number
-  readonly scopes: Readonly<Record<string, ScopeLine>>
+  readonly scopes: Dict<ScopeLine>
   readonly problem: string
 }
 
@@ -55,7 +56,7 @@ export const pastApi = {
   failure: (subject: Subject) => call<Failure | null>(`${subject.address}/failure`),
 }
 
-function query(values: Readonly<Record<string, string | number | undefined>>): string {
+function query(values: Dict<string | number | undefined>): string {
   return new URLSearchParams(
     Object.entries(values).flatMap(([key, value]) => (value === undefined || value === '' ? [] : [[key, String(value)]])),
   ).toString()

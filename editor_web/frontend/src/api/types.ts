@@ -1,12 +1,14 @@
 // Made by `python -m editor_web.schema`; edit the Python models instead.
 
+import type { Dict } from '../document/dict'
+
 /** Put a new node into a container; its name is made up where none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` gives them, the content is that instead. `after` leads the open good outcomes of a sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children. */
 export interface AddNode {
   readonly edit: "add_node"
   readonly parent: string
   readonly kind?: string
   readonly runs?: string
-  readonly parameters?: Readonly<Record<string, unknown>>
+  readonly parameters?: Dict<unknown>
   readonly name?: string | null
   readonly yaml?: string
   readonly index?: number | null
@@ -48,7 +50,7 @@ export interface ArmNow {
 /** The arms that are another than when told last, at most ten times a second. */
 export interface ArmsNow {
   readonly k: "now"
-  readonly arms: Readonly<Record<string, ArmNow>>
+  readonly arms: Dict<ArmNow>
 }
 
 /** An interrupted run cannot go on before these questions are answered. */
@@ -80,7 +82,7 @@ export interface BehaviorBody {
   readonly parameters: readonly ParameterBody[]
   readonly findings: readonly FindingBody[]
   readonly graph: GraphNodeBody | null
-  readonly view: Readonly<Record<string, readonly [number, number]>>
+  readonly view: Dict<readonly [number, number]>
   readonly success: readonly string[]
 }
 
@@ -301,11 +303,11 @@ export interface Delta {
   readonly now_s: number
   readonly ticking: boolean
   readonly runs: readonly RunLine[]
-  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
   readonly control: ControlLive | null
-  readonly robots: Readonly<Record<string, RobotLine>>
+  readonly robots: Dict<RobotLine>
 }
 
 /** What a behavior is to be proposed from; with `id` it is also written there, as a new document. */
@@ -343,8 +345,8 @@ export interface DocumentInfoBody {
   readonly name: string
   readonly description: string
   readonly cell: string | null
-  readonly parameters: Readonly<Record<string, Readonly<Record<string, unknown>>>>
-  readonly userdata: Readonly<Record<string, unknown>>
+  readonly parameters: Dict<Dict<unknown>>
+  readonly userdata: Dict<unknown>
   readonly outcomes: readonly string[]
   readonly success: readonly string[]
 }
@@ -368,15 +370,15 @@ export interface DocumentNodeBody {
   readonly state: string | null
   readonly reference: string | null
   readonly document: string | null
-  readonly parameters: Readonly<Record<string, unknown>>
-  readonly inputs: Readonly<Record<string, string>>
-  readonly outputs: Readonly<Record<string, string>>
-  readonly targets: Readonly<Record<string, string>>
+  readonly parameters: Dict<unknown>
+  readonly inputs: Dict<string>
+  readonly outputs: Dict<string>
+  readonly targets: Dict<string>
   readonly exits: readonly string[]
-  readonly autonomy: Readonly<Record<string, string>>
-  readonly timeout: Readonly<Record<string, unknown>> | null
-  readonly retry: Readonly<Record<string, unknown>> | null
-  readonly guard: Readonly<Record<string, unknown>> | null
+  readonly autonomy: Dict<string>
+  readonly timeout: Dict<unknown> | null
+  readonly retry: Dict<unknown> | null
+  readonly guard: Dict<unknown> | null
   readonly on_error: string | null
   readonly resume: string | null
   readonly success: readonly string[]
@@ -385,14 +387,14 @@ export interface DocumentNodeBody {
   readonly position: readonly [number, number] | null
   readonly rules: readonly RuleBody[]
   readonly otherwise: string | null
-  readonly userdata: Readonly<Record<string, unknown>>
-  readonly settings: Readonly<Record<string, unknown>>
+  readonly userdata: Dict<unknown>
+  readonly settings: Dict<unknown>
 }
 
 /** Documents that have changed on disk, by id: their hash now, null where they are gone. */
 export interface DocumentsChanged {
   readonly k: "documents"
-  readonly changed: Readonly<Record<string, string | null>>
+  readonly changed: Dict<string | null>
 }
 
 /** A text to draw; without `check` the answer comes sooner, and without findings. */
@@ -438,7 +440,7 @@ export interface EditedBody {
 export interface EditsBody {
   readonly text: string
   readonly check: boolean
-  readonly edits: readonly (Readonly<Record<string, unknown>>)[]
+  readonly edits: readonly Dict<unknown>[]
 }
 
 /** Entries of the store have changed. */
@@ -479,7 +481,7 @@ export interface ErrorBody {
 
 /** A page of a run's events as the journal holds them; ask again with `after=last`. */
 export interface EventsBody {
-  readonly events: readonly (Readonly<Record<string, unknown>>)[]
+  readonly events: readonly Dict<unknown>[]
   readonly last: number
 }
 
@@ -540,7 +542,7 @@ export interface Fits {
 /** What would mend a finding: the edits to send, and what they do in words. */
 export interface FixBody {
   readonly title: string
-  readonly edits: readonly (Readonly<Record<string, unknown>>)[]
+  readonly edits: readonly Dict<unknown>[]
 }
 
 /** The fixes of one finding of a text; `code`, `path`, `line` and `message` say of which. */
@@ -640,7 +642,7 @@ export interface KeyBody {
   readonly name: string
   readonly required: boolean
   readonly default: unknown
-  readonly schema: Readonly<Record<string, unknown>>
+  readonly schema: Dict<unknown>
 }
 
 /** One key with all that write and read it. */
@@ -725,7 +727,7 @@ export interface MergeConflictBody {
 export interface Moment {
   readonly seq: number
   readonly time_s: number
-  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
 }
@@ -810,7 +812,7 @@ export interface Operate {
 /** One value that is set per run, with the JSON Schema of its field. */
 export interface ParameterBody {
   readonly name: string
-  readonly schema: Readonly<Record<string, unknown>>
+  readonly schema: Dict<unknown>
   readonly required: boolean
 }
 
@@ -834,7 +836,7 @@ export interface PastRunBody {
 export interface PastRunsBody {
   readonly runs: readonly PastRunBody[]
   readonly total: number
-  readonly counts: Readonly<Record<string, number>>
+  readonly counts: Dict<number>
 }
 
 /** Put nodes as `copy` gives them into a container. */
@@ -972,7 +974,7 @@ export interface Rest {
 
 /** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
 export interface ResumeBody {
-  readonly answers?: Readonly<Record<string, string>>
+  readonly answers?: Dict<string>
   readonly changed?: boolean
 }
 
@@ -990,7 +992,7 @@ export interface RobotLine {
 /** One condition of a concurrency container: the outcome, and which child must have ended how. */
 export interface RuleBody {
   readonly outcome: string
-  readonly when: Readonly<Record<string, string>>
+  readonly when: Dict<string>
 }
 
 /** One run, under way or over. */
@@ -1043,7 +1045,7 @@ export interface SessionBody {
 /** Change what the document declares; null takes a key away. The other keys stay. Keys: name, description, cell, parameters, userdata, outcomes, success. */
 export interface SetDocument {
   readonly edit: "set_document"
-  readonly changes: Readonly<Record<string, unknown>>
+  readonly changes: Dict<unknown>
 }
 
 /** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, items, times, as, index, next, collect, memory, policy, synchronise, after, status, running, failure; and `order`, the names of all children in their new order. */
@@ -1072,7 +1074,7 @@ export interface SetParameter {
 /** Place nodes on the canvas, in pixels relative to their container; null forgets a position. */
 export interface SetPositions {
   readonly edit: "set_positions"
-  readonly positions: Readonly<Record<string, readonly [number, number] | null>>
+  readonly positions: Dict<readonly [number, number] | null>
 }
 
 /** Lead an outcome of a node to a sibling, or to an outcome of the machine around it. */
@@ -1098,10 +1100,10 @@ export interface Snapshot {
   readonly now_s: number
   readonly ticking: boolean
   readonly runs: readonly RunLine[]
-  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly control: ControlLive | null
-  readonly robots: Readonly<Record<string, RobotLine>>
+  readonly robots: Dict<RobotLine>
 }
 
 /** One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that began and ended it. */
@@ -1119,8 +1121,8 @@ export interface Span {
 /** A request to start a run; without a seed the server draws one. */
 export interface StartBody {
   readonly behavior: string
-  readonly parameters?: Readonly<Record<string, unknown>>
-  readonly inputs?: Readonly<Record<string, unknown>>
+  readonly parameters?: Dict<unknown>
+  readonly inputs?: Dict<unknown>
   readonly seed?: number | null
   readonly supervision?: SupervisionBody
   readonly begin?: MomentBody | null

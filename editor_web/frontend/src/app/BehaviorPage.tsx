@@ -12,6 +12,7 @@ import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
 import { StatusBadge } from '../components/StatusBadge'
+import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/live'
 import { nodeAt } from '../document/tree'
 import { CellFrame } from '../features/cell/CellFrame'
@@ -36,7 +37,6 @@ import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
 import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import { StopCell } from '../features/robots/StopCell'
 import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
 import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
@@ -146,7 +146,6 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           <span className="spacer" />
           {session?.has_cell_view && <ShowMenu />}
           {mayOperate && <ResetParts isBusy={active.length > 0} />}
-          {mayOperate && <StopCell />}
         </>
       }
       foot={<RobotStrip />}
@@ -220,12 +219,20 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
           Start
         </Button>
       </header>
-      <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
-      <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
-      <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
+      <ViewBoundary name="Interrupted run">
+        <InterruptedHere behavior={behavior.name} onResumed={onStarted} />
+      </ViewBoundary>
+      <ViewBoundary name="Run control">
+        <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
+      </ViewBoundary>
+      <ViewBoundary name="Timeline">
+        <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
+      </ViewBoundary>
       <RefusalLine />
-      <BlockedWays />
-      <Requests root={behavior.graph} commands={commands} onShow={show} />
+      <ViewBoundary name="Requests">
+        <BlockedWays />
+        <Requests root={behavior.graph} commands={commands} onShow={show} />
+      </ViewBoundary>
       {isNarrow ? (
         <OpenedTabs
           label="Views"

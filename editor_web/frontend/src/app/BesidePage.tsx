@@ -10,6 +10,7 @@ import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
 import { PageLink } from '../components/PageLink'
 import { StatusBadge } from '../components/StatusBadge'
+import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/live'
 import { nodeAt } from '../document/tree'
 import { duration, wallTime } from '../document/time'
@@ -87,7 +88,9 @@ function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
   if (run) {
     return (
       <LiveOf key={run.id} run={run.id}>
-        <RunColumn run={run} side={side} choice={choice} onOpen={() => onOpen(runHref(run.id))} />
+        <ViewBoundary name={`The run on the ${side}`}>
+          <RunColumn run={run} side={side} choice={choice} onOpen={() => onOpen(runHref(run.id))} />
+        </ViewBoundary>
       </LiveOf>
     )
   }

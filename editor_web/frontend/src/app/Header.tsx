@@ -82,9 +82,10 @@ function StopButton({ run }: { run: RunLine }) {
   const isStopping = run.status === 'stopping'
   const isConnected = useLive((s) => s.connection === 'live')
   return (
-    <Tooltip label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer'}>
+    <Tooltip label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}>
       <Button
         color="red.8"
+        variant="outline"
         size="xs"
         leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
         disabled={isStopping || !isConnected}

@@ -12,7 +12,6 @@ import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { BlockedWays } from '../features/robots/BlockedWays'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import { StopCell } from '../features/robots/StopCell'
 import { nameOf, RunTime, waitsText } from '../features/runs/RunList'
 import { TourInvitation } from '../features/tour/TourInvitation'
 import { InterruptedHere } from './InterruptedHere'
@@ -89,7 +88,6 @@ function CellTools({ hasView, mayOperate }: { hasView: boolean; mayOperate: bool
       <span className="spacer" />
       {hasView && <ShowMenu />}
       {hasView && mayOperate && <HandleMenu />}
-      {mayOperate && <StopCell />}
     </>
   )
 }

@@ -13,7 +13,6 @@ import { RefusalLine } from '../features/control/RefusalLine'
 import { Requests } from '../features/control/Requests'
 import { RunButtons } from '../features/control/RunButtons'
 import { useCommands } from '../features/control/useCommands'
-import { StopCell } from '../features/robots/StopCell'
 import { FinishedRuns } from '../features/runs/FinishedRuns'
 import { RunCard } from '../features/runs/RunCard'
 import { nameOf } from '../features/runs/RunList'
@@ -28,7 +27,6 @@ const CHOOSE = 'tick Compare at two runs first'
 
 export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   const runs = useLive((s) => s.runs)
-  const role = useLive((s) => s.role)
   const [chosen, setChosen] = useState<readonly string[]>([])
   const leases = useLeases()
   useEffect(forgive, [])
@@ -61,7 +59,6 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
           onObstacle={() => refuse('Side by side', CHOOSE)}
           onPress={() => pair && onOpen(besideHref(...pair))}
         />
-        {role === 'operator' && <StopCell />}
       </header>
       <RefusalLine />
       <div className="runs-body">

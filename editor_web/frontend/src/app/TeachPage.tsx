@@ -11,7 +11,6 @@ import { CellFrame } from '../features/cell/CellFrame'
 import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
 import { RobotStrip } from '../features/robots/RobotStrip'
-import { StopCell } from '../features/robots/StopCell'
 import { ArmHead } from '../features/teaching/ArmHead'
 import { ButtonPanel } from '../features/teaching/ButtonPanel'
 import { CaptureList } from '../features/teaching/CaptureList'
@@ -44,7 +43,6 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
           {session?.has_cell_view && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={lookAway} />}
           {session?.has_cell_view && <ShowMenu />}
           {session?.has_cell_view && session.role === 'operator' && <HandleMenu />}
-          {session?.role === 'operator' && <StopCell />}
         </>
       }
       foot={<RobotStrip />}

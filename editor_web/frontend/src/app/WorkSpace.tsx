@@ -1,6 +1,7 @@
 /** How the parts of a behavior's page are placed: panes beside one another, or one view at a time. */
 import { Tabs } from '@mantine/core'
 import type { ReactNode } from 'react'
+import { ViewBoundary } from '../components/ViewBoundary'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 
 export type Tab = 'parameters' | 'node' | 'outline' | 'holds' | 'problems'
@@ -30,11 +31,11 @@ export function Wide({ graph, log, cell, tabs, below = 29 }: WideProps) {
       <Pane id="left" defaultSize="67%" minSize="30%">
         <Group orientation="vertical">
           <Pane id="graph" defaultSize={`${100 - below}%`} minSize="20%">
-            {graph}
+            <ViewBoundary name="Graph">{graph}</ViewBoundary>
           </Pane>
           <Separator className="splitter is-flat" aria-label="Height of the graph" />
           <Pane id="log" defaultSize={`${below}%`} minSize="12%">
-            {log}
+            <ViewBoundary name="Log">{log}</ViewBoundary>
           </Pane>
         </Group>
       </Pane>
@@ -42,11 +43,11 @@ export function Wide({ graph, log, cell, tabs, below = 29 }: WideProps) {
       <Pane id="right" defaultSize="33%" minSize="22%">
         <Group orientation="vertical">
           <Pane id="cell" defaultSize="48%" minSize="15%">
-            {cell}
+            <ViewBoundary name="Cell">{cell}</ViewBoundary>
           </Pane>
           <Separator className="splitter is-flat" aria-label="Height of the cell" />
           <Pane id="tabs" defaultSize="52%" minSize="15%">
-            {tabs}
+            <ViewBoundary name="Tabs">{tabs}</ViewBoundary>
           </Pane>
         </Group>
       </Pane>
@@ -83,7 +84,7 @@ export function SideTabs({ tab, onTab, counts, bodies }: SideTabsProps) {
       </Tabs.List>
       {names.map((name) => (
         <Tabs.Panel key={name} value={name}>
-          {bodies[name]}
+          <ViewBoundary name={TABS[name]}>{bodies[name]}</ViewBoundary>
         </Tabs.Panel>
       ))}
     </Tabs>

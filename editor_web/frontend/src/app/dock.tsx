@@ -1,6 +1,7 @@
 /** What can be seen of a run below its graph, each in a tab; all but the log are loaded when they are first opened. */
-import { lazy, type ComponentType, type ReactNode } from 'react'
+import { type ComponentType, type ReactNode } from 'react'
 import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
+import { lazyView } from '../components/lazyView'
 import { EventLog } from '../features/log/EventLog'
 
 export interface DockProps {
@@ -21,7 +22,7 @@ interface DockTab {
 
 /** A tab of a module that is loaded when it is first opened. */
 export function later(name: string, load: () => Promise<ComponentType<DockProps>>): DockTab {
-  return { name, Body: lazy(async () => ({ default: await load() })) }
+  return { name, Body: lazyView(load) }
 }
 
 const DOCK_TABS: readonly DockTab[] = [

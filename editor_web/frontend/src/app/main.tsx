@@ -13,14 +13,24 @@ import './styles/control.css'
 import './styles/robots.css'
 import './styles/small.css'
 import { MantineProvider } from '@mantine/core'
-import { createRoot } from 'react-dom/client'
+import { createRoot, type Root } from 'react-dom/client'
+import { ViewBoundary } from '../components/ViewBoundary'
+import { StopCell } from '../features/stop/StopCell'
 import { App } from './App'
 import { theme } from './theme'
 
-const root = document.getElementById('root')
-if (!root) throw new Error('index.html has no #root')
-createRoot(root).render(
-  <MantineProvider theme={theme} defaultColorScheme="auto">
-    <App />
-  </MantineProvider>,
+// STOP is a tree of its own: whatever fails in the page, it stays.
+rootAt('stop').render(<StopCell />)
+rootAt('root').render(
+  <ViewBoundary name="The page">
+    <MantineProvider theme={theme} defaultColorScheme="auto">
+      <App />
+    </MantineProvider>
+  </ViewBoundary>,
 )
+
+function rootAt(id: string): Root {
+  const element = document.getElementById(id)
+  if (!element) throw new Error(`index.html has no #${id}`)
+  return createRoot(element)
+}

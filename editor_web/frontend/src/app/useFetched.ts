@@ -1,6 +1,6 @@
 /** Something fetched from the server, fetched again when its key or revision changes, or the server was restarted. */
 import { useEffect, useState } from 'react'
-import { wordsOf } from '../api/client'
+import { ServerError, wordsOf } from '../api/client'
 import { useLive } from '../api/live'
 
 export interface Fetched<T> {
@@ -15,7 +15,8 @@ export function useFetched<T>(key: string, load: () => Promise<T>, revision: num
     let current = true
     load().then(
       (value) => current && setState({ key, value, problem: undefined }),
-      (error: unknown) => current && setState({ key, value: undefined, problem: wordsOf(error) }),
+      // Whoever is logged out keeps what is shown; it is fetched again after the next log-in.
+      (error: unknown) => current && !isLoggedOut(error) && setState({ key, value: undefined, problem: wordsOf(error) }),
     )
     return () => {
       current = false
@@ -24,4 +25,8 @@ export function useFetched<T>(key: string, load: () => Promise<T>, revision: num
   }, [key, generation, revision])
   // What another server process said is shown until this one has answered: nothing typed is lost.
   return state.key === key ? state : { value: undefined, problem: undefined }
+}
+
+function isLoggedOut(error: unknown): boolean {
+  return error instanceof ServerError && error.status === 401
 }

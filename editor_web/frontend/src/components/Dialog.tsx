@@ -1,6 +1,8 @@
 /** A dialog over the page: the browser's own, which keeps the keyboard inside and closes with Escape. */
 import { CloseButton } from '@mantine/core'
-import { useEffect, useId, useRef, type ReactNode } from 'react'
+import { useId, useRef, type ReactNode } from 'react'
+import { useModal } from './modal'
+import { ViewBoundary } from './ViewBoundary'
 
 export interface DialogProps {
   readonly isOpen: boolean
@@ -12,9 +14,7 @@ export interface DialogProps {
 export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
   const element = useRef<HTMLDialogElement>(null)
   const id = useId()
-  useEffect(() => {
-    if (isOpen && !element.current?.open) element.current?.showModal()
-  }, [isOpen])
+  useModal(element, isOpen)
   if (!isOpen) return null
   return (
     <dialog
@@ -29,7 +29,7 @@ export function Dialog({ isOpen, title, onClose, children }: DialogProps) {
           <h2 id={id}>{title}</h2>
           <CloseButton aria-label="Close" onClick={onClose} />
         </div>
-        {children}
+        <ViewBoundary name={title}>{children}</ViewBoundary>
       </div>
     </dialog>
   )

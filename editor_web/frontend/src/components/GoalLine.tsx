@@ -1,10 +1,11 @@
 /** How far the goal of a node is: a bar where its feedback tells a share, and its words. */
+import { lookup } from '../document/dict'
 import './goalLine.css'
 import { useGoals } from '../api/goals'
 import { useLive } from '../api/live'
 
 export function GoalLine({ path }: { path: string }) {
-  const goal = useGoals((s) => s.goals[path])
+  const goal = useGoals((s) => lookup(s.goals, path))
   // What is under way now is no part of a moment of the past.
   const isNow = useLive((s) => s.past === undefined)
   if (!goal || !isNow) return null

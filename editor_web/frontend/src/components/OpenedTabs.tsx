@@ -1,6 +1,7 @@
 /** Tabs whose bodies are made when they are first opened and keep what they show from then on. */
 import { Tabs } from '@mantine/core'
-import { Suspense, useState, type ReactNode } from 'react'
+import { useState, type ReactNode } from 'react'
+import { Loading } from './Loading'
 
 interface OpenedTabsProps {
   readonly label: string
@@ -31,7 +32,7 @@ export function OpenedTabs({ label, bodies, className = '' }: OpenedTabsProps) {
       {names.map((name) => (
         <Tabs.Panel key={name} value={name}>
           {opened.has(name) && (
-            <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>{bodies[name]}</Suspense>
+            <Loading name={name}>{bodies[name]}</Loading>
           )}
         </Tabs.Panel>
       ))}

@@ -1,5 +1,6 @@
 /** A titled area of the work space. */
 import type { ReactNode } from 'react'
+import { ViewBoundary } from './ViewBoundary'
 
 export interface PanelProps {
   readonly title: string
@@ -19,8 +20,10 @@ export function Panel({ title, of, tools, children, foot, className = '' }: Pane
         <h2 className="panel-title">{title}</h2>
         {tools}
       </header>
-      <div className="panel-body">{children}</div>
-      {foot}
+      <div className="panel-body">
+        <ViewBoundary name={title}>{children}</ViewBoundary>
+      </div>
+      {foot && <ViewBoundary name={`What stands below ${title}`}>{foot}</ViewBoundary>}
     </section>
   )
 }

@@ -1,7 +1,8 @@
 /** How far a run is, told from the state of its nodes: its steps, those under way, and a count. Pure. */
+import { lookup, type Dict } from './dict'
 import type { GraphNodeBody, NodeLive } from '../api/types'
 
-type Nodes = Readonly<Record<string, NodeLive>>
+type Nodes = Dict<NodeLive>
 
 /** More cells than this cannot be told apart. */
 export const CELLS = 80
@@ -19,10 +20,10 @@ export function cellsOf(root: GraphNodeBody, limit = CELLS): readonly GraphNodeB
 
 /** The innermost active nodes, in the order in which they were entered. */
 export function activeLeaves(nodes: Nodes): readonly string[] {
-  const active = Object.keys(nodes).filter((path) => nodes[path]?.status === 'active')
+  const active = Object.keys(nodes).filter((path) => lookup(nodes, path)?.status === 'active')
   const above = new Set(active.flatMap((path) => path.split('/').map((_, count, parts) => parts.slice(0, count).join('/'))))
   const leaves = active.filter((path) => !above.has(path))
-  return leaves.sort((a, b) => (nodes[a]?.entered_s ?? 0) - (nodes[b]?.entered_s ?? 0) || a.localeCompare(b))
+  return leaves.sort((a, b) => (lookup(nodes, a)?.entered_s ?? 0) - (lookup(nodes, b)?.entered_s ?? 0) || a.localeCompare(b))
 }
 
 /** `both › left`; the root stays as it is. */
@@ -33,7 +34,7 @@ export function pathWords(path: string): string {
 
 /** `2 of 5 steps done, 1 active, 1 failed`. A node that waits with its outcome is not done yet. */
 export function tally(cells: readonly GraphNodeBody[], nodes: Nodes, waiting: readonly string[] = []): string {
-  const count = (status: string) => cells.filter((cell) => nodes[cell.path]?.status === status && !waiting.includes(cell.path)).length
+  const count = (status: string) => cells.filter((cell) => lookup(nodes, cell.path)?.status === status && !waiting.includes(cell.path)).length
   const waits = cells.filter((cell) => waiting.includes(cell.path)).length
   const more = [
     [count('active'), 'active'],

@@ -1,4 +1,5 @@
 /** The samples of several curves over one time, in a ring of fixed size. Pure but for the ring itself. */
+import { lookup, type Dict } from './dict'
 
 export class Curves {
   private times: Float64Array
@@ -86,9 +87,9 @@ export class Curves {
 }
 
 /** All rows as CSV: seconds since 1970 on the server's clock, then a column for each curve. */
-export function csvOf(curves: Curves, headings: Readonly<Record<string, string>>): string {
+export function csvOf(curves: Curves, headings: Dict<string>): string {
   const quoted = (text: string) => `"${text.replaceAll('"', '""')}"`
-  const lines = [['time_s', ...curves.names.map((name) => quoted(headings[name] ?? name))].join(',')]
+  const lines = [['time_s', ...curves.names.map((name) => quoted(lookup(headings, name) ?? name))].join(',')]
   for (let row = 0; row < curves.length; row += 1) {
     const values = curves.names.map((name) => {
       const value = curves.value(name, row)

@@ -1,4 +1,5 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
+import type { Dict } from './dict'
 import type { ControlLive, Delta, Frame, LogLine, NodeLive, RobotLine, RunLine, Snapshot } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
@@ -16,14 +17,14 @@ export interface LiveState {
   readonly atMs: number
   readonly ticking: boolean
   readonly runs: readonly RunLine[]
-  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
   /** What can be done with the watched run; null when it is over. */
   readonly control: ControlLive | null
-  readonly robots: Readonly<Record<string, RobotLine>>
+  readonly robots: Dict<RobotLine>
   /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
-  readonly documents: Readonly<Record<string, string | null>>
+  readonly documents: Dict<string | null>
 }
 
 export const EMPTY: LiveState = {

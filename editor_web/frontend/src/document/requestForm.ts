@@ -1,7 +1,8 @@
 /** From the JSON Schema of a request, message or value to the fields of a form. Pure. */
+import { lookup, type Dict } from './dict'
 import { fieldOf, type Field } from './schema'
 
-type Schema = Readonly<Record<string, unknown>>
+type Schema = Dict<unknown>
 
 /** The fields of a request; empty for one that takes nothing. */
 export function requestFields(schema: Schema): readonly Field[] {
@@ -32,7 +33,7 @@ function fieldWithin(name: string, property: Schema, definitions: Schema, requir
 function followed(schema: Schema, definitions: Schema): Schema {
   const { $ref: reference, anyOf: options, ...beside } = schema
   if (typeof reference === 'string') {
-    const target = followed(record(definitions[reference.replace('#/$defs/', '')]), definitions)
+    const target = followed(record(lookup(definitions, reference.replace('#/$defs/', ''))), definitions)
     return { ...target, ...beside }
   }
   const first = Array.isArray(options) ? options.map(record).find((option) => option['type'] !== 'null') : undefined
@@ -63,7 +64,7 @@ export function example(schema: Schema, definitions: Schema, depth = 0): unknown
   }
 }
 
-function exampleObject(schema: Schema, definitions: Schema, depth: number): Record<string, unknown> {
+function exampleObject(schema: Schema, definitions: Schema, depth: number): Dict<unknown> {
   const required = Array.isArray(schema['required']) ? schema['required'].map(String) : []
   const shown = Object.entries(record(schema['properties'])).filter(([name]) => required.includes(name))
   return Object.fromEntries(shown.map(([name, part]) => [name, example(record(part), definitions, depth + 1)]))

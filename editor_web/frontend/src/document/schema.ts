@@ -1,4 +1,5 @@
 /** From a parameter's JSON Schema to a field of the form: kind, label, range, checks. Pure. */
+import { lookup, type Dict } from './dict'
 import type { ParameterBody } from '../api/types'
 
 export type FieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'json'
@@ -96,21 +97,21 @@ function isJson(value: string): boolean {
 }
 
 /** The userdata to begin with, written as a JSON object; undefined where it is none. */
-export function inputsOf(text: string): Readonly<Record<string, unknown>> | undefined {
+export function inputsOf(text: string): Dict<unknown> | undefined {
   if (text.trim() === '') return {}
   const value: unknown = isJson(text) ? JSON.parse(text) : undefined
-  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Record<string, unknown>) : undefined
+  return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Dict<unknown>) : undefined
 }
 
 /** The same as it is written; empty where there is none. */
-export function inputsText(inputs: Readonly<Record<string, unknown>>): string {
+export function inputsText(inputs: Dict<unknown>): string {
   return Object.keys(inputs).length > 0 ? JSON.stringify(inputs, null, 1) : ''
 }
 
 /** The parameters to send; fields left empty are left out, so that the document's default holds. */
-export function parametersOf(fields: readonly Field[], values: Readonly<Record<string, unknown>>): Record<string, unknown> {
-  const filled = fields.filter((field) => values[field.name] !== '' && values[field.name] !== undefined)
-  return Object.fromEntries(filled.map((field) => [field.name, valueOf(field, values[field.name])]))
+export function parametersOf(fields: readonly Field[], values: Dict<unknown>): Dict<unknown> {
+  const filled = fields.filter((field) => lookup(values, field.name) !== '' && lookup(values, field.name) !== undefined)
+  return Object.fromEntries(filled.map((field) => [field.name, valueOf(field, lookup(values, field.name))]))
 }
 
 function valueOf(field: Field, value: unknown): unknown {

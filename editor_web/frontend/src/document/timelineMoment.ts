@@ -1,4 +1,5 @@
 /** The page's picture of a run as it was at a moment of it, in the place of the live one. Pure. */
+import { lookup, type Dict } from './dict'
 import type { LogLine, Moment, NodeLive } from '../api/types'
 import type { LiveState } from './live'
 
@@ -7,7 +8,7 @@ export interface ShownMoment {
   readonly seq: number
   /** The time that was asked for, of the run's clock; the last event before it may be older. */
   readonly timeS: number
-  readonly nodes: Readonly<Record<string, NodeLive>>
+  readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
 }
@@ -30,10 +31,10 @@ export function nextMoment(before: ShownMoment | undefined, told: Moment, timeS:
   }
 }
 
-function withKept(before: Readonly<Record<string, NodeLive>>, told: Readonly<Record<string, NodeLive>>): Readonly<Record<string, NodeLive>> {
+function withKept(before: Dict<NodeLive>, told: Dict<NodeLive>): Dict<NodeLive> {
   return Object.fromEntries(
     Object.entries(told).map(([path, node]) => {
-      const old = before[path]
+      const old = lookup(before, path)
       return [path, old && isSame(old, node) ? old : node]
     }),
   )

@@ -1,4 +1,5 @@
 /** The userdata of a run as it is shown: scopes merged from what has changed, searched, named. Pure. */
+import type { Dict } from './dict'
 import { inShort } from './values'
 
 interface Line {
@@ -11,13 +12,13 @@ interface Line {
 export interface Scope {
   readonly is_open: boolean
   readonly since_s: number
-  readonly values: Readonly<Record<string, Line>>
+  readonly values: Dict<Line>
 }
 
-export type Scopes = Readonly<Record<string, Scope>>
+export type Scopes = Dict<Scope>
 
 /** Scopes with what has changed in them; null takes one away. */
-export function withChanges(before: Scopes, changes: Readonly<Record<string, Scope | null>>, isAll: boolean): Scopes {
+export function withChanges(before: Scopes, changes: Dict<Scope | null>, isAll: boolean): Scopes {
   const merged = isAll ? { ...changes } : { ...before, ...changes }
   return Object.fromEntries(Object.entries(merged).filter((entry): entry is [string, Scope] => entry[1] !== null))
 }

@@ -1,9 +1,10 @@
 /** Planned ways in words: what a run that asks has planned, and which arms wait for a free way. Pure. */
+import type { Dict } from './dict'
 import type { NodeLive, PlanLive, RobotLine, WayLine } from '../api/types'
 import { duration } from './time'
 
 /** The ways that a node, or what lies inside it, has planned. */
-export function plansOf(nodes: Readonly<Record<string, NodeLive>>, path: string): readonly PlanLive[] {
+export function plansOf(nodes: Dict<NodeLive>, path: string): readonly PlanLive[] {
   const inside = `${path}/`
   return Object.entries(nodes).flatMap(([at, node]) => (node.plan && (at === path || at.startsWith(inside)) ? [node.plan] : []))
 }
@@ -24,7 +25,7 @@ export interface BlockedWay {
 }
 
 /** The arms whose way is blocked, by name. */
-export function blockedWays(robots: Readonly<Record<string, RobotLine>>): readonly BlockedWay[] {
+export function blockedWays(robots: Dict<RobotLine>): readonly BlockedWay[] {
   return Object.values(robots)
     .flatMap(({ name, way }) => (way?.state === 'blocked' ? [{ robot: name, way }] : []))
     .sort((a, b) => a.robot.localeCompare(b.robot))

@@ -1,4 +1,5 @@
 /** Who writes and who reads the userdata keys of a behavior, as lists and arrows show it. Pure. */
+import { lookup } from '../dict'
 import type { CatalogueBody, DocumentInfoBody, KeyFlowBody, KeyReaderBody, KeyWriterBody } from '../../api/types'
 import type { Box, Point } from '../geometry'
 import { nodeOf, pathsTo, type EditNode } from './model'
@@ -96,13 +97,13 @@ export function kindOfKey(
   info: DocumentInfoBody | undefined,
   catalogue: CatalogueBody | undefined,
 ): string {
-  const parameter = info?.parameters[flow.key]
+  const parameter = lookup(info?.parameters, flow.key)
   if (parameter) return [parameter['type'], parameter['unit']].filter((part) => typeof part === 'string').join(', ')
   const kinds = new Set<string>()
   for (const writer of flow.writers) {
     const node = nodeOf(root, writer.path)
     if (writer.origin === 'userdata') {
-      const initial = writer.path === '' ? info?.userdata[flow.key] : node?.userdata[flow.key]
+      const initial = writer.path === '' ? lookup(info?.userdata, flow.key) : lookup(node?.userdata, flow.key)
       if (initial !== null && initial !== undefined) kinds.add(kindOfValue(initial))
     }
     if (writer.origin === 'output') kinds.add(schemaKind(catalogue, node, 'outputs', writer.name))

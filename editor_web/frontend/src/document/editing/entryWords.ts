@@ -1,4 +1,5 @@
 /** What is in a named entry, in lines that people can compare with a cell. Pure. */
+import type { Dict } from '../dict'
 
 export interface EntryLine {
   readonly label: string
@@ -8,7 +9,7 @@ export interface EntryLine {
 const MOST = 12
 const LONGEST = 60
 
-export function entryLines(kind: string, value: Readonly<Record<string, unknown>>): readonly EntryLine[] {
+export function entryLines(kind: string, value: Dict<unknown>): readonly EntryLine[] {
   if (kind === 'joints') return jointLines(value)
   if (kind === 'pose') return poseLines(value)
   return Object.entries(value)
@@ -16,7 +17,7 @@ export function entryLines(kind: string, value: Readonly<Record<string, unknown>
     .map(([label, each]) => ({ label, words: short(each) }))
 }
 
-function jointLines(value: Readonly<Record<string, unknown>>): readonly EntryLine[] {
+function jointLines(value: Dict<unknown>): readonly EntryLine[] {
   const names = Array.isArray(value['names']) ? value['names'] : []
   return numbersOf(value['joints'])
     .slice(0, MOST)
@@ -26,7 +27,7 @@ function jointLines(value: Readonly<Record<string, unknown>>): readonly EntryLin
     }))
 }
 
-function poseLines(value: Readonly<Record<string, unknown>>): readonly EntryLine[] {
+function poseLines(value: Dict<unknown>): readonly EntryLine[] {
   const xyz = numbersOf(value['xyz'])
   const turn = numbersOf(value['xyzw'])
   const frame = value['frame']

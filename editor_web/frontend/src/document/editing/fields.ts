@@ -1,6 +1,7 @@
 /** From a state's JSON Schema to the fields of the editor's form, and values to and from what is typed. Pure. */
+import { lookup, type Dict } from '../dict'
 
-export type Schema = Readonly<Record<string, unknown>>
+export type Schema = Dict<unknown>
 
 export type EditFieldKind = 'number' | 'integer' | 'boolean' | 'text' | 'choice' | 'vector' | 'entry' | 'data'
 
@@ -64,7 +65,7 @@ export function editFieldOf(key: KeyLike): EditField {
   }
 }
 
-function withoutShape(schema: Schema): Record<string, unknown> {
+function withoutShape(schema: Schema): Dict<unknown> {
   return Object.fromEntries(Object.entries(schema).filter(([key]) => ['description', 'unit', 'entry'].includes(key)))
 }
 
@@ -76,7 +77,7 @@ interface Resolved {
 /** Follow references, and take the first alternative that is not `null`; what stands beside it counts too. */
 function resolved(schema: Schema, definitions: Schema): Resolved {
   const reference = text(schema['$ref']).replace('#/$defs/', '')
-  if (reference) return resolved(record(definitions[reference]), definitions)
+  if (reference) return resolved(record(lookup(definitions, reference)), definitions)
   const options = Array.isArray(schema['anyOf']) ? schema['anyOf'].map(record) : []
   if (options.length === 0) return { schema, isNullable: schema['type'] === 'null' }
   const real = options

@@ -1,14 +1,15 @@
 /** What can be seen of a named entry before it is used: where an arm would be, in numbers with their units. Pure. */
+import { lookup, type Dict } from '../dict'
 import type { Trace } from '../../api/types'
 import { degrees, rollPitchYaw } from '../teaching'
 import { duration } from '../time'
 import type { EntryLine } from './entryWords'
 import { isTemplate } from './fields'
 
-type Mapping = Readonly<Record<string, unknown>>
+type Mapping = Dict<unknown>
 
 /** What entries that have a place are called. */
-export const PLACED: Readonly<Record<string, string>> = {
+export const PLACED: Dict<string> = {
   joints: 'Joints',
   pose: 'Pose',
   trajectory: 'Recording',
@@ -29,16 +30,16 @@ export function entryNamed(value: unknown): string | undefined {
 }
 
 /** A text as it is unless a run is started with other parameters; undefined where only the run knows. */
-export function byDefault(text: string, parameters: Readonly<Record<string, Mapping>>): string | undefined {
+export function byDefault(text: string, parameters: Dict<Mapping>): string | undefined {
   if (!isTemplate(text)) return text
   const name = REFERENCE.exec(text)?.[1]
-  const fallback = name === undefined ? undefined : entryNamed(parameters[name]?.['default'])
+  const fallback = name === undefined ? undefined : entryNamed(lookup(parameters, name)?.['default'])
   return fallback !== undefined && !isTemplate(fallback) ? fallback : undefined
 }
 
 /** The arm that a state moves, by default; empty where nothing says which. */
-export function armOf(given: Mapping, parameters: Readonly<Record<string, Mapping>>): string {
-  const arm = ARM_KEYS.map((key) => given[key]).find((value): value is string => typeof value === 'string')
+export function armOf(given: Mapping, parameters: Dict<Mapping>): string {
+  const arm = ARM_KEYS.map((key) => lookup(given, key)).find((value): value is string => typeof value === 'string')
   return arm === undefined ? '' : (byDefault(arm, parameters) ?? '')
 }
 

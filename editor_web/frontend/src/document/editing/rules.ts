@@ -1,15 +1,16 @@
 /** The rules of a concurrency container: changed as a table, written as conditions. Pure. */
+import { without as withoutName, type Dict } from '../dict'
 import type { EditNode } from './model'
 
 export interface Rule {
   readonly outcome: string
-  readonly when: Readonly<Record<string, string>>
+  readonly when: Dict<string>
 }
 
 /** As documents write them: `[{finished: {left: reached}}]`. */
 export function conditionsOf(
   rules: readonly Rule[],
-): readonly Readonly<Record<string, Readonly<Record<string, string>>>>[] {
+): readonly Dict<Dict<string>>[] {
   return rules.map(({ outcome, when }) => ({ [outcome]: when }))
 }
 
@@ -21,8 +22,7 @@ export function renamedOutcome(rules: readonly Rule[], index: number, outcome: s
 export function withChild(rules: readonly Rule[], index: number, child: string, outcome: string): readonly Rule[] {
   return rules.map((rule, at) => {
     if (at !== index) return rule
-    const { [child]: _, ...rest } = rule.when
-    const when = outcome === '' ? rest : { ...rule.when, [child]: outcome }
+    const when = outcome === '' ? withoutName(rule.when, child) : { ...rule.when, [child]: outcome }
     return Object.keys(when).length === 0 ? rule : { ...rule, when }
   })
 }

@@ -1,4 +1,5 @@
 /** The skill bus: topics with their traffic and messages, services, actions and parameters with forms, who holds what. */
+import { lookup } from '../../document/dict'
 import './bus.css'
 import { CloseButton, SegmentedControl, TextInput } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
@@ -106,7 +107,7 @@ export function Bus({ session }: BusProps) {
     const facts = known.topics.find((each) => each.name === name)
     if (kind === 'topics' && facts) {
       const newest = message?.topic === name ? message : undefined
-      return <TopicView key={name} {...shared} facts={facts} message={newest} traffic={traffic?.topics[name]} />
+      return <TopicView key={name} {...shared} facts={facts} message={newest} traffic={lookup(traffic?.topics, name)} />
     }
     const parameter = known.parameters.find((each) => each.name === name)
     if (kind === 'parameters' && parameter) return <ParameterView key={name} {...shared} facts={parameter} />

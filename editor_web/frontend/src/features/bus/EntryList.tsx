@@ -1,4 +1,5 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
+import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
 import type { TopicLine } from '../../api/data'
 import { byNamespace, shortName, type Named } from '../../document/busTree'
@@ -9,7 +10,7 @@ interface EntryListProps {
   readonly kind: string
   readonly chosen: string | undefined
   readonly onChoose: (name: string) => void
-  readonly traffic: Readonly<Record<string, TopicLine>> | undefined
+  readonly traffic: Dict<TopicLine> | undefined
 }
 
 export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryListProps) {
@@ -35,8 +36,8 @@ export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryLis
                 type={entry.type}
                 isChosen={entry.name === chosen}
                 onChoose={onChoose}
-                rate={isTopics ? rateText(traffic?.[entry.name]) : undefined}
-                age={isTopics ? ageText(traffic?.[entry.name]) : undefined}
+                rate={isTopics ? rateText(lookup(traffic, entry.name)) : undefined}
+                age={isTopics ? ageText(lookup(traffic, entry.name)) : undefined}
               />
             ))}
           </ul>

@@ -1,4 +1,5 @@
 /** One parameter: what it is for, its value, and the field that sets it. */
+import { lookup } from '../../document/dict'
 import { Button } from '@mantine/core'
 import { useState } from 'react'
 import { bus, type ParameterFacts } from '../../api/bus'
@@ -35,7 +36,7 @@ export function ParameterView({ facts, mayChange, onBack }: ParameterViewProps) 
         label={`Set ${facts.name}`}
         form={form}
         isOff={!mayChange}
-        onSend={(filled) => void set(filled[name])}
+        onSend={(filled) => void set(lookup(filled, name))}
         refusal={refusal}
         buttons={
           <Button type="submit" size="xs" disabled={!mayChange}>

@@ -1,4 +1,5 @@
 /** The form of a request or message, made from its JSON Schema, with what was answered or refused below it. */
+import { lookup, type Dict } from '../../document/dict'
 import { Alert } from '@mantine/core'
 import { IconAlertCircle } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
@@ -9,7 +10,7 @@ interface RequestFormProps {
   readonly label: string
   readonly form: FormState
   readonly isOff: boolean
-  readonly onSend: (request: Record<string, unknown>) => void
+  readonly onSend: (request: Dict<unknown>) => void
   readonly refusal: string
   readonly buttons: ReactNode
 }
@@ -34,8 +35,8 @@ export function RequestForm({ label, form, isOff, onSend, refusal, buttons }: Re
           <ParameterField
             key={field.name}
             field={field}
-            value={form.values[field.name]}
-            problem={form.problems[field.name]}
+            value={lookup(form.values, field.name)}
+            problem={lookup(form.problems, field.name)}
             onChange={(value) => form.set(field.name, value)}
           />
         ))}

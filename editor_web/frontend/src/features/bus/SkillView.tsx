@@ -1,4 +1,5 @@
 /** One service or action: what it is for, the form of its request, and its answer or course. */
+import { lookup } from '../../document/dict'
 import { Button, Progress } from '@mantine/core'
 import { IconPlayerStopFilled, IconSend } from '@tabler/icons-react'
 import { bus, type SkillFacts } from '../../api/bus'
@@ -17,7 +18,7 @@ interface SkillViewProps {
 
 export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
   const form = useForm(async () => requestFields((await bus.requestForm(facts.name)).schema))
-  const course = useRequests((s) => s.courses[facts.name])
+  const course = useRequests((s) => lookup(s.courses, facts.name))
   const isAction = facts.kind === 'action'
   const isUnderWay = course !== undefined && !isOver(course)
   return (

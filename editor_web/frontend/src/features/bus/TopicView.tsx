@@ -1,4 +1,5 @@
 /** One topic: its traffic, its newest message as it changes, and a form where it takes commands. */
+import type { Dict } from '../../document/dict'
 import { Button } from '@mantine/core'
 import { IconSend } from '@tabler/icons-react'
 import { useState } from 'react'
@@ -43,7 +44,7 @@ function Publish({ topic, mayChange }: { topic: string; mayChange: boolean }) {
   const form = useForm(async () => requestFields((await bus.messageForm(topic)).schema))
   const [refusal, setRefusal] = useState('')
 
-  async function publish(message: Record<string, unknown>): Promise<void> {
+  async function publish(message: Dict<unknown>): Promise<void> {
     setRefusal('')
     await bus.publish(topic, message).catch((error: unknown) => setRefusal(wordsOf(error)))
   }

@@ -1,4 +1,5 @@
 /** Requests to services and actions, from sending to answer, refusal or end; they go on while another entry is looked at. */
+import { lookup, type Dict } from '../../document/dict'
 import { create } from 'zustand'
 import { bus, sendGoal, type SkillFacts } from '../../api/bus'
 import { wordsOf } from '../../api/client'
@@ -17,7 +18,7 @@ const SENT: Course = { status: 'sent', feedback: undefined, answer: undefined, c
 const UNDER_WAY: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
 
 /** The newest request to each address. */
-export const useRequests = create<{ readonly courses: Readonly<Record<string, Course>> }>(() => ({ courses: {} }))
+export const useRequests = create<{ readonly courses: Dict<Course> }>(() => ({ courses: {} }))
 
 let leaving = new AbortController()
 
@@ -27,7 +28,7 @@ export function isOver(course: Course): boolean {
 }
 
 /** Ask a service, or send a goal and follow it. */
-export async function send(facts: SkillFacts, request: Record<string, unknown>): Promise<void> {
+export async function send(facts: SkillFacts, request: Dict<unknown>): Promise<void> {
   const { signal } = leaving
   put(facts.name, SENT)
   try {
@@ -39,11 +40,11 @@ export async function send(facts: SkillFacts, request: Record<string, unknown>):
 
 /** Ask for the stop of a goal; its course tells when the device rests. */
 export async function cancel(address: string): Promise<void> {
-  const course = useRequests.getState().courses[address]
+  const course = lookup(useRequests.getState().courses, address)
   try {
     if (course?.goal) await bus.cancel(course.goal)
   } catch (error) {
-    const latest = useRequests.getState().courses[address]
+    const latest = lookup(useRequests.getState().courses, address)
     if (latest) put(address, { ...latest, cause: wordsOf(error) })
   }
 }
@@ -55,11 +56,11 @@ export function leave(): void {
   useRequests.setState({ courses: {} })
 }
 
-async function ask(address: string, request: Record<string, unknown>): Promise<void> {
+async function ask(address: string, request: Dict<unknown>): Promise<void> {
   put(address, { ...SENT, status: 'answered', answer: await bus.call(address, request) })
 }
 
-async function follow(address: string, request: Record<string, unknown>, signal: AbortSignal): Promise<void> {
+async function follow(address: string, request: Dict<unknown>, signal: AbortSignal): Promise<void> {
   let latest = SENT
   await sendGoal(
     address,

@@ -1,4 +1,5 @@
 /** The values that are typed into a generated form, and what is wrong with them. */
+import { lookup, type Dict } from '../../document/dict'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { parametersOf, problemWith, type Field } from '../../document/schema'
@@ -7,18 +8,18 @@ export interface FormState {
   readonly fields: readonly Field[] | undefined
   /** Why there is no form. */
   readonly problem: string
-  readonly values: Readonly<Record<string, unknown>>
+  readonly values: Dict<unknown>
   readonly set: (name: string, value: unknown) => void
-  readonly problems: Readonly<Record<string, string | undefined>>
+  readonly problems: Dict<string | undefined>
   /** What is to be sent; undefined where something is wrong, which is shown then. */
-  readonly filled: () => Record<string, unknown> | undefined
+  readonly filled: () => Dict<unknown> | undefined
 }
 
 /** A form whose fields are loaded once. */
 export function useForm(load: () => Promise<readonly Field[]>): FormState {
   const [fields, setFields] = useState<readonly Field[]>()
   const [problem, setProblem] = useState('')
-  const [values, setValues] = useState<Readonly<Record<string, unknown>>>({})
+  const [values, setValues] = useState<Dict<unknown>>({})
   const [isChecked, setChecked] = useState(false)
 
   useEffect(() => {
@@ -37,9 +38,9 @@ export function useForm(load: () => Promise<readonly Field[]>): FormState {
     // eslint-disable-next-line react-hooks/exhaustive-deps -- the form belongs to one entry and is made anew for another
   }, [])
 
-  const problems = Object.fromEntries((fields ?? []).map((field) => [field.name, problemWith(field, values[field.name])]))
+  const problems = Object.fromEntries((fields ?? []).map((field) => [field.name, problemWith(field, lookup(values, field.name))]))
 
-  function filled(): Record<string, unknown> | undefined {
+  function filled(): Dict<unknown> | undefined {
     setChecked(true)
     return fields && Object.values(problems).every((each) => each === undefined) ? parametersOf(fields, values) : undefined
   }

@@ -7,6 +7,7 @@ import { watchHolding } from '../../api/grip'
 import { useLive } from '../../api/live'
 import { usePast } from '../../api/past'
 import { PAGE } from '../../api/shown'
+import { listenForStopKey } from '../../components/stopKey'
 import { Empty } from '../../components/Empty'
 import { PastMark } from './PastMark'
 
@@ -39,7 +40,7 @@ export function CellFrame({ isServed }: { isServed: boolean }) {
   )
 }
 
-/** Tells, for handles in the view, when the mouse is down in it. */
+/** Hears what is pressed in the view: the mouse for its handles, the key of STOP. */
 function useHolding() {
   const frame = useRef<HTMLIFrameElement>(null)
   const stop = useRef<() => void>(undefined)
@@ -47,7 +48,9 @@ function useHolding() {
   const watch = () => {
     stop.current?.()
     const view = frame.current?.contentWindow
-    stop.current = view ? watchHolding(view) : undefined
+    if (!view) return
+    const ends = [watchHolding(view), listenForStopKey(view)]
+    stop.current = () => ends.forEach((end) => end())
   }
   return { frame, watch }
 }

@@ -1,4 +1,5 @@
 /** What the run asks its operator; a question that has become void is gone. */
+import { lookup } from '../../document/dict'
 import { IconMessageQuestion, IconRoute } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody, WaitingLive } from '../../api/types'
@@ -80,7 +81,7 @@ function Planned({ path }: { path: string }) {
     <span key={plan.robot} className="request-plan">
       <IconRoute size={15} aria-hidden />
       <span>
-        <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(robots[plan.robot]) ? 'shown in the 3D view' : 'not in the 3D view any more'}
+        <strong>{plan.robot}</strong>: {planWords(plan)}; {isProposed(lookup(robots, plan.robot)) ? 'shown in the 3D view' : 'not in the 3D view any more'}
       </span>
     </span>
   ))

@@ -1,4 +1,5 @@
 /** What the operator can do with the shown run: each command, and why it is not possible now. */
+import { lookup } from '../../document/dict'
 import { useMemo, useState } from 'react'
 import { api } from '../../api/client'
 import { operate, useLive } from '../../api/live'
@@ -32,7 +33,7 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
   const role = useLive((s) => s.role)
   const isConnected = useLive((s) => s.connection === 'live')
   const control = useLive((s) => s.control)
-  const nodeStatus = useLive((s) => (node ? (s.nodes[node]?.status ?? 'idle') : 'idle'))
+  const nodeStatus = useLive((s) => (node ? (lookup(s.nodes, node)?.status ?? 'idle') : 'idle'))
   const [report, setReport] = useState<readonly string[]>()
   const id = run?.id ?? ''
 

@@ -1,9 +1,10 @@
 /** A button that opens the dialog in which taught entries become a behavior. */
 import { IconHandFinger } from '@tabler/icons-react'
-import { lazy, Suspense, useState } from 'react'
+import { Suspense, useState } from 'react'
 import { Dialog } from '../../components/Dialog'
+import { lazyView } from '../../components/lazyView'
 
-const Demonstration = lazy(async () => ({ default: (await import('./Demonstration')).Demonstration }))
+const Demonstration = lazyView(async () => (await import('./Demonstration')).Demonstration)
 
 export function FromDemonstration({ onMade }: { onMade: (id: string) => void }) {
   const [isOpen, setOpen] = useState(false)

@@ -1,7 +1,8 @@
 /** A box to choose from by typing: a field and a list below it, worked by the arrow keys. */
-import { useEffect, useId, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
+import { useEffect, useId, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import { fit, found } from '../../document/editing/search'
 import type { Point } from '../../document/geometry'
+import { useModal } from '../../components/modal'
 
 export interface Choice {
   readonly id: string
@@ -47,10 +48,7 @@ export function ChoiceBox({ label, placeholder, choices, fromText, at, onClose }
   const shown = more ? (isInTitle ? [...listed, more] : [more, ...listed]) : listed
   const chosen = shown[Math.min(index, shown.length - 1)]
 
-  // Before anything else is typed.
-  useLayoutEffect(() => {
-    if (!element.current?.open) element.current?.showModal()
-  }, [])
+  useModal(element)
   useEffect(() => {
     list.current?.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: 'nearest' })
   }, [index, text])

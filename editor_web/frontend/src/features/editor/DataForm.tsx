@@ -1,4 +1,5 @@
 /** Where a state reads its inputs from, and under which userdata keys its outputs are written. */
+import { lookup, without } from '../../document/dict'
 import type { KeyBody } from '../../api/types'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -24,8 +25,7 @@ export function DataForm({
   const set = (field: 'in' | 'out', key: string, to: string) =>
     void performOn(node.path, `${field === 'in' ? 'Input' : 'Output'} ${key} of ${node.name}`, (now) => {
       const present = field === 'in' ? now.inputs : now.outputs
-      const { [key]: _, ...rest } = present
-      const next = to ? { ...present, [key]: to } : rest
+      const next = to ? { ...present, [key]: to } : without(present, key)
       return [setField(node.path, field, Object.keys(next).length > 0 ? next : null)]
     })
   return (
@@ -39,7 +39,7 @@ export function DataForm({
             label={inputLabel(key)}
             placeholder={inputs.find((each) => each.name === key)?.required ? key : 'its default'}
             options={keys}
-            value={node.inputs[key] ?? ''}
+            value={lookup(node.inputs, key) ?? ''}
             onCommit={(typed) => set('in', key, typed)}
           />
         </div>
@@ -53,7 +53,7 @@ export function DataForm({
             label={outputLabel(key)}
             placeholder="nowhere"
             options={keys}
-            value={node.outputs[key] ?? ''}
+            value={lookup(node.outputs, key) ?? ''}
             onCommit={(typed) => set('out', key, typed)}
           />
         </div>

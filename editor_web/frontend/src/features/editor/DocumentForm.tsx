@@ -1,4 +1,5 @@
 /** What the behavior itself declares: name, description, outcomes, parameters, userdata. */
+import { lookup, without, type Dict } from '../../document/dict'
 import { IconPlus, IconTrash } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { DocumentInfoBody } from '../../api/types'
@@ -8,7 +9,7 @@ import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
 import { draftOf, editor, refused, useEditor } from './store'
 
-type Mapping = Readonly<Record<string, unknown>>
+type Mapping = Dict<unknown>
 
 const TYPES = ['number', 'integer', 'string', 'boolean', 'pose', 'joints', 'list', 'mapping'] as const
 
@@ -121,7 +122,7 @@ function Outcomes({ outcomes, success }: { outcomes: readonly string[]; success:
 function Parameters({ parameters }: { parameters: Mapping }) {
   const set = (name: string, change: Mapping) =>
     setDocument(`Parameter ${name}`, (now) => {
-      const present = mappingOf(now.parameters[name])
+      const present = mappingOf(lookup(now.parameters, name))
       const next = Object.fromEntries(
         Object.entries({ ...present, ...change }).filter(([, value]) => value !== undefined && value !== ''),
       )
@@ -140,7 +141,7 @@ function Parameters({ parameters }: { parameters: Mapping }) {
                 type="button"
                 className="mini"
                 aria-label={`Remove the parameter ${name}`}
-                onClick={() => setDocument(`Remove ${name}`, (now) => ({ parameters: without(now.parameters, name) }))}
+                onClick={() => setDocument(`Remove ${name}`, (now) => ({ parameters: withoutOrNull(now.parameters, name) }))}
               >
                 <IconTrash size={13} aria-hidden />
               </button>
@@ -235,7 +236,7 @@ function Userdata({ userdata }: { userdata: Mapping }) {
             type="button"
             className="mini"
             aria-label={`Remove the key ${name}`}
-            onClick={() => setDocument(`Remove ${name}`, (now) => ({ userdata: without(now.userdata, name) }))}
+            onClick={() => setDocument(`Remove ${name}`, (now) => ({ userdata: withoutOrNull(now.userdata, name) }))}
           >
             <IconTrash size={13} aria-hidden />
           </button>
@@ -284,7 +285,7 @@ function mappingOf(value: unknown): Mapping {
   return typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Mapping) : {}
 }
 
-function without(mapping: Mapping, name: string): Mapping | null {
-  const { [name]: _, ...rest } = mapping
+function withoutOrNull(mapping: Mapping, name: string): Mapping | null {
+  const rest = without(mapping, name)
   return Object.keys(rest).length > 0 ? rest : null
 }

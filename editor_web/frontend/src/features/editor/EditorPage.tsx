@@ -1,11 +1,15 @@
 /** The editor of one behavior: library, canvas, text, and the form of what is chosen. */
+import { lookup } from '../../document/dict'
 import './styles/index.css'
 import { Tabs } from '@mantine/core'
 import { ReactFlowProvider, useReactFlow } from '@xyflow/react'
-import { lazy, Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
+import { Suspense, useEffect, useRef, useState, type ReactNode } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { useLive } from '../../api/live'
 import { Empty } from '../../components/Empty'
+import { lazyView } from '../../components/lazyView'
+import { Loading } from '../../components/Loading'
+import { ViewBoundary } from '../../components/ViewBoundary'
 import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
@@ -31,8 +35,8 @@ import { useLongPress } from './useLongPress'
 import { useEditorKeys } from './useEditorKeys'
 import { wholeCanvas } from './viewport'
 
-const VersionsDialog = lazy(async () => ({ default: (await import('./VersionsDialog')).VersionsDialog }))
-const YamlPane = lazy(async () => ({ default: (await import('./YamlPane')).YamlPane }))
+const VersionsDialog = lazyView(async () => (await import('./VersionsDialog')).VersionsDialog)
+const YamlPane = lazyView(async () => (await import('./YamlPane')).YamlPane)
 
 export interface EditorPageProps {
   readonly id: string
@@ -56,7 +60,7 @@ export function EditorPage(props: EditorPageProps) {
   const { id } = props
   const phase = useEditor((s) => (s.id === id ? s.phase : 'loading'))
   const problem = useEditor((s) => s.problem)
-  const onDisk = useLive((s) => s.documents[id])
+  const onDisk = useLive((s) => lookup(s.documents, id))
   const written = useLive((s) => s.documents)
   useEffect(() => {
     forgetDataFlow()
@@ -134,6 +138,21 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
   useEditorKeys(element)
   useLongPress(element)
 
+  const flow = (
+    <ViewBoundary name="Data flow">
+      <DataFlowPanel />
+    </ViewBoundary>
+  )
+  const library = (
+    <ViewBoundary name="Library">
+      <LibraryPanel tools={libraryTools} />
+    </ViewBoundary>
+  )
+  const form = (
+    <ViewBoundary name="Form">
+      <Inspector />
+    </ViewBoundary>
+  )
   const canvas = (
     <div className="canvas-area">
       <CanvasBar
@@ -143,15 +162,17 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
         onBoxSelects={() => setBoxSelects(!boxSelects)}
       />
       <div className="canvas-with-flow">
-        <Canvas hasMap={hasMap} boxSelects={boxSelects} />
-        {hasFlow && isNarrow && <DataFlowPanel />}
+        <ViewBoundary name="Canvas">
+          <Canvas hasMap={hasMap} boxSelects={boxSelects} />
+        </ViewBoundary>
+        {hasFlow && isNarrow && flow}
       </div>
     </div>
   )
   const text = (
-    <Suspense fallback={<div className="page-wait" role="status" aria-label="Loading" />}>
+    <Loading name="Text">
       <YamlPane />
-    </Suspense>
+    </Loading>
   )
   return (
     <div className="editor" ref={element} aria-busy={isBusy}>
@@ -166,18 +187,14 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
             <Tabs.Tab value="text">Text</Tabs.Tab>
           </Tabs.List>
           <Tabs.Panel value="canvas">{canvas}</Tabs.Panel>
-          <Tabs.Panel value="library">
-            <LibraryPanel tools={libraryTools} />
-          </Tabs.Panel>
-          <Tabs.Panel value="form">
-            <Inspector />
-          </Tabs.Panel>
+          <Tabs.Panel value="library">{library}</Tabs.Panel>
+          <Tabs.Panel value="form">{form}</Tabs.Panel>
           <Tabs.Panel value="text">{text}</Tabs.Panel>
         </Tabs>
       ) : (
         <Group orientation="horizontal" className="work-space">
           <Pane id="library" defaultSize="17%" minSize="12%" maxSize="34%">
-            {hasFlow ? <DataFlowPanel /> : <LibraryPanel tools={libraryTools} />}
+            {hasFlow ? flow : library}
           </Pane>
           <Separator className="splitter" aria-label="Width of the library" />
           <Pane id="middle" defaultSize="57%" minSize="30%" className="editor-middle">
@@ -198,7 +215,7 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
           </Pane>
           <Separator className="splitter" aria-label="Width of the form" />
           <Pane id="inspector" defaultSize="26%" minSize="20%" maxSize="50%">
-            <Inspector />
+            {form}
           </Pane>
         </Group>
       )}

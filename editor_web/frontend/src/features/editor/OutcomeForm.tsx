@@ -1,4 +1,5 @@
 /** The outcomes of a node in a machine: where each leads, and from which autonomy on it passes by itself. */
+import { lookup, without } from '../../document/dict'
 import { waysOf, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { connect, disconnect } from './actions'
@@ -84,7 +85,7 @@ export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode
 const NONE: readonly string[] = []
 
 function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
-  const level = node.autonomy[outcome] ?? ''
+  const level = lookup(node.autonomy, outcome) ?? ''
   return (
     <select
       className="plain-input"
@@ -93,8 +94,7 @@ function Autonomy({ node, outcome }: { node: EditNode; outcome: string }) {
       value={level}
       onChange={({ currentTarget: { value: wanted } }) =>
         void performOn(node.path, `Autonomy of ${outcome}`, (now) => {
-          const { [outcome]: _, ...rest } = now.autonomy
-          const next = wanted ? { ...now.autonomy, [outcome]: wanted } : rest
+          const next = wanted ? { ...now.autonomy, [outcome]: wanted } : without(now.autonomy, outcome)
           return [setField(node.path, 'autonomy', Object.keys(next).length > 0 ? next : null)]
         })
       }

@@ -1,4 +1,5 @@
 /** The parameters of a state or behavior, each in the field that fits it; `${…}` is possible in all of them. */
+import { lookup } from '../../document/dict'
 import { Switch } from '@mantine/core'
 import { IconBraces, IconX } from '@tabler/icons-react'
 import { useId, useState } from 'react'
@@ -49,7 +50,7 @@ function setParameter(node: EditNode, name: string, value: unknown): void {
 }
 
 function ParameterRow({ node, field, entries }: { node: EditNode; field: EditField; entries: readonly EntryBody[] }) {
-  const value = node.parameters[field.name]
+  const value = lookup(node.parameters, field.name)
   const [asTemplate, setAsTemplate] = useState(isTemplate(value))
   const [pointed, setPointed] = useState<string>()
   const problem = fieldProblem(field, value)
@@ -284,7 +285,7 @@ function StrayRow({ node, name, isKnown }: { node: EditNode; name: string; isKno
       <TemplateInput
         label={name}
         isMono
-        value={shownValue(node.parameters[name])}
+        value={shownValue(lookup(node.parameters, name))}
         onCommit={(typed) => setParameter(node, name, typedValue({ kind: 'data' }, typed))}
       />
       {isKnown && <div className="edit-hint is-failed">There is no such parameter.</div>}

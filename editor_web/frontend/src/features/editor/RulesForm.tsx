@@ -1,4 +1,5 @@
 /** The rules of a concurrency container as a table: a line for each rule, a column for each child. */
+import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -44,7 +45,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                     <select
                       className="plain-input"
                       aria-label={`${child.name} in rule ${index + 1}`}
-                      value={rule.when[child.name] ?? ''}
+                      value={lookup(rule.when, child.name) ?? ''}
                       onChange={({ currentTarget: { value } }) =>
                         set((rules) => withChild(rules, index, child.name, value), `Rule ${index + 1}`)
                       }
@@ -53,7 +54,7 @@ export function RulesForm({ node }: { node: EditNode }) {
                       {[
                         ...new Set([
                           ...child.outcomes,
-                          ...(rule.when[child.name] ? [rule.when[child.name] ?? ''] : []),
+                          ...(lookup(rule.when, child.name) ? [lookup(rule.when, child.name) ?? ''] : []),
                         ]),
                       ].map((outcome) => (
                         <option key={outcome} value={outcome}>

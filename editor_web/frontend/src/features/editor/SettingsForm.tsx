@@ -1,4 +1,5 @@
 /** The settings that only some kinds have: items and rounds, memory, policies, periods. */
+import { lookup } from '../../document/dict'
 import { Switch } from '@mantine/core'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
@@ -52,14 +53,14 @@ export function SettingsForm({ node }: { node: EditNode }) {
             <Switch
               size="sm"
               aria-label={setting.words}
-              checked={node.settings[setting.key] !== false}
+              checked={lookup(node.settings, setting.key) !== false}
               onChange={(event) => set(setting, event.currentTarget.checked)}
             />
           ) : (
             <TemplateInput
               label={setting.words}
               placeholder={setting.hint}
-              value={shownValue(node.settings[setting.key])}
+              value={shownValue(lookup(node.settings, setting.key))}
               onCommit={(typed) => set(setting, typed === '' ? null : looseValue(typed))}
             />
           )}

@@ -1,4 +1,5 @@
 /** What can be done with the document, in terms of what is chosen: each becomes edits that the server applies. */
+import type { Dict } from '../../document/dict'
 import { documents } from '../../api/documents'
 import { wordsOf } from '../../api/client'
 import { corner, setField, type AddNode, type Edit, type GroupKind } from '../../document/editing/edits'
@@ -26,7 +27,7 @@ import { chosenOf, draftOf, editor, refused, rootOf, scopeOf, setEditor, told, t
 export interface Addition {
   readonly kind: string
   readonly runs?: string
-  readonly parameters?: Readonly<Record<string, unknown>>
+  readonly parameters?: Dict<unknown>
   /** What it is called, as far as the name is free. */
   readonly name: string
 }

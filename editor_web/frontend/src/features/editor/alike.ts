@@ -25,6 +25,6 @@ export function isAlike(one: unknown, other: unknown): boolean {
   const keys = Object.keys(a)
   return (
     keys.length === Object.keys(b).length &&
-    keys.every((key) => (isNode && UNSEEN.has(key)) || (key in b && isAlike(a[key], b[key])))
+    keys.every((key) => (isNode && UNSEEN.has(key)) || (Object.hasOwn(b, key) && isAlike(a[key], b[key])))
   )
 }

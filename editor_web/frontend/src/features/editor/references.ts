@@ -1,4 +1,5 @@
 /** Behaviors that are referred to: seen in place, opened in their own page, and the way back from there. */
+import { lookup, type Dict } from '../../document/dict'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
 import { graft } from '../../document/editing/grafting'
@@ -57,9 +58,9 @@ async function load(id: string): Promise<boolean> {
 }
 
 /** Read those anew that have changed on disk. */
-export function refreshReferences(onDisk: Readonly<Record<string, string | null>>): void {
+export function refreshReferences(onDisk: Dict<string | null>): void {
   for (const [id, body] of bodies) {
-    const hash = onDisk[id]
+    const hash = lookup(onDisk, id)
     if (hash && hash !== body.hash) void load(id)
   }
 }

@@ -1,4 +1,5 @@
 /** The names that `${…}` can use at the chosen node: parameters of the behavior, and userdata around it. */
+import type { Dict } from '../../document/dict'
 import { useMemo } from 'react'
 import { allNodes, nodeOf, pathsTo, type EditNode } from '../../document/editing/model'
 import type { Name } from '../../document/editing/completion'
@@ -28,11 +29,11 @@ export function useNames(): readonly Name[] {
 }
 
 function written(node: EditNode): readonly string[] {
-  const own = ['as', 'index'].flatMap((key) => (typeof node.settings[key] === 'string' ? [node.settings[key]] : []))
+  const own = [node.settings['as'], node.settings['index']].filter((key) => typeof key === 'string')
   return [...Object.values(node.outputs), ...own]
 }
 
 function detailOf(parameter: unknown): string {
-  const given = typeof parameter === 'object' && parameter !== null ? (parameter as Record<string, unknown>) : {}
+  const given = typeof parameter === 'object' && parameter !== null ? (parameter as Dict<unknown>) : {}
   return [given['type'], given['unit']].filter((part) => typeof part === 'string' && part).join(' ')
 }

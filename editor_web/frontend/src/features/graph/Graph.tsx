@@ -1,4 +1,5 @@
 /** The live graph of a behavior: laid out once, lit by the run. */
+import { lookup, type Dict } from '../../document/dict'
 import '@xyflow/react/dist/style.css'
 import { ActionIcon, Group, Loader, Tooltip } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
@@ -107,8 +108,8 @@ interface DrawnProps extends Omit<GraphProps, 'root' | 'breadcrumb' | 'of'> {
 }
 
 /** The paths of the active leaves, in one string so that it changes only when they do. */
-function activeLeaves(root: GraphNodeBody, nodes: Readonly<Record<string, NodeLive>>): string {
-  const leaves = flatten(root).filter((node) => !isContainer(node) && nodes[node.path]?.status === 'active')
+function activeLeaves(root: GraphNodeBody, nodes: Dict<NodeLive>): string {
+  const leaves = flatten(root).filter((node) => !isContainer(node) && lookup(nodes, node.path)?.status === 'active')
   return leaves.map((node) => node.path).join('\n')
 }
 

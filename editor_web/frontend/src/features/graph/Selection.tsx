@@ -1,4 +1,5 @@
 /** What is known of the selected node: kind, state, outcomes, last visit, why it failed. */
+import { lookup } from '../../document/dict'
 import { useLive } from '../../api/live'
 import type { GraphNodeBody } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
@@ -7,7 +8,7 @@ import { duration } from '../../document/time'
 import { kindLabel } from '../../document/tree'
 
 export function Selection({ node }: { node: GraphNodeBody }) {
-  const live = useLive((s) => s.nodes[node.path])
+  const live = useLive((s) => lookup(s.nodes, node.path))
   return (
     <section className="selection" aria-label={`Selected: ${node.name}`}>
       <div className="selection-head">

@@ -1,6 +1,7 @@
 /** The form that sets a behavior's parameters for one run. */
-import { Alert, Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
-import { IconAlertCircle, IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
+import { lookup } from '../../document/dict'
+import { Collapse, NumberInput, Textarea, UnstyledButton } from '@mantine/core'
+import { IconChevronDown, IconChevronRight, IconRepeat } from '@tabler/icons-react'
 import { useState, type ReactNode } from 'react'
 import type { BehaviorBody } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
@@ -26,7 +27,7 @@ export interface ParameterFormProps {
 
 export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, run }: ParameterFormProps) {
   const start = useStart(behavior, onStarted)
-  const { fields, values, set, problems, refusal, submit, repeat, seed, setSeed } = start
+  const { fields, values, set, problems, submit, repeat, seed, setSeed } = start
   return (
     <form
       id={FORM_ID}
@@ -38,19 +39,13 @@ export function ParameterForm({ behavior, obstacle, place, terminal, onStarted, 
         if (obstacle === undefined) void submit()
       }}
     >
-      {refusal && (
-        <Alert color="red" variant="light" icon={<IconAlertCircle size={18} aria-hidden />} title="It was not started" role="alert">
-          {refusal.message}
-          {refusal.hint && <div className="quiet">{refusal.hint}</div>}
-        </Alert>
-      )}
       {fields.length === 0 && <p className="quiet">This behavior has no parameters.</p>}
       {fields.map((field) => (
         <ParameterField
           key={field.name}
           field={field}
-          value={values[field.name]}
-          problem={problems[field.name]}
+          value={lookup(values, field.name)}
+          problem={lookup(problems, field.name)}
           onChange={(value) => set(field.name, value)}
         />
       ))}

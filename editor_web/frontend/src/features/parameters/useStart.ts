@@ -1,22 +1,23 @@
 /** The form's behavior: values, checks, and the request to start. */
+import { lookup, type Dict } from '../../document/dict'
 import { useMemo, useState } from 'react'
 import { useKept } from '../../api/breakpoints'
+import { lookAtCell } from '../../api/cellConnection'
 import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
-import { send } from '../../api/refusal'
-import type { BehaviorBody, ErrorBody, StartBody } from '../../api/types'
+import { forgive, refuse, send } from '../../api/refusal'
+import type { BehaviorBody, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
 
-type Values = Readonly<Record<string, unknown>>
-type Problems = Readonly<Record<string, string | undefined>>
+type Values = Dict<unknown>
+type Problems = Dict<string | undefined>
 
 export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const fields = useMemo(() => behavior.parameters.map(fieldOf), [behavior])
   const [values, setValues] = useState<Values>(() => Object.fromEntries(fields.map((f) => [f.name, f.initial])))
   const [problems, setProblems] = useState<Problems>({})
-  const [refusal, setRefusal] = useState<ErrorBody>()
   const [seed, setSeed] = useState<string | number>('')
   const [inputs, setInputs] = useState('')
   const data = inputsOf(inputs)
@@ -33,8 +34,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   async function repeat(run: string): Promise<void> {
     const origin = await send('Take the values of the run', () => originOf(run))
     if (!origin) return
-    const known = fields.filter((field) => field.name in origin.parameters)
-    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, origin.parameters[name])])) })
+    const known = fields.filter((field) => lookup(origin.parameters, field.name) !== undefined)
+    setValues({ ...values, ...Object.fromEntries(known.map(({ name, kind }) => [name, shownValue(kind, lookup(origin.parameters, name))])) })
     setSeed(origin.seed)
     setInputs(inputsText(origin.inputs))
     setProblems({})
@@ -43,7 +44,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   async function submit(): Promise<void> {
     const found = problemsOf(fields, values)
     setProblems(found)
-    setRefusal(undefined)
+    forgive()
     if (Object.values(found).some(Boolean) || !data) return
     try {
       const body: StartBody = {
@@ -60,7 +61,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
       const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
       const name = fields.find((f) => said.where === f.name || said.where.endsWith(`.${f.name}`))?.name
       if (name) setProblems({ [name]: said.hint ? `${said.message} (${said.hint})` : said.message })
-      else setRefusal(said)
+      else refuse('Start', said.message, said.hint)
+      void lookAtCell()
     }
   }
 
@@ -77,7 +79,6 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
     values,
     set,
     problems,
-    refusal,
     submit,
     repeat,
     seed,
@@ -92,7 +93,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
 }
 
 function problemsOf(fields: readonly Field[], values: Values): Problems {
-  return Object.fromEntries(fields.map((field) => [field.name, problemWith(field, values[field.name])]))
+  return Object.fromEntries(fields.map((field) => [field.name, problemWith(field, lookup(values, field.name))]))
 }
 
 function seedOf(seed: string | number): number | null {

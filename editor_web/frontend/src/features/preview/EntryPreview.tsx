@@ -1,10 +1,12 @@
 /** A named entry as an arm would be there, in 3D and in numbers; it is seen by this page only, until it is closed. */
+import { lookup } from '../../document/dict'
 import './preview.css'
 import { CloseButton } from '@mantine/core'
 import { useEffect, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import type { Previewed } from '../../api/preview'
 import { connectTeach, lookAt, lookAway, useTeach } from '../../api/teaching'
 import type { ArmCard } from '../../api/types'
+import { useModal } from '../../components/modal'
 import { PLACED } from '../../document/editing/preview'
 import { EntryFacts } from './EntryFacts'
 import { useEntryCourse } from './useEntryCourse'
@@ -34,7 +36,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
     <>
       <header className="preview-head">
         <h2>
-          {title} <span className="quiet">{PLACED[shown.kind]}</span>
+          {title} <span className="quiet">{lookup(PLACED, shown.kind)}</span>
         </h2>
         <span className="spacer" />
         {arms && arms.length > 0 && <ArmChoice arms={arms} arm={arm} onChoose={choose} />}
@@ -125,9 +127,7 @@ function ArmChoice({ arms, arm, onChoose }: ArmChoiceProps) {
 /** The browser's own dialog: it keeps the keyboard inside, and closes with Escape. */
 function Sheet({ label, onClose, children }: { readonly label: string; readonly onClose: () => void; readonly children: ReactNode }) {
   const element = useRef<HTMLDialogElement>(null)
-  useEffect(() => {
-    if (!element.current?.open) element.current?.showModal()
-  }, [])
+  useModal(element)
   return (
     <dialog ref={element} className="entry-preview is-sheet" aria-label={label} onClose={onClose} onClick={(event) => event.target === element.current && onClose()}>
       {children}

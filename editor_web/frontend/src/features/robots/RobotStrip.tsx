@@ -1,4 +1,5 @@
 /** The arms of the cell: what each does, how fast it may, and out of a reflex again. */
+import { lookup } from '../../document/dict'
 import { IconRobot } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, wordsOf } from '../../api/client'
@@ -32,7 +33,7 @@ export function RobotStrip() {
   return (
     <ul className="plain-list robots" aria-label="Arms">
       {names.map((name) => {
-        const robot = robots[name]
+        const robot = lookup(robots, name)
         return robot && <Robot key={name} robot={robot} />
       })}
     </ul>

@@ -1,4 +1,5 @@
 /** Runs whose engine died: what they ask, and going on with them. */
+import { lookup, type Dict } from '../../document/dict'
 import { Alert, Button, Checkbox, Radio } from '@mantine/core'
 import { IconHeartbeat } from '@tabler/icons-react'
 import { useState } from 'react'
@@ -29,11 +30,11 @@ interface ResumableProps extends Omit<InterruptedProps, 'runs'> {
 
 function Resumable({ run, obstacle, onResumed }: ResumableProps) {
   const [questions, setQuestions] = useState<readonly QuestionBody[]>([])
-  const [answers, setAnswers] = useState<Readonly<Record<string, string>>>({})
+  const [answers, setAnswers] = useState<Dict<string>>({})
   const [changed, setChanged] = useState(false)
   const [problem, setProblem] = useState<ErrorBody>()
   const [isSent, setSent] = useState(false)
-  const isOpen = questions.some((question) => !answers[question.path])
+  const isOpen = questions.some((question) => !lookup(answers, question.path))
 
   async function resume(): Promise<void> {
     setSent(true)
@@ -71,7 +72,7 @@ function Resumable({ run, obstacle, onResumed }: ResumableProps) {
               key={question.path}
               label={question.path}
               size="sm"
-              value={answers[question.path] ?? ''}
+              value={lookup(answers, question.path) ?? ''}
               onChange={(answer) => setAnswers({ ...answers, [question.path]: answer })}
             >
               <Radio value="rerun" label="Run it again" size="sm" />

@@ -1,4 +1,5 @@
 /** Which arm is taught, what it does, and what is captured of it. */
+import { lookup } from '../../document/dict'
 import { IconFlag, IconHandGrab, IconPlayerRecordFilled, IconPlayerStopFilled, IconTopologyRing3 } from '@tabler/icons-react'
 import { SegmentedControl } from '@mantine/core'
 import { useState } from 'react'
@@ -26,7 +27,7 @@ interface ArmHeadProps {
 }
 
 export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
-  const now = useTeach((s) => s.now[arm.name])
+  const now = useTeach((s) => lookup(s.now, arm.name))
   const hand = useTeach((s) => s.hand)
   const off = useObstacle()
   const [problem, setProblem] = useState('')

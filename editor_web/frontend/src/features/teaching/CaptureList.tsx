@@ -1,4 +1,5 @@
 /** The buffer: what was captured and waits to be looked at, compared, saved or discarded. */
+import { lookup } from '../../document/dict'
 import { Checkbox } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
@@ -73,7 +74,7 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
   const [problem, setProblem] = useState('')
   const robot = capture.robot || arm
   const { fits, problem: unfit } = useFits(capture.form === 'gripper' ? [] : [asCompared(capture, arm)])
-  const fit = fits[capture.id]
+  const fit = lookup(fits, capture.id)
   const last = fit?.demonstration
   const place = usePlace(capture)
   const pose = last?.poses.at(-1)

@@ -1,4 +1,5 @@
 /** Things taught side by side: over time, each beside the primitive learned from it, and together in the cell. */
+import { lookup, type Dict } from '../../document/dict'
 import { NativeSelect } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
@@ -28,11 +29,11 @@ export function asCompared(capture: CaptureSummary, arm: string): Compared {
 export function Comparison({ things }: { readonly things: readonly Compared[] }) {
   const [channel, setChannel] = useState('tool 0')
   const { fits, problem } = useFits(things)
-  const joints = Math.max(0, ...things.map((each) => traceOf(fits[each.key])?.joints[0]?.length ?? 0))
+  const joints = Math.max(0, ...things.map((each) => traceOf(lookup(fits, each.key))?.joints[0]?.length ?? 0))
   const isTool = channel.startsWith('tool')
   const unit = isTool ? 'mm' : '°'
-  const curves = things.flatMap((each, at) => drawn(each, fits[each.key], channel, at))
-  const learned = things.filter((each) => fits[each.key]?.demonstration && fits[each.key]?.primitive)
+  const curves = things.flatMap((each, at) => drawn(each, lookup(fits, each.key), channel, at))
+  const learned = things.filter((each) => lookup(fits, each.key)?.demonstration && lookup(fits, each.key)?.primitive)
   return (
     <div className="comparison">
       {curves.length > 0 && (
@@ -66,9 +67,9 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
             {learned.map((each) => (
               <tr key={each.key}>
                 <th scope="row">{each.label}</th>
-                <td>{apartWords(fits[each.key], channel, unit)}</td>
-                <td>{jointErrorWords(fits[each.key])}</td>
-                <td>{toolErrorWords(fits[each.key])}</td>
+                <td>{apartWords(lookup(fits, each.key), channel, unit)}</td>
+                <td>{jointErrorWords(lookup(fits, each.key))}</td>
+                <td>{toolErrorWords(lookup(fits, each.key))}</td>
               </tr>
             ))}
           </tbody>
@@ -85,9 +86,9 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
 }
 
 /** In what the others are not the first. */
-function Differences({ things, fits }: { readonly things: readonly Compared[]; readonly fits: Readonly<Record<string, Fits>> }) {
+function Differences({ things, fits }: { readonly things: readonly Compared[]; readonly fits: Dict<Fits> }) {
   const [first, ...others] = things
-  const before = first && traceOf(fits[first.key])
+  const before = first && traceOf(lookup(fits, first.key))
   if (!first || !before) return null
   return (
     <ul className="plain-list differences" aria-label={`Against ${first.label}`}>
@@ -95,7 +96,7 @@ function Differences({ things, fits }: { readonly things: readonly Compared[]; r
         <span className="chart-key is-colour-0">{first.label}</span>
       </li>
       {others.map((each, at) => {
-        const after = traceOf(fits[each.key])
+        const after = traceOf(lookup(fits, each.key))
         return (
           <li key={each.key}>
             <span className={`chart-key is-colour-${at + 1}`}>{each.label}</span>
@@ -148,8 +149,8 @@ export function fitWords(fit: Fits | undefined): string {
 }
 
 /** Where an arm is along things, each asked for once. */
-export function useFits(things: readonly Compared[]): { readonly fits: Readonly<Record<string, Fits>>; readonly problem: string } {
-  const [fits, setFits] = useState<Readonly<Record<string, Fits>>>({})
+export function useFits(things: readonly Compared[]): { readonly fits: Dict<Fits>; readonly problem: string } {
+  const [fits, setFits] = useState<Dict<Fits>>({})
   const [problem, setProblem] = useState('')
   const asked = JSON.stringify(things)
   useEffect(() => {

@@ -1,4 +1,5 @@
 /** Moving an arm by hand: held or step by step, by joints or at the tool, with mouse, touch or keyboard. */
+import { lookup } from '../../document/dict'
 import { SegmentedControl, Slider, Switch } from '@mantine/core'
 import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
@@ -33,7 +34,7 @@ export function JogPanel({ arm }: { readonly arm: ArmCard }) {
   const [share, setShare] = useState(20)
   const [stepMm, setStepMm] = useState('5')
   const [stepDeg, setStepDeg] = useState('5')
-  const now = useTeach((s) => s.now[arm.name])
+  const now = useTeach((s) => lookup(s.now, arm.name))
   const refusal = useTeach((s) => s.refused.jog)
   const heldBy = useTeach((s) => s.heldBy)
   const steps = useSteps()

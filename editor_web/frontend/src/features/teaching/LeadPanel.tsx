@@ -1,4 +1,5 @@
 /** Leading an arm by hand: let it float, record what it does, and push it where there is nobody to do so. */
+import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowLeft, IconArrowRight, IconArrowUp, IconChevronsDown, IconChevronsUp, IconFeather } from '@tabler/icons-react'
 import { Slider } from '@mantine/core'
 import { useEffect, useId, useRef, useState } from 'react'
@@ -20,7 +21,7 @@ const WAYS = [
 ] as const
 
 export function LeadPanel({ arm }: { readonly arm: ArmCard }) {
-  const now = useTeach((s) => s.now[arm.name])
+  const now = useTeach((s) => lookup(s.now, arm.name))
   const canPush = useTeach((s) => s.canPush)
   const off = useObstacle()
   const [problem, setProblem] = useState('')

@@ -1,0 +1,29 @@
+/** Whether the world and the devices of the cell are there, and connecting them again. */
+import { create } from 'zustand'
+import { call, post, ServerError } from './client'
+
+interface CellConnection {
+  readonly connected: boolean
+  /** What was lost and why, in the server's words. */
+  readonly reason: string
+}
+
+const CONNECTED: CellConnection = { connected: true, reason: '' }
+
+export const useCellConnection = create<CellConnection>(() => CONNECTED)
+
+/** Ask the server; one that is not asked about its cell, or does not answer now, changes nothing. */
+export async function lookAtCell(): Promise<void> {
+  try {
+    useCellConnection.setState(await call<CellConnection>('/cell/connection'))
+  } catch (error) {
+    // The page says by other means that nobody answers, or that it is logged out.
+    if (error instanceof ServerError && error.status === 404) useCellConnection.setState(CONNECTED)
+  }
+}
+
+/** Connect what was lost; a refusal is a ServerError. */
+export async function connectCell(): Promise<void> {
+  await post<unknown>('/cell/connect', {})
+  await lookAtCell()
+}

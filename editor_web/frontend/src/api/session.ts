@@ -1,0 +1,33 @@
+/** Who this page is to the server, and where its stop process listens: kept in memory alone, also while nobody answers. */
+import { create } from 'zustand'
+import type { SessionBody } from './types'
+
+/** Where STOP goes without the engine, and the token that it takes there. */
+export interface StopChannel {
+  readonly url: string
+  readonly token: string
+}
+
+/** A server without a stop process does not name one. */
+export type Session = SessionBody & { readonly stop?: StopChannel | null }
+
+interface SessionStore {
+  /** What the server has said last. */
+  readonly session: Session | undefined
+  /** The server has refused the session of this page since then. */
+  readonly isLoggedOut: boolean
+}
+
+export const useSession = create<SessionStore>(() => ({ session: undefined, isLoggedOut: false }))
+
+/** The server knows this page. */
+export function keepSession(session: Session): void {
+  const before = useSession.getState().session
+  const isSame = JSON.stringify(before) === JSON.stringify(session)
+  useSession.setState({ session: isSame ? before : session, isLoggedOut: false })
+}
+
+/** The server does not know this page any more; role and stop channel stay, so that STOP still works. */
+export function loseSession(): void {
+  useSession.setState({ isLoggedOut: true })
+}

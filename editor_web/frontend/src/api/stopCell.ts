@@ -1,0 +1,88 @@
+/** STOP of the cell: by the stop process, which needs no engine, and by the engine, both at the same time. */
+import { create } from 'zustand'
+import { isAcknowledged, isAtRest, newStop, type StopAnswer, type StopPath, type StopProgress } from '../document/stopReport'
+import { api, wordsOf } from './client'
+import { lastHeard } from './live'
+import { useSession, type StopChannel } from './session'
+
+const REASON = 'the cell was stopped in the dashboard'
+const POLL_MS = 100
+const SLOW_POLL_MS = 1000
+/** From here on a stop that nobody has acknowledged is told as one that has failed. */
+const UNANSWERED_MS = 1500
+const REST_MS = 5000
+
+export const useStop = create<{ readonly stop: StopProgress | undefined }>(() => ({ stop: undefined }))
+
+let stops = 0
+
+/** Stop every arm and every run. Works while the engine is blocked or dead, and as often as it is pressed. */
+export function stopCell(): void {
+  stops += 1
+  const number = stops
+  const channel = useSession.getState().session?.stop ?? undefined
+  useStop.setState({ stop: newStop(number, channel !== undefined, lastHeard()) })
+  if (channel) void throughProcess(number, channel)
+  void throughEngine(number)
+  setTimeout(() => change(number, (stop) => ({ isUnanswered: !isAcknowledged(stop) })), UNANSWERED_MS)
+  setTimeout(() => change(number, (stop) => ({ isSlow: !isAtRest(stop) })), REST_MS)
+}
+
+/** Take the words about the last stop away. */
+export function forgetStop(): void {
+  useStop.setState({ stop: undefined })
+}
+
+async function throughProcess(number: number, channel: StopChannel): Promise<void> {
+  const endMs = performance.now() + REST_MS
+  const isShown = () => useStop.getState().stop?.number === number
+  try {
+    let answer = await asked(channel.url, channel.token)
+    change(number, () => ({ process: ANSWERED, answer }))
+    while (!answer.devices.every((device) => device.at_rest) && isShown()) {
+      const pauseMs = performance.now() < endMs ? POLL_MS : SLOW_POLL_MS
+      await new Promise((resolve) => setTimeout(resolve, pauseMs))
+      answer = await asked(`${channel.url}/status`, channel.token)
+      change(number, () => ({ answer }))
+    }
+  } catch (error) {
+    change(number, () => ({ process: failed(error) }))
+  }
+}
+
+async function throughEngine(number: number): Promise<void> {
+  try {
+    await api.stopCell(REASON)
+    change(number, () => ({ engine: ANSWERED }))
+  } catch (error) {
+    change(number, () => ({ engine: failed(error) }))
+  }
+}
+
+/** A request that browsers send to another port without asking there first. */
+async function asked(url: string, token: string): Promise<StopAnswer> {
+  const response = await fetch(url, {
+    method: 'POST',
+    mode: 'cors',
+    credentials: 'omit',
+    headers: { 'Content-Type': 'text/plain' },
+    body: JSON.stringify({ token, reason: REASON }),
+    // The request outlives a page that is closed at once.
+    keepalive: true,
+    signal: AbortSignal.timeout(REST_MS),
+  })
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`)
+  return (await response.json()) as StopAnswer
+}
+
+const ANSWERED: StopPath = { status: 'answered', problem: '' }
+
+function failed(error: unknown): StopPath {
+  return { status: 'failed', problem: wordsOf(error) }
+}
+
+/** What a later stop has replaced changes nothing any more. */
+function change(number: number, changes: (stop: StopProgress) => Partial<StopProgress>): void {
+  const { stop } = useStop.getState()
+  if (stop?.number === number) useStop.setState({ stop: { ...stop, ...changes(stop) } })
+}

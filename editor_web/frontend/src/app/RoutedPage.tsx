@@ -1,0 +1,102 @@
+/** The page that an address means; each but the first is loaded when it is first opened. */
+import { Suspense } from 'react'
+import { useLive } from '../api/live'
+import type { Session } from '../api/session'
+import type { RunLine } from '../api/types'
+import { lazyView } from '../components/lazyView'
+import { ViewBoundary } from '../components/ViewBoundary'
+import { isActive } from '../document/live'
+import { FromDemonstration } from '../features/demonstration/FromDemonstration'
+import { HomePage } from './HomePage'
+import { behaviorHref, editHref, PAST_HREF, runHref, type Route } from './route'
+
+/** Brings the canvas with it, which the first page does not need. */
+const BehaviorPage = lazyView(async () => (await import('./BehaviorPage')).BehaviorPage)
+const TeachPage = lazyView(async () => (await import('./TeachPage')).TeachPage)
+const PastPage = lazyView(async () => (await import('./PastPage')).PastPage)
+const PastRunsPage = lazyView(async () => (await import('./PastRunsPage')).PastRunsPage)
+const RunsPage = lazyView(async () => (await import('./RunsPage')).RunsPage)
+const BesidePage = lazyView(async () => (await import('./BesidePage')).BesidePage)
+const EditorPage = lazyView(async () => (await import('../features/editor/EditorPage')).EditorPage)
+const EditorPreview = lazyView(async () => (await import('./EditorPreview')).EditorPreview)
+
+export interface RoutedPageProps {
+  readonly route: Route
+  /** The run of the page, if any. */
+  readonly shown: RunLine | undefined
+  readonly session: Session | undefined
+  readonly isNarrow: boolean
+  readonly onOpen: (href: string) => void
+}
+
+export function RoutedPage(props: RoutedPageProps) {
+  const { route, shown, session, isNarrow, onOpen } = props
+  const active = useLive((s) => s.runs).filter(isActive)
+  // A run that this server has not started may be in its journal.
+  const knowsRuns = useLive((s) => s.knowsRuns)
+  switch (route.page) {
+    case 'edit':
+      return <Edit {...props} id={route.id} />
+    case 'teach':
+      return <TeachPage session={session} isNarrow={isNarrow} />
+    case 'past':
+      return <PastRunsPage onOpen={onOpen} />
+    case 'runs':
+      return <RunsPage onOpen={onOpen} />
+    case 'beside':
+      return <BesidePage left={route.left} right={route.right} isNarrow={isNarrow} onOpen={onOpen} />
+    case 'home':
+      return <HomePage hasCellView={session?.has_cell_view ?? false} onOpenRun={(id) => onOpen(runHref(id))} />
+  }
+  if (route.page === 'recording' || (route.page === 'run' && knowsRuns && !shown)) {
+    return (
+      <PastPage
+        key={route.id}
+        id={route.id}
+        isRecording={route.page === 'recording'}
+        session={session}
+        isNarrow={isNarrow}
+        onAll={() => onOpen(PAST_HREF)}
+      />
+    )
+  }
+  const behavior = route.page === 'behavior' ? route.id : shown?.behavior
+  if (!behavior) return <div className="page-wait" role="status" aria-label="Loading" />
+  return (
+    <BehaviorPage
+      key={behavior}
+      id={behavior}
+      run={shown}
+      active={active}
+      session={session}
+      isNarrow={isNarrow}
+      onStarted={() => onOpen(behaviorHref(behavior))}
+      onEdit={(node) => onOpen(editHref(behavior, node))}
+    />
+  )
+}
+
+function Edit({ id, session, isNarrow, onOpen }: RoutedPageProps & { readonly id: string }) {
+  const mayEdit = session?.role === 'operator'
+  const preview = (
+    <ViewBoundary name="Preview">
+      <Suspense fallback={null}>
+        <EditorPreview isNarrow={isNarrow} />
+      </Suspense>
+    </ViewBoundary>
+  )
+  return (
+    <EditorPage
+      key={id}
+      id={id}
+      mayEdit={mayEdit}
+      isNarrow={isNarrow}
+      onRun={() => onOpen(behaviorHref(id))}
+      onOpen={(other, node) => onOpen(editHref(other, node))}
+      onGone={() => onOpen('/')}
+      hasCellView={session?.has_cell_view ?? false}
+      preview={preview}
+      libraryTools={mayEdit ? <FromDemonstration onMade={(made) => onOpen(editHref(made))} /> : undefined}
+    />
+  )
+}

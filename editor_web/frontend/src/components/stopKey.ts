@@ -1,0 +1,18 @@
+/** The key of STOP: it works everywhere, also while somebody writes, in dialogs and in the 3D view. */
+import { stopCell } from '../api/stopCell'
+import { useSession } from '../api/session'
+
+export const STOP_KEY = 'Ctrl+Shift+Backspace'
+
+/** Listen for it in a window before anything else does; returns how to end it. */
+export function listenForStopKey(on: Window): () => void {
+  const listen = (event: KeyboardEvent) => {
+    const isMeant = event.key === 'Backspace' && event.ctrlKey && event.shiftKey && !event.altKey
+    if (!isMeant || useSession.getState().session?.role !== 'operator') return
+    event.preventDefault()
+    event.stopImmediatePropagation()
+    if (!event.repeat) stopCell()
+  }
+  on.addEventListener('keydown', listen, { capture: true })
+  return () => on.removeEventListener('keydown', listen, { capture: true })
+}

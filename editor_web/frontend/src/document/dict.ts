@@ -1,0 +1,21 @@
+/** Dictionaries whose keys are names that people choose: `constructor` and `__proto__` are names as any other. Pure. */
+
+/** Every key that is written in our own sources. A `string` is none of them. */
+type Literal = `${any}`
+
+/**
+ * A dictionary by name, as JSON brings it. `dict[name]` would also find what every object inherits, and does not
+ * compile; `lookup` looks at its own keys only. New ones are made by literals, spreads with `[name]: value` and
+ * `Object.fromEntries`, which define keys; an assignment would set the prototype.
+ */
+export type Dict<T> = { readonly [K in Literal]: T }
+
+/** What is named so; undefined where nothing is. */
+export function lookup<T>(dict: Dict<T> | undefined, name: string | number): T | undefined {
+  return dict !== undefined && Object.hasOwn(dict, name) ? (dict as Readonly<Record<string, T>>)[name] : undefined
+}
+
+/** The same without one name. */
+export function without<T>(dict: Dict<T>, name: string): Dict<T> {
+  return Object.fromEntries(Object.entries(dict).filter(([each]) => each !== name))
+}

@@ -1,0 +1,64 @@
+/** Says that the world or a device of the cell is lost, and connects it again. */
+import { IconPlugConnectedX } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { connectCell, lookAtCell, useCellConnection } from '../../api/cellConnection'
+import { wordsOf } from '../../api/client'
+import { useLive } from '../../api/live'
+import { CommandButton } from '../../components/CommandButton'
+
+const LOOK_MS = 1000
+const LOST: ReadonlySet<string> = new Set(['fault', 'disconnected'])
+
+export function LostCell() {
+  const { connected, reason } = useCellConnection()
+  const isServed = useLive((s) => s.connection === 'live')
+  const mayOperate = useLive((s) => s.role === 'operator')
+  const modes = useLive((s) => Object.values(s.robots).map((robot) => robot.mode).filter((mode) => LOST.has(mode)).join())
+  const isSuspect = isServed && (modes !== '' || !connected)
+  const { isConnecting, problem, connect } = useConnect()
+  useEffect(() => {
+    if (!isSuspect) return
+    void lookAtCell()
+    const timer = setInterval(() => void lookAtCell(), LOOK_MS)
+    return () => clearInterval(timer)
+  }, [isSuspect, modes])
+  if (connected || !isServed) return null
+  return (
+    <div className="lost-cell" role="alert">
+      <IconPlugConnectedX size={20} aria-hidden />
+      <span>
+        <strong>The cell is not connected:</strong> {reason || 'no reason was given'}. Runs that need it are refused until it is connected again.
+        {problem && (
+          <span className="lost-cell-problem">
+            <strong>Not connected:</strong> {problem}
+          </span>
+        )}
+      </span>
+      {mayOperate && (
+        <CommandButton
+          label={isConnecting ? 'Connecting' : 'Connect again'}
+          tone="strong"
+          obstacle={isConnecting ? 'it is being connected' : undefined}
+          onPress={() => void connect()}
+        />
+      )}
+    </div>
+  )
+}
+
+function useConnect() {
+  const [isConnecting, setConnecting] = useState(false)
+  const [problem, setProblem] = useState('')
+  async function connect(): Promise<void> {
+    setConnecting(true)
+    setProblem('')
+    try {
+      await connectCell()
+    } catch (error) {
+      setProblem(wordsOf(error))
+    } finally {
+      setConnecting(false)
+    }
+  }
+  return { isConnecting, problem, connect }
+}

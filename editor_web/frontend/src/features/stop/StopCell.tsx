@@ -1,0 +1,69 @@
+/** STOP of the cell, over every page and dialog, and what became of it; it needs nothing of the rest of the page. */
+import './stop.css'
+import { IconHandStop, IconX } from '@tabler/icons-react'
+import { useEffect } from 'react'
+import { createPortal } from 'react-dom'
+import { api } from '../../api/client'
+import { useSession } from '../../api/session'
+import { forgetStop, stopCell, useStop } from '../../api/stopCell'
+import { useTop } from '../../components/modal'
+import { listenForStopKey, STOP_KEY } from '../../components/stopKey'
+import { reportOf } from '../../document/stopReport'
+
+const HINT =
+  'Stops every run and every goal; the arms decelerate to rest, also when the engine does not answer. ' +
+  'This is no emergency stop: press the button at the cell where people are in danger. ' +
+  `Key: ${STOP_KEY}`
+/** So long stands what needs no attention. */
+const SHOWN_MS = 8000
+
+export function StopCell() {
+  const isShown = useSession((s) => s.session?.role === 'operator')
+  const top = useTop()
+  // The page asks too; STOP does not depend on it.
+  useEffect(() => void api.session().catch(() => undefined), [])
+  useEffect(() => listenForStopKey(window), [])
+  useEffect(() => {
+    document.body.classList.toggle('has-stop', isShown)
+  }, [isShown])
+  if (!isShown) return null
+  return createPortal(
+    <section className="stop" aria-label="Stop of the cell">
+      <button type="button" className="stop-button" title={HINT} aria-keyshortcuts="Control+Shift+Backspace" onClick={stopCell}>
+        <IconHandStop size={18} aria-hidden />
+        <span>
+          Stop<span className="stop-rest"> the cell</span>
+        </span>
+      </button>
+      <StopNews />
+    </section>,
+    top,
+  )
+}
+
+/** The area is there before anything is said in it, or it would not be read out. */
+function StopNews() {
+  const stop = useStop((s) => s.stop)
+  const report = stop && reportOf(stop)
+  const isDone = report?.level === 'done'
+  useEffect(() => {
+    if (!isDone) return
+    const timer = setTimeout(forgetStop, SHOWN_MS)
+    return () => clearTimeout(timer)
+  }, [isDone, stop?.number])
+  return (
+    <div className="stop-news" role="status" aria-live="assertive" aria-label="What became of the stop">
+      {report && (
+        <div className={`stop-report is-${report.level}`} role={report.level === 'alarm' ? 'alert' : undefined}>
+          <strong>{report.title}</strong>
+          {report.lines.map((line) => (
+            <p key={line}>{line}</p>
+          ))}
+          <button type="button" className="stop-away" aria-label="Put the words about the stop away" onClick={forgetStop}>
+            <IconX size={16} aria-hidden />
+          </button>
+        </div>
+      )}
+    </div>
+  )
+}
