@@ -26,11 +26,15 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     last_seq: int
     driver: int | None = None
     """The process that drives it now, None when none does."""
+    verified: bool = True
+    """False where some of it was written by a version that made no checksums: damage to that cannot be told."""
+    damage: str = ""
+    """What of it is damaged, as far as that shows without reading its events; empty where nothing is."""
 
     @property
     def interrupted(self) -> bool:
         """Whether the engine that drove it has died before its end."""
-        return self.status == "running" and self.driver is None
+        return self.status == "running" and self.driver is None and not self.damage
 
 
 class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
