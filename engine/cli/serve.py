@@ -20,6 +20,7 @@ from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
+from engine.private_files import make_private_folder, open_private
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
 from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
@@ -51,7 +52,7 @@ def serve(
 ) -> None:
     """Connect a cell and serve its dashboard until Ctrl-C; robots come to rest before it ends."""
     loaded = load_cell(cell) if cell is not None else None
-    state.mkdir(parents=True, exist_ok=True)
+    make_private_folder(state)
     recordings = (
         SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
     )
@@ -122,7 +123,6 @@ async def _serve(
 def _write_private(file: Path, record: ServerRecord) -> None:
     """Write the record so that only the owner can ever read it."""
     part = file.with_suffix(".part")
-    descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-    with os.fdopen(descriptor, "wb") as stream:
+    with open_private(part) as stream:
         stream.write(msgspec.json.encode(record))
     part.replace(file)
