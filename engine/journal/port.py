@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import msgspec
 
+from engine.errors import JournalError
 from engine.event import Event
 
 
@@ -82,6 +84,13 @@ class RunJournal(Protocol):
 
     def keep_world(self, state: bytes) -> None:
         """Take the state of the simulated world as of now; the next commit stores it with the events."""
+        ...
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Call `listener` on this event loop when events cannot be written and no commit waits to be told.
+
+        The run must stop: what it records from then on is lost.
+        """
         ...
 
     async def commit(self) -> None:
