@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
+from engine.errors import JournalError
 from engine.event import Event
 from engine.journal import JournalPort, RunJournal, RunOrigin
 
@@ -56,6 +58,9 @@ class _CrashingRun:
 
     def keep_world(self, state: bytes) -> None:
         self.inner.keep_world(state)
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        self.inner.on_failure(listener)
 
     async def commit(self) -> None:
         self.counter.reached("before commit")

@@ -10,16 +10,7 @@ from tempfile import TemporaryDirectory
 from engine.document import Behavior, load_behavior
 from engine.errors import DocumentError, FlexcellError, JournalError
 from engine.event import AnyEvent, BehaviorChanged, Event, RunStarted
-from engine.journal import (
-    RunOrigin,
-    RunRecord,
-    WorldState,
-    find_run,
-    journal_path,
-    read_events,
-    read_origin,
-    read_world,
-)
+from engine.journal import RunOrigin, RunRecord, WorldState, journal_path, open_snapshot
 from engine.recording import Documents, collect_documents
 from engine.resume import effective
 
@@ -82,22 +73,19 @@ def read_run(place: Path | str, run_id: str) -> RecordedRun:
     """Read everything that a journal has of a run.
 
     Raises:
-        JournalError: there is no such run, or the journal does not tell how it was started.
+        JournalError: there is no such run, it is damaged, or the journal does not tell how it was started.
     """
     path = journal_path(place)
-    record = find_run(path, run_id)
-    origin = read_origin(path, run_id)
-    if origin is None:
-        raise JournalError(
-            f"the journal does not tell how run {run_id} was started", where=path, hint="start it again from its file"
-        )
-    return RecordedRun(
-        place=path,
-        record=record,
-        origin=origin,
-        events=read_events(path, run_id),
-        world=read_world(path, run_id),
-    )
+    with open_snapshot(path) as journal:
+        record, origin = journal.run(run_id), journal.origin(run_id)
+        if origin is None:
+            raise JournalError(
+                f"the journal does not tell how run {run_id} was started",
+                where=path,
+                hint="start it again from its file",
+            )
+        events, world = tuple(journal.events(run_id)), journal.world(run_id)
+    return RecordedRun(place=path, record=record, origin=origin, events=events, world=world)
 
 
 def kept_documents(behavior: Behavior) -> tuple[str, dict[str, str]]:

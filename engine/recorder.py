@@ -6,6 +6,7 @@ import logging
 from collections.abc import Callable
 
 from engine.clock import Clock
+from engine.errors import JournalError
 from engine.event import Event
 from engine.journal import RunJournal
 
@@ -47,6 +48,15 @@ class Recorder:
         if self.ended:
             return
         self._journal.append(event)
+        self.tell(event)
+
+    def end(self, event: Event) -> None:
+        """Take the last event; who watches is told with `tell`, once it is known whether it could be kept."""
+        self._journal.append(event)
+        self.ended = True
+
+    def tell(self, event: Event) -> None:
+        """Hand an event to all who watch."""
         for watcher in self._watchers:
             try:
                 watcher(event)
@@ -63,10 +73,18 @@ class Recorder:
         """Stop calling it."""
         self._watchers = tuple(w for w in self._watchers if w is not watcher)
 
+    def on_lost(self, listener: Callable[[JournalError], None]) -> None:
+        """Call `listener` when what was recorded cannot be made durable and no commit waits to be told."""
+        self._journal.on_failure(listener)
+
     def keep_world(self, state: bytes) -> None:
         """Keep the simulated world as it is now with the next commit."""
         self._journal.keep_world(state)
 
     async def commit(self) -> None:
-        """Make what was recorded durable; due before any effect leaves the engine."""
+        """Make what was recorded durable; due before any effect leaves the engine.
+
+        Raises:
+            JournalError: it cannot be written; the run must stop.
+        """
         await self._journal.commit()

@@ -7,12 +7,14 @@ import random
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import msgspec
+
 from engine.bus import SkillBus
-from engine.cause import cause_of, under
+from engine.cause import cause_of, describe, under
 from engine.checkpoint import Checkpoint
 from engine.control import Control, Gate
 from engine.errors import ControlError, FlexcellError, JournalError, NotStopped
-from engine.event import Cause
+from engine.event import Cause, RunEnded
 from engine.execution import Execution
 from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
@@ -94,6 +96,7 @@ class Run:
             after_seq=checkpoint.seq if checkpoint is not None and self._goes_on else 0,
             after_s=checkpoint.time_s if checkpoint is not None and self._goes_on else 0.0,
         )
+        self._recorder.on_lost(self.fail)
         suspensions = Suspensions()
         self._execution = Execution(
             run=run,
@@ -224,16 +227,16 @@ class Run:
             self._execution.skills.end()
         self._ended = True
         self._control.close()
-        cause = await self._record_end(status, outcome, cause)
+        end = await self._record_end(status, outcome, cause)
         if self._cancelled:
             raise asyncio.CancelledError
         return RunResult(
             run=self.id,
             behavior=self.plan.name,
-            status="errored" if cause is not None and cause.kind == "JournalError" else status,
-            outcome=outcome,
-            success=success and status == "finished",
-            cause=cause,
+            status=end.status,
+            outcome=end.outcome,
+            success=success and end.status == "finished",
+            cause=end.cause,
             duration_s=round(self._execution.clock.now_s() - started_s, 6),
             userdata=scope.own_values(),
             abandoned=tuple(self._execution.abandoned),
@@ -242,7 +245,7 @@ class Run:
     async def _perform(self, scope: Scope) -> tuple[str, Left | None, Cause | None]:
         if self._stop_reason is not None:
             self._log.stop_requested(self._stop_reason)
-            return "stopped", None, self._stopped()
+            return "stopped" if self._failure is None else "errored", None, self._stopped()
         root = self.plan.root
         self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
         try:
@@ -343,13 +346,31 @@ class Run:
         if self._supervision.start_paused:
             self._control.pause()
 
-    async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> Cause | None:
-        self._log.ended(status, outcome, cause)
+    async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
+        """Make the end durable, then tell it; a run whose end cannot be kept has failed with that cause."""
+        end = self._log.ended(status, outcome, cause)
+        committing = asyncio.create_task(self._execution.commit(), name=f"end of run {self.id}")
+        while not committing.done():
+            try:
+                await asyncio.wait({committing})
+            except asyncio.CancelledError:
+                self._cancelled = True
         try:
-            await self._execution.commit()
+            committing.result()
         except JournalError as error:
-            return cause_of(error)
-        return cause
+            end = msgspec.structs.replace(end, status="errored", outcome=None, cause=_unrecorded(error, end))
+        self._recorder.tell(end)
+        return end
+
+
+def _unrecorded(error: JournalError, end: RunEnded) -> Cause:
+    """Return the cause of a run whose end could not be written: the journal, and how it had ended by itself."""
+    if end.cause is not None and any(link.kind == JournalError.__name__ for link in end.cause.chain()):
+        return end.cause
+    lost = cause_of(error)
+    by_itself = end.outcome or end.status
+    why = f" ({describe(end.cause)})" if end.cause is not None else ""
+    return msgspec.structs.replace(lost, message=f"{lost.message}; the run itself had ended: {by_itself}{why}")
 
 
 def _locked(active: Mapping[str, Node], waiting: Mapping[str, str], locks: set[str]) -> bool:

@@ -103,15 +103,10 @@ class RunLog:
             StopRequested(seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), reason=reason)
         )
 
-    def ended(self, status: str, outcome: str | None, cause: Cause | None) -> None:
-        """It is over."""
-        self._recorder.record(
-            RunEnded(
-                seq=self._recorder.next_seq(),
-                time_s=self._recorder.now_s(),
-                status=status,
-                outcome=outcome,
-                cause=cause,
-            )
+    def ended(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
+        """It is over: the event is with the journal, and nobody else is told yet."""
+        end = RunEnded(
+            seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), status=status, outcome=outcome, cause=cause
         )
-        self._recorder.ended = True
+        self._recorder.end(end)
+        return end

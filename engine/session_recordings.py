@@ -16,6 +16,7 @@ from pathlib import Path
 from engine.cell import OpenCell
 from engine.document.behavior import Behavior
 from engine.errors import RecordingError
+from engine.private_files import make_private_folder
 from engine.recording import Documents, RecordingOrder, RunRecording, collect_documents, part_file
 from engine.recording.finished_file import PART, finish
 from engine.recording.finishing import finish_apart
@@ -126,7 +127,7 @@ class SessionRecordings:
         return pieces
 
     def _prepare(self, behavior: Behavior, cell: OpenCell) -> Documents:
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(self.folder)
         self._remove_oldest(room=1)
         return collect_documents(behavior, cell.document)
 

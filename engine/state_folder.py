@@ -12,6 +12,7 @@ import msgspec
 
 from engine.bus.remote import ServerRecord, server_file
 from engine.errors import BusError, FlexcellError
+from engine.private_files import make_private_folder, open_private
 from engine.stop import StopEndpoint
 
 LOCK_FILE = "lock"
@@ -34,9 +35,7 @@ class StateFolder:
         )
         file = server_file(self.path)
         part = file.with_suffix(".part")
-        part.unlink(missing_ok=True)
-        descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with os.fdopen(descriptor, "wb") as stream:
+        with open_private(part) as stream:
             stream.write(msgspec.json.encode(record))
         part.replace(file)
 
@@ -62,7 +61,7 @@ def locked_state_folder(path: Path) -> Generator[StateFolder]:
 def _locked(path: Path) -> Generator[None]:
     file = path / LOCK_FILE
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path)
         descriptor = os.open(file, os.O_RDWR | os.O_CREAT, 0o600)
     except OSError as error:
         raise FlexcellError(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sqlite3
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -12,12 +11,7 @@ import msgspec
 from engine.cause import describe
 from engine.errors import JournalError
 from engine.event import RunEnded
-from engine.journal import decode_event, journal_path
-from engine.journal.database import journal_fault
-from engine.sqlite_file import read_sqlite
-
-_RUNS = "SELECT id, behavior, hash, started, epoch FROM run ORDER BY started DESC, rowid DESC"
-_LAST = "SELECT data, time_s, seq FROM event WHERE run = ? ORDER BY seq DESC LIMIT 1"
+from engine.journal import JournalSnapshot, RunRecord, journal_path, open_snapshot
 
 
 class PastRun(msgspec.Struct, frozen=True, kw_only=True):
@@ -61,58 +55,69 @@ class PastRuns:
         self._over: dict[tuple[str, int], PastRun] = {}
 
     def all(self) -> tuple[PastRun, ...]:
-        """Return all runs, newest first; none where there is no journal.
+        """Return all runs, newest first; none where there is no journal. A damaged one is errored, with that cause.
 
         Raises:
             JournalError: the journal cannot be read.
         """
         if not self._path.is_file():
             return ()
-        try:
-            connection = read_sqlite(self._path)
-            try:
-                rows = connection.execute(_RUNS).fetchall()
-                return tuple(self._run(connection, row) for row in rows)
-            finally:
-                connection.close()
-        except sqlite3.Error as error:
-            raise journal_fault("cannot be read", self._path, error) from error
+        with open_snapshot(self._path) as journal:
+            return tuple(self._run(journal, record) for record in reversed(journal.runs()))
 
-    def _run(self, connection: sqlite3.Connection, row: tuple[object, ...]) -> PastRun:
-        run, behavior, document, started, epoch = row
+    def _run(self, journal: JournalSnapshot, record: RunRecord) -> PastRun:
         # A run that was resumed is another one: it has more events.
-        key = (str(run), int(str(epoch)))
+        key = (record.id, record.epoch)
         with self._lock:
             known = self._over.get(key)
-        if known is not None:
+        if known is not None and not record.damage:
             return known
-        made = self._read(connection, str(run), str(behavior), str(document), float(str(started)))
+        made = self._read(journal, record)
         if made.status != "running":
             with self._lock:
                 self._over[key] = made
         return made
 
-    def _read(
-        self, connection: sqlite3.Connection, run: str, behavior: str, document: str, started_at_s: float
-    ) -> PastRun:
-        last = connection.execute(_LAST, (run,)).fetchone()
-        data, time_s, seq = last if last is not None else ("", 0.0, 0)
-        ended = _end(str(data))
-        outcome = ended.outcome if ended is not None else None
-        meant = self._success(run, document) if ended is not None else ()
-        success = ended is not None and is_success(ended, meant)
-        return PastRun(
-            id=run,
-            behavior=behavior,
-            document=document,
-            status=ended.status if ended is not None else "running",
-            outcome=outcome,
+    def _read(self, journal: JournalSnapshot, record: RunRecord) -> PastRun:
+        try:
+            last = journal.last_event(record.id)
+        except JournalError as error:
+            # One damaged run is no reason to hide the others.
+            return _past_run(record, status="errored", cause=error.message)
+        if not isinstance(last, RunEnded):
+            return _past_run(record, duration_s=last.time_s if last is not None else 0.0)
+        success = is_success(last, self._success(record.id, record.document))
+        return _past_run(
+            record,
+            status=last.status,
+            outcome=last.outcome,
             success=success,
-            cause=describe(ended.cause) if ended is not None and ended.cause is not None and not success else "",
-            started_at_s=started_at_s,
-            duration_s=float(time_s),
-            events=int(seq),
+            cause=describe(last.cause) if last.cause is not None and not success else "",
+            duration_s=last.time_s,
         )
+
+
+def _past_run(
+    record: RunRecord,
+    *,
+    status: str = "running",
+    outcome: str | None = None,
+    success: bool = False,
+    cause: str = "",
+    duration_s: float = 0.0,
+) -> PastRun:
+    return PastRun(
+        id=record.id,
+        behavior=record.behavior,
+        document=record.document,
+        status=status,
+        outcome=outcome,
+        success=success,
+        cause=cause,
+        started_at_s=record.started_unix_s,
+        duration_s=duration_s,
+        events=record.last_seq,
+    )
 
 
 def is_success(end: RunEnded, meant: tuple[str, ...]) -> bool:
@@ -120,12 +125,3 @@ def is_success(end: RunEnded, meant: tuple[str, ...]) -> bool:
     if end.status != "finished":
         return False
     return end.outcome in meant if meant else end.cause is None
-
-
-def _end(data: str) -> RunEnded | None:
-    try:
-        event = decode_event(data) if data else None
-    except JournalError:
-        # One damaged run is no reason to hide the others; opening it says what is wrong.
-        return None
-    return event if isinstance(event, RunEnded) else None

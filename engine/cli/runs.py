@@ -42,7 +42,10 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
 class RunLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One run in the list; `status` is running, interrupted, finished, stopped or errored."""
+    """One run in the list; `status` is running, interrupted, finished, stopped, errored or damaged.
+
+    `verified` is false where an older version, which made no checksums, wrote some of it.
+    """
 
     id: str
     behavior: str
@@ -50,6 +53,8 @@ class RunLine(msgspec.Struct, frozen=True, kw_only=True):
     started: str
     events: int
     engines: int
+    verified: bool
+    damage: str
 
 
 class RunSummary(RunLine, frozen=True, kw_only=True):
@@ -84,6 +89,12 @@ def runs(context: typer.Context, journal: JournalPlace = ".flexcell", json: AsJs
         table.add_row(line.id, line.behavior, line.status, line.started, str(line.events))
     # In a pipe nothing is folded or cut short: its reader looks for whole words.
     Console(width=None if sys.stdout.isatty() else _PIPE_WIDTH).print(table)
+    for line in lines:
+        if line.damage:
+            print(f"flexcell: {line.id}: {line.damage}", file=sys.stderr)
+    old = [line.id for line in lines if not line.verified]
+    if old:
+        print(f"flexcell: unverified, written by an older version: {', '.join(old)}", file=sys.stderr)
 
 
 @app.command("show")
@@ -110,10 +121,12 @@ def _line(record: RunRecord) -> RunLine:
     return RunLine(
         id=record.id,
         behavior=record.behavior,
-        status="interrupted" if record.interrupted else record.status,
+        status="damaged" if record.damage else "interrupted" if record.interrupted else record.status,
         started=datetime.fromtimestamp(record.started_unix_s, UTC).strftime("%Y-%m-%d %H:%M:%S"),
         events=record.last_seq,
         engines=record.epoch,
+        verified=record.verified,
+        damage=record.damage,
     )
 
 
@@ -162,6 +175,8 @@ def _print(summary: RunSummary, end: RunEnded | None) -> None:
     engines = f", {summary.engines} engines" if summary.engines > 1 else ""
     console.print(f"{summary.id}: {summary.behavior}, {summary.status}{ended}")
     console.print(f"started {summary.started} UTC, {summary.events} events{engines}")
+    if not summary.verified:
+        console.print("unverified: an older version, which made no checksums, wrote some of it")
     if summary.world_at is not None:
         console.print(f"the simulated world is known at event {summary.world_at}")
     cause: Cause | None = end.cause if end is not None else None

@@ -10,6 +10,9 @@ from engine.event import AnyEvent, RunStarted
 from engine.journal import decode_event, list_runs, read_events
 from engine.recording import load_recording
 
+MAX_BYTES = 2**30
+"""Bytes of a file of `--events`, which is read whole."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class RunLog:
@@ -41,6 +44,10 @@ def read_logs(place: Path) -> tuple[RunLog, ...]:
 
 def _read_lines(file: Path) -> tuple[AnyEvent, ...]:
     try:
+        if file.stat().st_size > MAX_BYTES:
+            raise FlexcellError(
+                f"this event log has more than {MAX_BYTES} bytes", where=file, hint="give the journal instead"
+            )
         lines = file.read_bytes().splitlines()
     except OSError as error:
         raise FlexcellError(f"cannot read this file: {error.strerror}", where=file, hint="check its path") from error

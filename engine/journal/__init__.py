@@ -10,10 +10,12 @@ from engine.journal.journal import Journal, SqliteRunJournal, journal_path
 from engine.journal.null import NullJournal, NullRunJournal
 from engine.journal.port import JournalPort, RunJournal, RunOrigin, RunRecord
 from engine.journal.reader import find_run, list_runs, read_events, read_origin, read_world
+from engine.journal.snapshot import JournalSnapshot, open_snapshot
 
 __all__ = [
     "Journal",
     "JournalPort",
+    "JournalSnapshot",
     "NullJournal",
     "NullRunJournal",
     "RunJournal",
@@ -27,6 +29,7 @@ __all__ = [
     "find_run",
     "journal_path",
     "list_runs",
+    "open_snapshot",
     "read_events",
     "read_origin",
     "read_world",

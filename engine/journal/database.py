@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import msgspec
@@ -11,24 +12,52 @@ import msgspec
 from engine.errors import JournalError
 from engine.event import Event, RunEnded
 from engine.journal.batch import Batch
+from engine.journal.checksum import chain_start, checksum_of, next_checksum
 from engine.journal.codec import encode_event
 from engine.journal.port import RunOrigin
 from engine.sqlite_file import advice, open_sqlite
+from engine.sqlite_schema import Schema
 
-SCHEMA_VERSION = 3
-_SCHEMA = """
+SCHEMA = Schema(
+    (
+        """
 CREATE TABLE IF NOT EXISTS run(
     id TEXT PRIMARY KEY, behavior TEXT NOT NULL, hash TEXT NOT NULL, status TEXT NOT NULL,
     epoch INTEGER NOT NULL, started REAL NOT NULL) STRICT;
 CREATE TABLE IF NOT EXISTS event(
     run TEXT NOT NULL, seq INTEGER NOT NULL, time_s REAL NOT NULL, epoch INTEGER NOT NULL, data TEXT NOT NULL,
     PRIMARY KEY (run, seq)) STRICT, WITHOUT ROWID;
+""",
+        """
 CREATE TABLE IF NOT EXISTS origin(run TEXT PRIMARY KEY, data TEXT NOT NULL) STRICT;
 CREATE TABLE IF NOT EXISTS world(run TEXT PRIMARY KEY, seq INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
+""",
+        """
 CREATE TABLE IF NOT EXISTS driver(run TEXT PRIMARY KEY, engine TEXT NOT NULL) STRICT;
-"""
-_INSERT_EVENT = "INSERT INTO event(run, seq, time_s, epoch, data) VALUES (?, ?, ?, ?, ?)"
+""",
+        # A run of an older version has a row without checksums; events are chained from `since` on.
+        """
+ALTER TABLE event ADD COLUMN checksum BLOB;
+CREATE TABLE checksum(
+    run TEXT PRIMARY KEY, since INTEGER NOT NULL, seq INTEGER NOT NULL, chain BLOB, record BLOB, origin BLOB,
+    world BLOB) STRICT, WITHOUT ROWID;
+INSERT INTO checksum(run, since, seq) SELECT id, 0, 0 FROM run;
+""",
+    )
+)
+CHECKSUMS_SINCE_VERSION = 4
+DRIVER_SINCE_VERSION = 3
+_INSERT_EVENT = "INSERT INTO event(run, seq, time_s, epoch, data, checksum) VALUES (?, ?, ?, ?, ?, ?)"
 _SET_DRIVER = "INSERT OR REPLACE INTO driver(run, engine) VALUES (?, ?)"
+_RECORD = """
+SELECT id, behavior, hash, status, epoch, started, (SELECT engine FROM driver WHERE driver.run = run.id),
+       checksum.since, checksum.origin, checksum.record
+FROM run LEFT JOIN checksum ON checksum.run = run.id WHERE run.id = ?
+"""
+
+DAMAGE_HINT = "restore a copy of the journal, or move it away"
+
+EventRow = tuple[str, int, float, int, str, bytes]
 
 
 class RunRefused(JournalError):
@@ -41,12 +70,14 @@ class JournalDatabase:
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path = path
         self._connection = connection
+        self._chains: dict[str, bytes] = {}
+        """The checksum of the last event of each run that this engine drives."""
 
     @classmethod
     def open(cls, path: Path, *, busy_timeout_s: float) -> JournalDatabase:
         """Open or create the file; raises JournalError with the path and what to do."""
         try:
-            connection = open_sqlite(path, schema=_SCHEMA, version=SCHEMA_VERSION, busy_timeout_s=busy_timeout_s)
+            connection = open_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         except (sqlite3.Error, OSError) as error:
             raise journal_fault("cannot be opened", path, error) from error
         return cls(path, connection)
@@ -62,43 +93,43 @@ class JournalDatabase:
         engine: str,
     ) -> int:
         """Store a new run as running, driven by `engine`; return its epoch."""
-        try:
-            self._connection.execute("BEGIN IMMEDIATE")
-            self._connection.execute(
-                "INSERT INTO run(id, behavior, hash, status, epoch, started) VALUES (?, ?, ?, 'running', 1, ?)",
-                (run_id, behavior, document, started_unix_s),
+        text = msgspec.json.encode(origin).decode() if origin is not None else None
+        begun = checksum_of((run_id, text)) if text is not None else None
+        with self._writing() as connection:
+            try:
+                connection.execute(
+                    "INSERT INTO run(id, behavior, hash, status, epoch, started) VALUES (?, ?, ?, 'running', 1, ?)",
+                    (run_id, behavior, document, started_unix_s),
+                )
+            except sqlite3.IntegrityError as error:
+                raise JournalError(f"run {run_id} is there already", where=self.path, hint="resume it") from error
+            if text is not None:
+                connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
+            connection.execute(_SET_DRIVER, (run_id, engine))
+            connection.execute(
+                "INSERT INTO checksum(run, since, seq, chain, origin) VALUES (?, 1, 0, ?, ?)",
+                (run_id, chain_start(run_id), begun),
             )
-            if origin is not None:
-                text = msgspec.json.encode(origin).decode()
-                self._connection.execute("INSERT INTO origin(run, data) VALUES (?, ?)", (run_id, text))
-            self._connection.execute(_SET_DRIVER, (run_id, engine))
-            self._connection.execute("COMMIT")
-        except sqlite3.IntegrityError as error:
-            raise JournalError(f"run {run_id} is there already", where=self.path, hint="resume it") from error
-        except sqlite3.Error as error:
-            raise journal_fault("cannot be written", self.path, error) from error
-        finally:
-            if self._connection.in_transaction:
-                self._connection.rollback()
+            self._seal(run_id)
+        self._chains[run_id] = chain_start(run_id)
         return 1
 
     def take_over_run(self, run_id: str, *, engine: str) -> int:
         """Make this engine the only one that may write to the run; return the new epoch."""
-        try:
-            self._connection.execute("BEGIN IMMEDIATE")
-            row = self._connection.execute(
+        with self._writing() as connection:
+            try:
+                self._require_undamaged(run_id)
+            except RunRefused as error:
+                raise JournalError(error.message, where=self.path, hint=error.hint) from error
+            row = connection.execute(
                 "UPDATE run SET epoch = epoch + 1, status = 'running' WHERE id = ? RETURNING epoch", (run_id,)
             ).fetchone()
-            if row is not None:
-                self._connection.execute(_SET_DRIVER, (run_id, engine))
-            self._connection.execute("COMMIT")
-        except sqlite3.Error as error:
-            raise journal_fault("cannot be written", self.path, error) from error
-        finally:
-            if self._connection.in_transaction:
-                self._connection.rollback()
-        if row is None:
-            raise JournalError(f"there is no run {run_id}", where=self.path, hint="`flexcell runs` lists them")
+            if row is None:
+                raise JournalError(f"there is no run {run_id}", where=self.path, hint="`flexcell runs` lists them")
+            connection.execute(_SET_DRIVER, (run_id, engine))
+            chain = self._chain(run_id)
+            self._seal(run_id)
+        self._chains[run_id] = chain
         return int(row[0])
 
     def store(self, batches: Sequence[Batch]) -> None:
@@ -108,22 +139,16 @@ class JournalDatabase:
             RunRefused: one run may not write or gave an event twice; nothing was written.
             JournalError: the file cannot be written; nothing was.
         """
-        rows = [(each.run, each.epoch, _rows(each.run, each.epoch, each.events)) for each in batches]
-        try:
-            self._connection.execute("BEGIN IMMEDIATE")
-            for run, epoch, events in rows:
-                self._check_fence(run, epoch)
-                self._insert_events(run, events)
-            for each in batches:
+        rows = [(each, _rows(each.run, each.epoch, each.events, self._chains[each.run])) for each in batches]
+        with self._writing():
+            for each, events in rows:
+                self._check_fence(each.run, each.epoch)
+                self._insert_events(each.run, events)
                 self._store_status(each.run, each.events)
                 self._store_world(each)
-            self._connection.execute("COMMIT")
-        except sqlite3.Error as error:
-            raise journal_fault("cannot be written", self.path, error) from error
-        finally:
-            # Whatever went wrong, the next transaction must find none open.
-            if self._connection.in_transaction:
-                self._connection.rollback()
+        for each, events in rows:
+            if events:
+                self._chains[each.run] = events[-1][-1]
 
     def close(self) -> None:
         """Release the file."""
@@ -139,21 +164,74 @@ class JournalDatabase:
                 hint="stop this engine: the other one has resumed the run",
             )
 
-    def _insert_events(self, run: str, rows: Sequence[tuple[str, int, float, int, str]]) -> None:
+    def _insert_events(self, run: str, rows: Sequence[EventRow]) -> None:
+        if not rows:
+            return
         try:
             self._connection.executemany(_INSERT_EVENT, rows)
         except sqlite3.IntegrityError as error:
             raise RunRefused(f"an event from seq {rows[0][1]} on is stored already: {error}", where=run) from error
+        last = rows[-1]
+        self._connection.execute("UPDATE checksum SET seq = ?, chain = ? WHERE run = ?", (last[1], last[-1], run))
 
     def _store_world(self, batch: Batch) -> None:
         if batch.world is not None:
             row = (batch.run, batch.world.seq, batch.world.data)
             self._connection.execute("INSERT OR REPLACE INTO world(run, seq, data) VALUES (?, ?, ?)", row)
+            self._connection.execute("UPDATE checksum SET world = ? WHERE run = ?", (checksum_of(row), batch.run))
 
     def _store_status(self, run: str, events: Sequence[Event]) -> None:
         for event in events:
             if isinstance(event, RunEnded):
+                self._require_undamaged(run)
                 self._connection.execute("UPDATE run SET status = ? WHERE id = ?", (event.status, run))
+                self._seal(run)
+
+    def _seal(self, run: str) -> None:
+        """Store the checksum of what is known of a run as a whole, as it is now."""
+        row = self._connection.execute(_RECORD, (run,)).fetchone()
+        self._connection.execute("UPDATE checksum SET record = ? WHERE run = ?", (checksum_of(row[:-1]), run))
+
+    def _require_undamaged(self, run: str) -> None:
+        """Refuse to make a checksum over what is damaged already."""
+        row = self._connection.execute(_RECORD, (run,)).fetchone()
+        if row is not None and row[-1] is not None and row[-1] != checksum_of(row[:-1]):
+            raise RunRefused(f"what the journal says of run {run} as a whole is damaged", where=run, hint=DAMAGE_HINT)
+
+    def _chain(self, run: str) -> bytes:
+        """Return what the next event is chained to; a run of an older version begins its chain here."""
+        row = self._connection.execute("SELECT seq, chain FROM checksum WHERE run = ?", (run,)).fetchone()
+        last = self._connection.execute("SELECT coalesce(max(seq), 0) FROM event WHERE run = ?", (run,)).fetchone()[0]
+        if row is not None and row[1] is not None:
+            if last != row[0]:
+                raise JournalError(
+                    f"run {run} has {last} events in the journal, and {row[0]} were written",
+                    where=self.path,
+                    hint=DAMAGE_HINT,
+                )
+            return bytes(row[1])
+        self._connection.execute(
+            "UPDATE checksum SET since = ?, seq = ?, chain = ? WHERE run = ?", (last + 1, last, chain_start(run), run)
+        )
+        return chain_start(run)
+
+    @contextmanager
+    def _writing(self) -> Generator[sqlite3.Connection]:
+        """Open a transaction: all that the block writes is durable at its end, or nothing of it is there.
+
+        Raises:
+            JournalError: the file cannot be written.
+        """
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            yield self._connection
+            self._connection.execute("COMMIT")
+        except sqlite3.Error as error:
+            raise journal_fault("cannot be written", self.path, error) from error
+        finally:
+            # Whatever went wrong, the next transaction must find none open.
+            if self._connection.in_transaction:
+                self._connection.rollback()
 
 
 def journal_fault(what: str, path: Path, error: sqlite3.Error | OSError) -> JournalError:
@@ -161,8 +239,13 @@ def journal_fault(what: str, path: Path, error: sqlite3.Error | OSError) -> Jour
     return JournalError(f"the journal {what}: {error}", where=path, hint=advice(error))
 
 
-def _rows(run: str, epoch: int, events: Sequence[Event]) -> list[tuple[str, int, float, int, str]]:
+def _rows(run: str, epoch: int, events: Sequence[Event], chain: bytes) -> list[EventRow]:
+    rows: list[EventRow] = []
     try:
-        return [(run, e.seq, e.time_s, epoch, encode_event(e).decode()) for e in events]
+        for event in events:
+            data = encode_event(event)
+            chain = next_checksum(chain, event.seq, event.time_s, epoch, data)
+            rows.append((run, event.seq, event.time_s, epoch, data.decode(), chain))
     except JournalError as error:
         raise RunRefused(error.message, where=run, hint=error.hint) from error
+    return rows

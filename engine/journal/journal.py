@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -58,6 +59,10 @@ class SqliteRunJournal:
         """Take the state of the simulated world; the next commit stores it together with the events so far."""
         self._queue.append((self._ledger, WorldState(self._ledger.last_seq, state)))
 
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Call `listener` on this event loop when events cannot be written and no commit waits to be told."""
+        self._ledger.listener, self._ledger.loop = listener, asyncio.get_running_loop()
+
     async def commit(self) -> None:
         """Return once everything appended before is on the disk.
 
@@ -70,7 +75,7 @@ class SqliteRunJournal:
         if ledger.durable == ledger.appended:
             return
         if not writer.threaded:
-            writer.flush()
+            writer.flush(asking=ledger)
             if (failure := writer.failure or ledger.failure) is not None:
                 raise _again(failure)
             return
@@ -158,14 +163,14 @@ class Journal:
         if self._closed:
             return
         self._closed = True
-        known = self._writer.failure
+        known = self._writer.last_failure
         try:
             self._writer.stop()
         finally:
             self._database.close()
             self._presence.close()
-        failure = self._writer.failure
-        self._writer.failure = failure or JournalError("the journal is closed", where=self.path, hint="open it again")
+        failure = self._writer.last_failure
+        self._writer.failure = JournalError("the journal is closed", where=self.path, hint="open it again")
         if failure is not None and failure is not known:
             raise _again(failure)
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from engine.errors import JournalError
 from engine.event import Event
 from engine.journal.port import RunOrigin
 
@@ -20,6 +22,9 @@ class NullRunJournal:
 
     def keep_world(self, state: bytes) -> None:
         """Forget it."""
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Forget it: nothing fails."""
 
     async def commit(self) -> None:
         """Return at once; nothing is durable."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import msgspec
 
+from engine.errors import JournalError
 from engine.event import Event
 
 
@@ -26,11 +28,15 @@ class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
     last_seq: int
     driver: int | None = None
     """The process that drives it now, None when none does."""
+    verified: bool = True
+    """False where some of it was written by a version that made no checksums: damage to that cannot be told."""
+    damage: str = ""
+    """What of it is damaged, as far as that shows without reading its events; empty where nothing is."""
 
     @property
     def interrupted(self) -> bool:
         """Whether the engine that drove it has died before its end."""
-        return self.status == "running" and self.driver is None
+        return self.status == "running" and self.driver is None and not self.damage
 
 
 class RunOrigin(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -78,6 +84,13 @@ class RunJournal(Protocol):
 
     def keep_world(self, state: bytes) -> None:
         """Take the state of the simulated world as of now; the next commit stores it with the events."""
+        ...
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Call `listener` on this event loop when events cannot be written and no commit waits to be told.
+
+        The run must stop: what it records from then on is lost.
+        """
         ...
 
     async def commit(self) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from engine.errors import JournalError
@@ -21,7 +22,11 @@ WAKE_AFTER_S = 0.25
 
 @dataclass(eq=False)
 class Ledger:
-    """How far one run has been written; `failure` is the reason why it never will be again."""
+    """How far one run has been written.
+
+    `failure` is the reason why it never will be again: an event of it is lost. `listener` hears of it where no commit
+    waits to be told.
+    """
 
     run_id: str
     epoch: int
@@ -29,6 +34,20 @@ class Ledger:
     durable: int = 0
     last_seq: int = 0
     failure: JournalError | None = None
+    listener: Callable[[JournalError], None] | None = None
+    loop: asyncio.AbstractEventLoop | None = None
+
+    def fail(self, error: JournalError) -> None:
+        """Write nothing more of this run."""
+        self.failure = self.failure or error
+
+    def tell(self, error: JournalError) -> None:
+        """Call the listener on its loop; may be called from any thread."""
+        if self.listener is None or self.loop is None:
+            return
+        # That loop may be closed: nobody listens there any more.
+        with suppress(RuntimeError):
+            self.loop.call_soon_threadsafe(self.listener, error)
 
 
 @dataclass(eq=False)
@@ -73,6 +92,9 @@ class GroupWriter:
     def __init__(self, database: JournalDatabase) -> None:
         self.queue: deque[Item] = deque()
         self.failure: JournalError | None = None
+        """Why nothing at all can be written any more: it is closed."""
+        self.last_failure: JournalError | None = None
+        """The newest reason why something was not written; what comes later may be."""
         self._database = database
         self._lock = threading.Lock()
         self._wake = threading.Event()
@@ -118,22 +140,31 @@ class GroupWriter:
             self._thread = None
         self.flush()
 
-    def flush(self) -> None:
+    def flush(self, *, asking: Ledger | None = None) -> None:
         """Write everything queued now in one group and tell the waiters.
 
-        A failure is kept in `failure` or in its ledger, where every later commit finds it.
+        A failure ends the runs whose events were in the group, for good, and no others: it is kept in their ledgers.
+
+        Args:
+            asking: The run that will look for its failure itself.
         """
         with self._lock:
             items = [self.queue.popleft() for _ in range(len(self.queue))]
             waiters = [item for item in items if isinstance(item, Waiter)]
+            groups = _by_ledger(items)
+            healthy = [ledger for ledger in groups if ledger.failure is None]
             try:
-                self._write(_by_ledger(items))
+                self._write(groups)
             except Exception as error:
                 # Nobody may be left waiting, whatever broke: every commit, waiting or later, raises it.
-                self.failure = self.failure or _unexpected(error)
+                self._fail(healthy, _unexpected(error))
             finally:
                 for waiter in waiters:
                     waiter.tell(self.failure or waiter.ledger.failure)
+                told = {asking, *(waiter.ledger for waiter in waiters)}
+                for ledger in healthy:
+                    if ledger.failure is not None and ledger not in told:
+                        ledger.tell(ledger.failure)
 
     def _serve(self) -> None:
         while not self._closing:
@@ -152,14 +183,19 @@ class GroupWriter:
                 )
             except RunRefused as error:
                 refused = next(ledger for ledger in ready if ledger.run_id == error.where)
-                refused.failure = JournalError(error.message, where=self._database.path, hint=error.hint)
+                self._fail([refused], JournalError(error.message, where=self._database.path, hint=error.hint))
                 continue
             except JournalError as error:
-                self.failure = error
+                self._fail(ready, error)
                 return
             for ledger, group in ready.items():
                 ledger.durable += len(group.events)
             return
+
+    def _fail(self, ledgers: Iterable[Ledger], error: JournalError) -> None:
+        self.last_failure = error
+        for ledger in ledgers:
+            ledger.fail(error)
 
 
 def _by_ledger(items: Sequence[Item]) -> dict[Ledger, _Group]:

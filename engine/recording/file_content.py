@@ -1,7 +1,7 @@
 """The records of a recording as they lie in the file, whole or cut off in mid-record.
 
 Whatever is in a file that calls itself a recording, reading it ends in records or in one
-`RecordingError`.
+`RecordingError`, with no more time and memory than its size can be a reason for (`engine.recording.allowance`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
-import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import (
@@ -31,30 +30,37 @@ from mcap.records import (
     MetadataIndex,
     Schema,
 )
-from mcap.stream_reader import breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from engine.errors import RecordingError
-
-MAX_CHUNK = 256 * 2**20
-"""Bytes that one chunk may unfold to; a larger one is taken for damage."""
+from engine.recording.allowance import MAX_INDEX, Allowance
+from engine.recording.chunk import unfolded
 
 _FRAME = 9  # opcode and length before the content of every record
 _FOOTER = _FRAME + 20
 _DATA_END = _FRAME + 4
 _PIECE = 2**20
 _MAGIC = len(MCAP0_MAGIC)
-_KINDS: Mapping[int, Callable[[ReadDataStream], McapRecord]] = {
-    Opcode.SCHEMA: Schema.read,
-    Opcode.CHANNEL: Channel.read,
-    Opcode.CHUNK: Chunk.read,
-    Opcode.CHUNK_INDEX: ChunkIndex.read,
-    Opcode.ATTACHMENT: Attachment.read,
-    Opcode.ATTACHMENT_INDEX: AttachmentIndex.read,
-    Opcode.METADATA: Metadata.read,
-    Opcode.METADATA_INDEX: MetadataIndex.read,
-    Opcode.FOOTER: Footer.read,
+_Read = Callable[[bytes], McapRecord]
+
+
+def _reader(read: Callable[[ReadDataStream], McapRecord]) -> _Read:
+    return lambda content: read(ReadDataStream(BytesIO(content)))
+
+
+_READ: Mapping[int, _Read] = {
+    Opcode.MESSAGE: lambda content: Message.read(ReadDataStream(BytesIO(content)), len(content)),
+    Opcode.SCHEMA: _reader(Schema.read),
+    Opcode.CHANNEL: _reader(Channel.read),
+    Opcode.CHUNK: _reader(Chunk.read),
+    Opcode.CHUNK_INDEX: _reader(ChunkIndex.read),
+    Opcode.ATTACHMENT: _reader(Attachment.read),
+    Opcode.ATTACHMENT_INDEX: _reader(AttachmentIndex.read),
+    Opcode.METADATA: _reader(Metadata.read),
+    Opcode.METADATA_INDEX: _reader(MetadataIndex.read),
+    Opcode.FOOTER: _reader(Footer.read),
 }
+_IN_CHUNKS = frozenset({Opcode.MESSAGE, Opcode.SCHEMA, Opcode.CHANNEL})
 
 
 @dataclass(kw_only=True)
@@ -92,7 +98,7 @@ def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
     with path.open("rb") as stream:
         keep_from_removal(stream)
         _require_magic(stream, path)
-        yield lambda: _records(stream, _MAGIC)
+        yield lambda: _records(stream, _MAGIC, allowance_of(stream))
 
 
 def keep_from_removal(stream: BinaryIO) -> None:
@@ -130,19 +136,29 @@ def _require_magic(stream: BinaryIO, path: Path) -> None:
         raise RecordingError("this is not an MCAP file", where=path, hint="give what --record wrote")
 
 
-def read_index(stream: BinaryIO) -> list[McapRecord] | None:
+def allowance_of(stream: BinaryIO) -> Allowance:
+    """Return what reading a file may take.
+
+    Raises:
+        ValueError: it is too large.
+    """
+    return Allowance(stream.seek(0, 2))
+
+
+def read_index(stream: BinaryIO, allowance: Allowance) -> list[McapRecord] | None:
     """Return the records of the index at the end of a file; None where there is none.
 
     Raises:
         ValueError: the file is damaged.
     """
     start = _index_start(stream, stream.seek(0, 2))
-    return None if start is None else list(_records(stream, start))
+    return None if start is None else list(_records(stream, start, allowance))
 
 
 def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
     """Read with the index at the end of the file; None where there is none."""
-    index = read_index(stream)
+    allowance = allowance_of(stream)
+    index = read_index(stream, allowance)
     if index is None:
         return None
     content = FileContent(complete=True)
@@ -151,11 +167,11 @@ def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
         match record:
             case ChunkIndex():
                 if wanted.intersection(record.message_index_offsets):
-                    chunk = _records(stream, record.chunk_start_offset, only=True)
-                    content.messages += [m for m in chunk if isinstance(m, Message) and m.channel_id in wanted]
+                    for found in _records(stream, record.chunk_start_offset, allowance, only=True):
+                        _keep_message(found, wanted, content, allowance)
             case AttachmentIndex() | MetadataIndex():
-                for found in _records(stream, record.offset, only=True):
-                    _keep(found, content)
+                for found in _records(stream, record.offset, allowance, only=True):
+                    _keep(found, content, allowance)
             case _:
                 pass
     return content
@@ -171,6 +187,8 @@ def _index_start(stream: BinaryIO, size: int) -> int | None:
     footer = Footer.read(ReadDataStream(BytesIO(tail[_FRAME:_FOOTER])))
     if footer.summary_start == 0:
         return None
+    if not 0 <= size - footer.summary_start <= MAX_INDEX:
+        raise ValueError(f"its index has {size - footer.summary_start} bytes")
     stream.seek(footer.summary_start)
     checked = stream.read(size - _MAGIC - footer.summary_start)[:-4]
     if footer.summary_crc and zlib.crc32(checked) != footer.summary_crc:
@@ -204,29 +222,37 @@ def _verify_data(stream: BinaryIO, end: int) -> None:
 def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
     content = FileContent()
     wanted: set[int] = set()
-    for record in _records(stream, _MAGIC):
+    allowance = allowance_of(stream)
+    for record in _records(stream, _MAGIC, allowance):
         match record:
             case Channel():
                 if record.topic == topic:
                     wanted.add(record.id)
             case Message():
-                if record.channel_id in wanted:
-                    content.messages.append(record)
+                _keep_message(record, wanted, content, allowance)
             case Footer():
                 content.complete = stream.read(_MAGIC) == MCAP0_MAGIC
             case _:
-                _keep(record, content)
+                _keep(record, content, allowance)
     return content
 
 
-def _keep(record: McapRecord, content: FileContent) -> None:
+def _keep_message(record: McapRecord, wanted: set[int], content: FileContent, allowance: Allowance) -> None:
+    if isinstance(record, Message) and record.channel_id in wanted:
+        allowance.take_message(len(record.data))
+        content.messages.append(record)
+
+
+def _keep(record: McapRecord, content: FileContent, allowance: Allowance) -> None:
     if isinstance(record, Metadata):
+        allowance.take_document(sum(len(key) + len(value) for key, value in record.metadata.items()))
         content.metadata[record.name] = record.metadata
     elif isinstance(record, Attachment):
+        allowance.take_document(len(record.data))
         content.attachments[record.name] = record.data
 
 
-def _records(stream: BinaryIO, offset: int, *, only: bool = False) -> Iterator[McapRecord]:
+def _records(stream: BinaryIO, offset: int, allowance: Allowance, *, only: bool = False) -> Iterator[McapRecord]:
     """Go through the records from `offset` to the footer or to where the file was cut off."""
     size = stream.seek(0, 2)
     while offset + _FRAME <= size:
@@ -235,48 +261,33 @@ def _records(stream: BinaryIO, offset: int, *, only: bool = False) -> Iterator[M
         opcode, length = frame[0], int.from_bytes(frame[1:], "little")
         if offset + _FRAME + length > size:
             return
-        yield from _parsed(opcode, stream.read(length))
+        allowance.take_record(length if opcode in _READ else 0)
+        if opcode in _READ:
+            yield from _parsed(opcode, stream.read(length), allowance)
         if only or opcode == Opcode.FOOTER:
             return
         offset += _FRAME + length
 
 
-def _parsed(opcode: int, content: bytes) -> Iterator[McapRecord]:
-    data = ReadDataStream(BytesIO(content))
-    if opcode == Opcode.MESSAGE:
-        yield Message.read(data, len(content))
-        return
-    read = _KINDS.get(opcode)
-    if read is None:
+def _parsed(opcode: int, content: bytes, allowance: Allowance) -> Iterator[McapRecord]:
+    if opcode == Opcode.CHUNK:
+        yield from _in_chunk(unfolded(Chunk.read(ReadDataStream(BytesIO(content))), allowance), allowance)
         return
     if opcode == Opcode.ATTACHMENT and zlib.crc32(content[:-4]) != int.from_bytes(content[-4:], "little"):
         raise ValueError("the checksum of a document in it is wrong")
-    record = read(data)
-    if isinstance(record, Chunk):
-        yield from _unfolded(record)
-    else:
-        yield record
+    yield _READ[opcode](content)
 
 
-def unfolded(chunk: Chunk) -> bytes:
-    """Return the records in a chunk as bytes.
-
-    Raises:
-        ValueError: it is too large, or damaged.
-    """
-    _require_size(chunk)
-    data = zstandard.ZstdDecompressor().decompress(chunk.data) if chunk.compression == "zstd" else chunk.data
-    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
-        raise ValueError("the checksum of a chunk is wrong")
-    return data
-
-
-def _unfolded(chunk: Chunk) -> list[McapRecord]:
-    _require_size(chunk)
-    return breakup_chunk(chunk, validate_crc=True)
-
-
-def _require_size(chunk: Chunk) -> None:
-    told = zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else len(chunk.data)
-    if not 0 <= told <= MAX_CHUNK:
-        raise ValueError(f"a chunk says that it unfolds to {told} bytes")
+def _in_chunk(data: bytes, allowance: Allowance) -> Iterator[McapRecord]:
+    offset, size = 0, len(data)
+    while offset + _FRAME <= size:
+        opcode, length = data[offset], int.from_bytes(data[offset + 1 : offset + _FRAME], "little")
+        offset += _FRAME
+        allowance.take_record(length)
+        if offset + length > size:
+            break
+        if opcode in _IN_CHUNKS:
+            yield _READ[opcode](data[offset : offset + length])
+        offset += length
+    if offset != size:
+        raise ValueError("a chunk ends in the middle of a record")

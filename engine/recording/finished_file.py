@@ -10,6 +10,8 @@ from mcap.records import Attachment, Channel, McapRecord, Message, Metadata, Sch
 from mcap.writer import CompressionType, Writer
 
 from engine.errors import RecordingError
+from engine.private_files import open_private
+from engine.recording.allowance import Allowance
 from engine.recording.file_content import open_records
 from engine.recording.live_file import PROFILE
 
@@ -36,9 +38,9 @@ def finish(part: Path, target: Path) -> None:
     """
     fresh = target.with_name(f".{target.name}.new")
     try:
-        with open_records(part) as records, fresh.open("wb") as stream:
+        with open_records(part) as records, open_private(fresh) as stream:
             writer = Writer(stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
-            _copy(records, writer)
+            _copy(records, writer, Allowance(part.stat().st_size))
         os.replace(fresh, target)
         part.unlink()
     except OSError as error:
@@ -54,7 +56,7 @@ def finish(part: Path, target: Path) -> None:
         raise RecordingError(f"this file is damaged: {what}", where=part, hint="remove it") from error
 
 
-def _copy(records: Callable[[], Iterator[McapRecord]], writer: Writer) -> None:
+def _copy(records: Callable[[], Iterator[McapRecord]], writer: Writer, allowance: Allowance) -> None:
     writer.start(profile=PROFILE, library="flexcell")
     schemas: dict[int, int] = {}
     channels: dict[int, int] = {}
@@ -62,12 +64,14 @@ def _copy(records: Callable[[], Iterator[McapRecord]], writer: Writer) -> None:
     for record in records():
         match record:
             case Metadata():
+                allowance.take_document(sum(len(key) + len(value) for key, value in record.metadata.items()))
                 writer.add_metadata(record.name, record.metadata)
             case Attachment():
+                allowance.take_document(len(record.data))
                 writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
-            case Schema():
+            case Schema() if record.id not in schemas:
                 schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
-            case Channel():
+            case Channel() if record.id not in channels:
                 channels[record.id] = writer.register_channel(
                     record.topic, record.message_encoding, schemas[record.schema_id], record.metadata
                 )

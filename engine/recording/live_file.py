@@ -19,6 +19,7 @@ from mcap.exceptions import McapError
 from mcap.writer import Writer
 
 from engine.errors import RecordingError
+from engine.private_files import open_private
 
 PROFILE = "flexcell"
 MAX_TOPIC_BACKLOG = 32 * 2**20
@@ -69,7 +70,7 @@ class LiveFile:
         """
         require_unused(path)
         try:
-            stream = path.open("wb")
+            stream = open_private(path)
             fcntl.flock(stream, fcntl.LOCK_EX)
         except OSError as error:
             reason = error.strerror or str(error)

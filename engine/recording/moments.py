@@ -24,14 +24,17 @@ from mcap.writer import MCAP0_MAGIC
 
 from engine.errors import RecordingError
 from engine.journal import decode_event
-from engine.recording.file_content import MAX_CHUNK, keep_from_removal, read_index, unfolded
+from engine.recording.allowance import MAX_RECORD
+from engine.recording.chunk import unfolded
+from engine.recording.file_content import allowance_of, keep_from_removal, read_index
 from engine.recording.finished_file import EVENT_TOPIC, PART
 
 _FRAME = struct.Struct("<BQ")  # opcode, length
 _MESSAGE = struct.Struct("<HIQQ")  # channel, number, time in the log, time of publishing
 _ENTRIES = struct.Struct("<HI")  # channel, length of the list
 _BLOCK = 4 * 2**20
-_KEPT_CHUNKS = 16
+_KEPT_CHUNK_BYTES = 64 * 2**20
+_MAX_CHANNELS = 2**13
 _SHOWN_ELSEWHERE = "/foxglove/"
 _OURS = "flexcell."
 
@@ -65,6 +68,7 @@ class Moments:
         self._tracks: dict[str, _Track] = {}
         self._chunks: list[ChunkIndex] = []
         self._unfolded: OrderedDict[int, bytes] = OrderedDict()
+        self._entry_bytes = 0
         self._read_to = len(MCAP0_MAGIC)
         self._zero_ns: int | None = None
         self._first_ns = self._last_ns = 0
@@ -83,6 +87,7 @@ class Moments:
                 keep_from_removal(stream)
                 if stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
                     raise ValueError("it is not an MCAP file")
+                allowance_of(stream)
                 moments = cls(path, stream)
                 moments._begin()
             except BaseException:
@@ -144,7 +149,7 @@ class Moments:
             return self._stored(track, row) if row >= 0 else None
 
     def _begin(self) -> None:
-        index = None if self.path.suffix == PART else read_index(self._stream)
+        index = None if self.path.suffix == PART else read_index(self._stream, allowance_of(self._stream))
         if index is None:
             self._scan()
             return
@@ -171,8 +176,8 @@ class Moments:
             used = self._scan_block(block)
             if used == 0:
                 _, length = _FRAME.unpack_from(block)
-                if length > MAX_CHUNK:
-                    raise ValueError(f"a record says that it has {length} bytes")
+                if length > MAX_RECORD:
+                    raise ValueError(f"a record says that it has {length} bytes, more than {MAX_RECORD}")
                 if self._read_to + _FRAME.size + length > size:
                     return  # it is being written
                 self._stream.seek(self._read_to)
@@ -189,7 +194,9 @@ class Moments:
                 break
             if opcode == Opcode.MESSAGE:
                 channel, _, time_ns, _ = _MESSAGE.unpack_from(block, content)
-                topic = self._channels[channel]
+                topic = self._channels.get(channel)
+                if topic is None:
+                    raise ValueError(f"a message belongs to the channel {channel}, which it does not have")
                 if topic == EVENT_TOPIC and self._zero_ns is None:
                     self._first_ns = time_ns
                     self._set_zero(time_ns, block[content + _MESSAGE.size : content + length])
@@ -202,6 +209,8 @@ class Moments:
                 read = Channel.read(ReadDataStream(BytesIO(block[content : content + length])))
                 self._channels[read.id], self._types[read.id] = read.topic, read.schema_id
                 self._tracks.setdefault(read.topic, _Track())
+                if len(self._tracks) > _MAX_CHANNELS:
+                    raise ValueError(f"it has more than {_MAX_CHANNELS} topics")
             elif opcode == Opcode.SCHEMA:
                 schema = Schema.read(ReadDataStream(BytesIO(block[content : content + length])))
                 self._schemas[schema.id] = schema.name
@@ -231,9 +240,12 @@ class Moments:
         return track
 
     def _entries(self, offset: int) -> Iterator[tuple[int, int]]:
+        size = self._stream.seek(0, 2)
         self._stream.seek(offset)
         opcode, length = _FRAME.unpack(self._stream.read(_FRAME.size))
-        if opcode != Opcode.MESSAGE_INDEX or length > MAX_CHUNK:
+        # Each entry stands once in the file; an index that is read again and again is made to.
+        self._entry_bytes += length
+        if opcode != Opcode.MESSAGE_INDEX or self._entry_bytes > size:
             raise ValueError("its index leads elsewhere")
         content = self._stream.read(length)
         numbers = array("Q", content[_ENTRIES.size : _ENTRIES.size + _ENTRIES.unpack_from(content)[1]])
@@ -257,10 +269,11 @@ class Moments:
         index = self._chunks[row]
         self._stream.seek(index.chunk_start_offset)
         opcode, length = _FRAME.unpack(self._stream.read(_FRAME.size))
-        if opcode != Opcode.CHUNK or length > MAX_CHUNK:
+        if opcode != Opcode.CHUNK or length > MAX_RECORD:
             raise ValueError("its index leads elsewhere")
-        data = self._unfolded[row] = unfolded(Chunk.read(ReadDataStream(BytesIO(self._stream.read(length)))))
-        if len(self._unfolded) > _KEPT_CHUNKS:
+        chunk = Chunk.read(ReadDataStream(BytesIO(self._stream.read(length))))
+        data = self._unfolded[row] = unfolded(chunk, allowance_of(self._stream))
+        while len(self._unfolded) > 1 and sum(map(len, self._unfolded.values())) > _KEPT_CHUNK_BYTES:
             self._unfolded.popitem(last=False)
         return data
 

@@ -93,9 +93,18 @@ def encode_value(value: object, *, where: str) -> str:
     return data.decode()
 
 
-def decode_value(data: str) -> dict[str, object]:
-    """Read back what `encode_value` wrote."""
-    return msgspec.json.decode(data, type=dict[str, object])
+def decode_value(data: str, *, where: str) -> dict[str, object]:
+    """Read back what `encode_value` wrote.
+
+    Raises:
+        StoreError: it is something else: the store is damaged.
+    """
+    try:
+        return msgspec.json.decode(data, type=dict[str, object])
+    except (msgspec.DecodeError, RecursionError, UnicodeEncodeError) as error:
+        raise StoreError(
+            f"its value in the store is damaged: {error}", where=where, hint="undo its last change, or write it anew"
+        ) from error
 
 
 def _plain(value: object, where: str) -> object:

@@ -76,7 +76,7 @@ def _common(row: Row) -> Document:
         "kind": row.kind,
         "name": row.name,
         "revision": row.revision,
-        **_stored_value(row.value),
+        **_stored_value(row.value, where=f"{row.kind} {row.name}"),
         "tags": list(row.tags),
         "changed": _EPOCH + timedelta(milliseconds=row.changed_unix_ms),
         "by": row.by,
@@ -86,10 +86,10 @@ def _common(row: Row) -> Document:
     }
 
 
-def _stored_value(value: str | None) -> Document:
+def _stored_value(value: str | None, *, where: str) -> Document:
     if value is None:
         return {"value": None}
-    plain = decode_value(value)
+    plain = decode_value(value, where=where)
     try:
         data = bson.encode({"value": plain})
     except (BSONError, ValueError, OverflowError):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+from engine.errors import StoreError
 from engine.store.mongo_errors import explained
 from engine.store.mongo_server import connect
 from engine.store.opening import split_database
-from engine.store.ros_plain import plain
+from engine.store.ros_plain import MAX_DOCUMENTS, plain
 
 DATABASE = "message_store"
 """Where `mongodb_store` keeps its entries unless told otherwise."""
@@ -17,14 +18,20 @@ def read_collection(uri: str, *, collection: str, patience_s: float = 10.0) -> t
     """Return the documents of a collection in the order of their insertion, as plain objects.
 
     Raises:
-        StoreError: the server cannot be reached, or does not let us read.
+        StoreError: the server cannot be reached, does not let us read, or holds too much.
     """
     address, database = split_database(uri)
     server = connect(address, database=database or DATABASE, patience_s=patience_s, oldest=(4, 2))
     try:
         with explained("cannot be read", address=server.address, user=server.user):
-            return tuple(
-                cast("dict[str, Any]", plain(document)) for document in server.database[collection].find().sort("_id")
-            )
+            cursor = server.database[collection].find().sort("_id").limit(MAX_DOCUMENTS + 1)
+            documents = tuple(cast("dict[str, Any]", plain(document)) for document in cursor)
+        if len(documents) > MAX_DOCUMENTS:
+            raise ValueError(f"there are more than {MAX_DOCUMENTS} documents")
+        return documents
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
+        raise StoreError(
+            f"its documents cannot be read: {error}", where=server.address, hint="export those that you need"
+        ) from error
     finally:
         server.client.close()

@@ -77,7 +77,7 @@ def ros_document(record: EntryRecord, *, inserted_by: str = "flexcell") -> dict[
 
 
 def _entry(document: Document, number: int) -> RosEntry:
-    meta = cast("Mapping[str, Any]", document.get("_meta") or {})
+    meta = _object(document.get("_meta"))
     ros_type = str(meta.get("stored_type", "")).replace("/msg/", "/")
     ros_name = str(meta.get("name", ""))
     if not ros_type or not ros_name:
@@ -86,11 +86,11 @@ def _entry(document: Document, number: int) -> RosEntry:
             where=f"document {number}",
             hint="only named entries of mongodb_store can be read: `insert_named`",
         )
-    message = cast(
-        "Mapping[str, Any]", plain(document["message"] if "message" in document else _without_meta(document))
-    )
-    known: Mapping[str, Any] = meta.get("flexcell") or {}
-    kind, value, kept = _value(ros_type, message, str(known.get("kind", "")))
+    try:
+        found = plain(document["message"] if "message" in document else _without_meta(document))
+    except (ValueError, TypeError, OverflowError, RecursionError) as error:
+        raise StoreError(f"it cannot be read: {error}", where=f"document {number}", hint="leave it out") from error
+    kind, value, kept = _value(ros_type, _object(found), str(_object(meta.get("flexcell")).get("kind", "")))
     record = EntryRecord(kind=kind, name=_name(ros_name), value=value, revision=0)
     return RosEntry(record=record, ros_name=ros_name, ros_type=ros_type, kept=kept)
 
@@ -108,6 +108,10 @@ def _value(ros_type: str, message: Mapping[str, Any], known: str) -> tuple[str, 
         reason = f"the field {error} is missing" if isinstance(error, KeyError) else str(error)
         return "record", free, reason
     return kind, value, ""
+
+
+def _object(value: object) -> Mapping[str, Any]:
+    return cast("Mapping[str, Any]", value) if isinstance(value, Mapping) else {}
 
 
 def _without_meta(document: Document) -> dict[str, Any]:

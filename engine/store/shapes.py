@@ -12,7 +12,8 @@ from engine.store.row import Row
 
 def record_of(row: Row) -> EntryRecord:
     """Return an entry with its value."""
-    return EntryRecord(kind=row.kind, name=row.name, value=decode_value(row.value or "{}"), revision=row.revision)
+    value = decode_value(row.value or "{}", where=f"{row.kind} {row.name}")
+    return EntryRecord(kind=row.kind, name=row.name, value=value, revision=row.revision)
 
 
 def exported_of(row: Row) -> EntryRecord:
@@ -38,7 +39,7 @@ def change_of(row: Row) -> EntryChange:
         kind=row.kind,
         name=row.name,
         revision=row.revision,
-        value=None if row.value is None else decode_value(row.value),
+        value=None if row.value is None else decode_value(row.value, where=f"{row.kind} {row.name}"),
         tags=row.tags,
         changed_unix_ms=row.changed_unix_ms,
         by=row.by,

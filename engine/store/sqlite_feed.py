@@ -9,7 +9,7 @@ from threading import Event
 from engine.errors import StoreError
 from engine.sqlite_file import advice, read_sqlite
 from engine.store.row import Row
-from engine.store.sqlite_schema import CHANGE, row_of
+from engine.store.sqlite_schema import CHANGE, SCHEMA, row_of
 
 PERIOD_S = 0.2
 """How often the file is looked at."""
@@ -23,7 +23,7 @@ class SqliteFeed:
         self._busy_timeout_s = busy_timeout_s
         self._connection: sqlite3.Connection | None = None
         # Opened for this question only: the feed itself is read by another thread.
-        connection = read_sqlite(path, busy_timeout_s=busy_timeout_s)
+        connection = read_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         try:
             self._seen = int(connection.execute("SELECT coalesce(max(seq), 0) FROM change").fetchone()[0])
         finally:
@@ -46,7 +46,7 @@ class SqliteFeed:
 
     def _read(self) -> tuple[Row, ...]:
         if self._connection is None:
-            self._connection = read_sqlite(self._path, busy_timeout_s=self._busy_timeout_s)
+            self._connection = read_sqlite(self._path, schema=SCHEMA, busy_timeout_s=self._busy_timeout_s)
         version = int(self._connection.execute("PRAGMA data_version").fetchone()[0])
         if version == self._version:
             return ()

@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
+import msgspec
+
+from engine.sqlite_schema import DamagedFile, Schema
 from engine.store.row import Row, Selection
 from engine.store.words import AFTER_PREFIX, whole_tag
 
-VERSION = 2
-SCHEMA = """
+SCHEMA = Schema(
+    (
+        """
 CREATE TABLE IF NOT EXISTS entry(
     kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, value TEXT NOT NULL,
     PRIMARY KEY (kind, name)) STRICT;
 CREATE TABLE IF NOT EXISTS change(
     seq INTEGER PRIMARY KEY AUTOINCREMENT, kind TEXT NOT NULL, name TEXT NOT NULL,
     revision INTEGER NOT NULL, value TEXT, UNIQUE (kind, name, revision)) STRICT;
+""",
+        # Entries of a file of version 1 have no words yet; a name that is too long to be one gets none.
+        """
 CREATE TABLE IF NOT EXISTS note(
     kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, tags TEXT NOT NULL,
     changed_unix_ms INTEGER NOT NULL, author TEXT NOT NULL, reason TEXT NOT NULL, restores INTEGER,
@@ -25,17 +31,18 @@ CREATE TABLE IF NOT EXISTS word(
     kind TEXT NOT NULL, name TEXT NOT NULL, word TEXT NOT NULL, PRIMARY KEY (kind, name, word)) STRICT, WITHOUT ROWID;
 CREATE INDEX IF NOT EXISTS word_first ON word(word, kind, name);
 CREATE INDEX IF NOT EXISTS name_first ON entry(name, kind, revision);
--- Entries of a file of version 1 have no words yet.
 INSERT OR IGNORE INTO word(kind, name, word)
 WITH RECURSIVE part(kind, name, word, rest) AS (
     SELECT kind, name, '',
         replace(replace(replace(replace(name, '_', ' '), '/', ' '), '.', ' '), '-', ' ') || ' ' FROM entry
+        WHERE length(CAST(name AS BLOB)) <= 128
     UNION ALL
     SELECT kind, name, substr(rest, 1, instr(rest, ' ') - 1), substr(rest, instr(rest, ' ') + 1)
     FROM part WHERE rest <> '')
 SELECT kind, name, word FROM part WHERE word <> '';
-"""
-
+""",
+    )
+)
 _NOTE = "n.tags, n.changed_unix_ms, n.author, n.reason, n.restores, n.writer"
 _JOIN = "LEFT JOIN note n ON n.kind = r.kind AND n.name = r.name AND n.revision = r.revision"
 ENTRY = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM entry r {_JOIN}"
@@ -45,20 +52,41 @@ MANY = 20_000
 """Words are counted no further to find the rarest."""
 
 
+class _Columns(msgspec.Struct, frozen=True, array_like=True):
+    kind: str
+    name: str
+    revision: int
+    value: str | None
+    tags: str | None
+    changed_unix_ms: int | None
+    author: str | None
+    reason: str | None
+    restores: int | None
+    writer: str | None
+
+
 def row_of(columns: Sequence[Any]) -> Row:
-    """Return what one of the queries found."""
-    kind, name, revision, value, tags, changed_unix_ms, author, reason, restores, writer = columns
+    """Return what one of the queries found.
+
+    Raises:
+        DamagedFile: it is no entry.
+    """
+    try:
+        found = msgspec.convert(columns, _Columns)
+        tags = msgspec.json.decode(found.tags, type=tuple[str, ...]) if found.tags else ()
+    except (msgspec.DecodeError, UnicodeEncodeError) as error:
+        raise DamagedFile(f"a row is none of an entry: {error}") from error
     return Row(
-        kind=kind,
-        name=name,
-        revision=revision,
-        value=value,
-        tags=tuple(json.loads(tags)) if tags else (),
-        changed_unix_ms=changed_unix_ms or 0,
-        by=author or "",
-        reason=reason or "",
-        restores=restores,
-        writer=writer or "",
+        kind=found.kind,
+        name=found.name,
+        revision=found.revision,
+        value=found.value,
+        tags=tags,
+        changed_unix_ms=found.changed_unix_ms or 0,
+        by=found.author or "",
+        reason=found.reason or "",
+        restores=found.restores,
+        writer=found.writer or "",
     )
 
 

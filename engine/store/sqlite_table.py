@@ -19,7 +19,6 @@ from engine.store.sqlite_schema import (
     KEY,
     MANY,
     SCHEMA,
-    VERSION,
     conditions,
     limit_of,
     row_of,
@@ -49,7 +48,7 @@ class EntryTable:
     def open(cls, path: Path, *, busy_timeout_s: float) -> EntryTable:
         """Open or create the file; raises StoreError with the path and what to do."""
         try:
-            connection = open_sqlite(path, schema=SCHEMA, version=VERSION, busy_timeout_s=busy_timeout_s)
+            connection = open_sqlite(path, schema=SCHEMA, busy_timeout_s=busy_timeout_s)
         except (sqlite3.Error, OSError) as error:
             raise StoreError(f"the store cannot be opened: {error}", where=path, hint=advice(error)) from error
         return cls(path, connection, busy_timeout_s=busy_timeout_s)

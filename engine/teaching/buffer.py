@@ -10,6 +10,7 @@ import msgspec
 
 from engine.errors import FlexcellError, StoreError
 from engine.nearness import near_names
+from engine.private_files import make_private_folder, open_private
 from engine.skills.teaching import Capture
 
 MOST_CAPTURES = 200
@@ -90,8 +91,8 @@ class CaptureBuffer:
         file = self._file(folder, capture.summary.id)
         part = file.with_suffix(".part")
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with part.open("wb") as stream:
+            make_private_folder(folder)
+            with open_private(part) as stream:
                 stream.write(msgspec.json.encode(capture))
                 stream.flush()
                 os.fsync(stream.fileno())

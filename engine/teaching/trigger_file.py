@@ -9,6 +9,7 @@ import msgspec
 
 from engine.document.yaml_source import parse_source
 from engine.errors import DocumentError, StoreError
+from engine.private_files import make_private_folder, open_private
 from engine.skills.teaching import Trigger
 from engine.teaching.document import parse_triggers
 
@@ -66,8 +67,9 @@ class TriggerFile:
         if self._path is not None:
             part = self._path.with_suffix(".part")
             try:
-                self._path.parent.mkdir(parents=True, exist_ok=True)
-                part.write_text(text, encoding="utf-8")
+                make_private_folder(self._path.parent)
+                with open_private(part) as stream:
+                    stream.write(text.encode())
                 part.replace(self._path)
             except OSError as error:
                 raise StoreError(

@@ -11,7 +11,7 @@ import numpy as np
 from engine.document.yaml_source import DataPath
 from engine.errors import CellError
 from robots.model.calibration import apply_calibration, load_calibration
-from robots.model.folder_document import RobotDocument, ToolDocument
+from robots.model.folder_document import FileIn, RobotDocument, ToolDocument
 from robots.model.joint_map import JointMap
 from robots.model.mechanism import mechanism_of
 from robots.model.model_folder import ModelFolder, names_in
@@ -55,7 +55,7 @@ def compose(
         if nominal is None:
             raise CellError(f"the robot model {document.robot} knows no calibration files", hint="remove `calibration`")
         factory = load_calibration(calibration)
-        apply_calibration(robot, nominal, factory, nominal=load_calibration(arm.folder / nominal.nominal))
+        apply_calibration(robot, nominal, factory, nominal=load_calibration(arm.locate(FileIn(file=nominal.nominal))))
         calibrated = factory.hash
     for joint in document.joints:
         set_limits(

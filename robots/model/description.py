@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 from engine.errors import CellError
+from robots.model.untrusted_xml import parse_xml, read_text
 
 PACKAGE_SCHEME = "package://"
 
@@ -44,6 +44,8 @@ def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) ->
         paths = [folder / uri.removeprefix(PACKAGE_SCHEME) for folder in package_dirs]
     else:
         paths = [relative_to / uri.removeprefix("file://")]
+    if "\0" in uri:
+        raise CellError("the name of a mesh file has a NUL in it", where=uri, hint="correct the URDF")
     for path in paths:
         if path.is_file():
             return path
@@ -57,8 +59,8 @@ def disabled_collisions(srdf: Path) -> tuple[tuple[str, str], ...]:
     Raises:
         CellError: it cannot be read.
     """
-    try:
-        root = ET.parse(srdf).getroot()
-    except (OSError, ET.ParseError) as error:
-        raise CellError(f"the SRDF cannot be read: {error}", where=str(srdf)) from None
-    return tuple((pair.attrib["link1"], pair.attrib["link2"]) for pair in root.iter("disable_collisions"))
+    root = parse_xml(read_text(srdf, what="SRDF"), what="SRDF", where=srdf)
+    pairs = tuple((pair.get("link1", ""), pair.get("link2", "")) for pair in root.iter("disable_collisions"))
+    if not all(map(all, pairs)):
+        raise CellError("a `disable_collisions` lacks `link1` or `link2`", where=str(srdf), hint="correct the SRDF")
+    return pairs

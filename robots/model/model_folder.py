@@ -27,6 +27,8 @@ from robots.model.urdf_tree import Element, below, joints_of, keep_links, links_
 
 Document = TypeVar("Document", RobotDocument, ToolDocument)
 
+_OWN = Path(__file__).resolve().parents[1]
+
 ROBOT_FILE, TOOL_FILE = "robot.yaml", "tool.yaml"
 
 
@@ -39,10 +41,23 @@ class ModelFolder(Generic[Document]):
     source: Source = field(repr=False)
 
     def locate(self, file: FileIn) -> Path:
-        """Return a file that the document names; raises CellError when its package is not installed."""
-        if file.package is None:
-            return self.folder / file.file
-        return installed_share_dir(package=file.package, marker=file.file) / file.file
+        """Return a file that the document names.
+
+        Raises:
+            CellError: its package is not installed, or it lies outside the folder or the package.
+        """
+        home = self.folder if file.package is None else installed_share_dir(package=file.package, marker=file.file)
+        path = home / file.file
+        if not self._may_use(path, home):
+            raise CellError(
+                f"{file.file:.200} lies outside the model folder", where=str(self.folder), hint="move it in there"
+            )
+        return path
+
+    @staticmethod
+    def _may_use(path: Path, home: Path) -> bool:
+        # The models that come with the program share a licence beside their folders.
+        return any(path.resolve().is_relative_to(place) for place in (home.resolve(), _OWN))
 
     def package_dir(self, file: FileIn) -> Path:
         """Return the folder below which the meshes of a description lie."""
@@ -59,7 +74,8 @@ class ModelFolder(Generic[Document]):
         """
         wanted: UrdfSource = self.document.urdf
         directory = self.package_dir(wanted)
-        robot = read_urdf(self.locate(wanted), package_dir=directory)
+        within = self.folder if wanted.package is None else directory
+        robot = read_urdf(self.locate(wanted), package_dir=directory, within=within)
         root = self._known(wanted.root, links_of(robot), ("urdf", "root"), "link") if wanted.root else root_of(robot)
         kept = below(robot, root)
         for index, link in enumerate(wanted.without):
@@ -67,7 +83,7 @@ class ModelFolder(Generic[Document]):
         keep_links(robot, kept)
         if wanted.collision_file is not None:
             other = self.locate(FileIn(file=wanted.collision_file, package=wanted.package))
-            take_collisions(robot, read_urdf(other, package_dir=directory))
+            take_collisions(robot, read_urdf(other, package_dir=directory, within=within))
         return robot
 
     def allowed_collisions(self) -> tuple[tuple[str, str], ...]:

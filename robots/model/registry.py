@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 
 from engine.errors import CellError
@@ -13,6 +14,8 @@ from robots.model.robot_model import RobotModel
 
 ARMS_DIR = Path(__file__).parents[1] / "arms"
 TOOLS_DIR = Path(__file__).parents[1] / "tools"
+
+_MOST_FILES = 10_000
 
 OWN_TOOL = "own"
 """Stands for the tool that an arm is delivered with, as its `robot.yaml` says; none if it says nothing."""
@@ -78,8 +81,10 @@ def _composed(
 def _changed_ns(path: Path | None) -> int:
     if path is None or not path.exists():
         return 0
-    files = [file for file in path.rglob("*") if file.is_file()] if path.is_dir() else [path]
-    return max((file.stat().st_mtime_ns for file in files), default=0)
+    files = list(islice(path.rglob("*"), _MOST_FILES + 1)) if path.is_dir() else [path]
+    if len(files) > _MOST_FILES:
+        raise CellError(f"this model folder has more than {_MOST_FILES} files", where=str(path), hint="remove some")
+    return max((file.stat().st_mtime_ns for file in files if file.is_file()), default=0)
 
 
 def _folder(name: str, directory: Path, file: str, what: str) -> Path:

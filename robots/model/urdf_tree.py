@@ -8,48 +8,69 @@ from pathlib import Path
 
 from engine.errors import CellError
 from robots.model.description import PACKAGE_SCHEME, resolve_uri
+from robots.model.mesh_file import verify_mesh_file
+from robots.model.untrusted_xml import parse_xml, read_text
+from robots.model.urdf_rules import verify_urdf
 
 Element = ET.Element
 
+_MAX_PREFIXES = 32
 _PREFIX_USED = re.compile(r"<(\w+):")
 
 
-def read_urdf(path: Path, *, package_dir: Path) -> Element:
+def read_urdf(path: Path, *, package_dir: Path, within: Path | None = None) -> Element:
     """Return the `robot` element of a file, meshes as `package://` URIs below `package_dir`, links and joints only.
 
+    Args:
+        path: The file.
+        package_dir: Where packages lie.
+        within: The folder that meshes may not leave, by links of the file system neither; `package_dir` by default.
+
     Raises:
-        CellError: it cannot be read, is not XML, or a mesh is missing.
+        CellError: it cannot be read, is not XML or no URDF, or a mesh is missing, elsewhere, or too large.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        robot = ET.fromstring(_with_prefixes_declared(text))
-    except (OSError, ET.ParseError) as error:
-        raise CellError(f"the URDF cannot be read: {error}", where=str(path), hint="correct the model folder") from None
+    text = _with_prefixes_declared(read_text(path, what="URDF"), where=path)
+    robot = parse_xml(text, what="URDF", where=path)
     _write_colours_out(robot)
     for element in list(robot):
         if element.tag not in ("link", "joint"):
             robot.remove(element)
+    verify_urdf(robot, where=path)
+    known: dict[str, str] = {}
     for mesh in robot.iter("mesh"):
-        file = resolve_uri(mesh.attrib["filename"], package_dirs=(package_dir,), relative_to=path.parent).resolve()
-        if not file.is_relative_to(package_dir.resolve()):
-            raise CellError(f"the mesh {file} lies outside {package_dir}", where=str(path), hint="move it in there")
-        mesh.attrib["filename"] = PACKAGE_SCHEME + file.relative_to(package_dir.resolve()).as_posix()
+        name = mesh.attrib["filename"]
+        if name not in known:
+            known[name] = _mesh_uri(name, urdf=path, package_dir=package_dir, within=within or package_dir)
+        mesh.attrib["filename"] = known[name]
     return robot
+
+
+def _mesh_uri(name: str, *, urdf: Path, package_dir: Path, within: Path) -> str:
+    file = resolve_uri(name, package_dirs=(package_dir,), relative_to=urdf.parent).resolve()
+    if not file.is_relative_to(within.resolve()):
+        raise CellError(f"the mesh {file} lies outside {within}", where=str(urdf), hint="move it in there")
+    verify_mesh_file(file)
+    return PACKAGE_SCHEME + file.relative_to(package_dir.resolve()).as_posix()
 
 
 def _write_colours_out(robot: Element) -> None:
     """Give every visual the colour that its material has elsewhere in the file."""
     colours = {
-        m.attrib["name"]: c for m in robot.iter("material") if m.get("name") and (c := m.find("color")) is not None
+        m.get("name", ""): c for m in robot.iter("material") if m.get("name") and (c := m.find("color")) is not None
     }
     for material in robot.iterfind("link/visual/material"):
         if material.find("color") is None and (colour := colours.get(material.get("name", ""))) is not None:
             material.append(colour)
 
 
-def _with_prefixes_declared(text: str) -> str:
+def _with_prefixes_declared(text: str, *, where: Path) -> str:
     """Declare name-space prefixes that are used and not declared; xacro leaves such files behind."""
-    missing = sorted(p for p in set(_PREFIX_USED.findall(text)) if f"xmlns:{p}=" not in text)
+    used = set(_PREFIX_USED.findall(text))
+    if len(used) > _MAX_PREFIXES:
+        raise CellError(
+            f"the URDF uses {len(used)} prefixes, more than {_MAX_PREFIXES}", where=str(where), hint="correct it"
+        )
+    missing = sorted(p for p in used if f"xmlns:{p}=" not in text)
     return re.sub(r"<robot\b", " ".join(["<robot", *(f'xmlns:{p}="{p}"' for p in missing)]), text, count=1)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from engine.errors import CellError
 from engine.messages import Quaternion, Vector3
 from robots.model.description import resolve_uri
 from robots.model.mesh_cache import cache_dir, content_key, read_cached, write_cached
+from robots.model.mesh_file import require_triangles, verify_mesh_file
 from robots.model.robot_model import RobotModel
 
 Rgba = tuple[float, float, float, float]
@@ -110,23 +112,27 @@ def _described_colour(visual: ET.Element) -> Rgba | None:
 
 
 def _meshes(path: Path, folder: Path) -> tuple[VisualMesh, ...]:
-    key = content_key(path.read_bytes(), recipe=_RECIPE)
+    verify_mesh_file(path)
+    data = path.read_bytes()
+    key = content_key(data, recipe=_RECIPE)
     kept = read_cached(folder, key)
     if kept is not None:
         return msgspec.msgpack.decode(kept, type=tuple[VisualMesh, ...])
-    made = _converted(path)
+    made = _converted(path, data)
     write_cached(folder, key, msgspec.msgpack.encode(made))
     return made
 
 
-def _converted(path: Path) -> tuple[VisualMesh, ...]:
+def _converted(path: Path, data: bytes) -> tuple[VisualMesh, ...]:
     # Slow to import and needed only when the cache has nothing; its types are incomplete.
     trimesh: Any = import_module("trimesh")
     try:
-        scene: Any = trimesh.load_scene(path)
+        # Out of memory, so that no file can name others to be read with it.
+        scene: Any = trimesh.load_scene(BytesIO(data), file_type=path.suffix[1:].lower())
     except Exception as error:
         # The readers behind trimesh have error classes of their own for each format.
         raise CellError(f"the mesh cannot be read: {error}", where=str(path)) from error
+    require_triangles(sum(len(getattr(each, "faces", ())) for each in scene.geometry.values()), path)
     parts: dict[Rgba, list[Any]] = {}
     for node in sorted(scene.graph.nodes_geometry):
         transform, name = scene.graph[node]

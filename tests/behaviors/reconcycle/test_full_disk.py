@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -34,6 +35,9 @@ class FullDisk:
 
     def keep_world(self, state: bytes) -> None:
         """Take it."""
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Every failure is one of a commit."""
 
     async def commit(self) -> None:
         """Fail once the disk is full."""

@@ -263,7 +263,7 @@ def test_a_journal_of_a_newer_format_is_left_alone(tmp_path: Path) -> None:
     with sqlite3.connect(tmp_path / "journal.db") as connection:
         connection.execute("PRAGMA user_version=99")
     connection.close()
-    with pytest.raises(JournalError, match="its format is 99, this program knows 3"):
+    with pytest.raises(JournalError, match="its format is 99, this program knows 4"):
         Journal.open(tmp_path)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 from engine.event import RunEnded
 from engine.journal import Journal, find_run, list_runs
 from engine.journal.presence import living_engines, presence_folder
+from tests.engine.journal.older_journal import write_older_journal
 
 ROOT = Path(__file__).parents[3]
 ENGINE = """
@@ -52,13 +52,7 @@ def test_a_killed_engine_drives_nothing_and_is_forgotten_by_the_next(tmp_path: P
 
 
 def test_a_journal_of_an_older_version_can_be_listed(tmp_path: Path) -> None:
-    with Journal.open(tmp_path) as journal:
-        journal.begin("old", behavior="b", document="d", started_unix_s=0.0)
-    connection = sqlite3.connect(tmp_path / "journal.db")
-    connection.execute("DROP TABLE driver")
-    connection.execute("PRAGMA user_version=2")
-    connection.commit()
-    connection.close()
+    write_older_journal(tmp_path / "journal.db", 2, "old", ())
     assert [run.interrupted for run in list_runs(tmp_path)] == [True]
     with Journal.open(tmp_path) as journal:
         journal.resume("old")

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from engine.errors import JournalError
+from engine.event import Logged
 from engine.journal import Journal, list_runs, read_events
+from tests.engine.journal.older_journal import write_older_journal
 
 
 def test_a_missing_journal_is_named_and_not_made(tmp_path: Path) -> None:
@@ -28,13 +30,13 @@ def test_an_unknown_run_gets_the_near_names(tmp_path: Path) -> None:
 
 def test_a_damaged_event_is_reported_as_damage(tmp_path: Path) -> None:
     """A row that is no event raises the journal's error."""
-    with Journal.open(tmp_path) as journal:
-        journal.begin("r", behavior="b", document="d", started_unix_s=0.0)
-    connection = sqlite3.connect(tmp_path / "journal.db")
-    connection.execute("INSERT INTO event VALUES ('r', 1, 0.0, 1, '{\"event\": \"lo')")
+    file = tmp_path / "journal.db"
+    write_older_journal(file, 3, "r", [Logged(seq=1, time_s=0.0, path="root", level="info", message="x")])
+    connection = sqlite3.connect(file)
+    connection.execute('UPDATE event SET data = \'{"event": "lo\'')
     connection.commit()
     connection.close()
-    with pytest.raises(JournalError, match="not an event"):
+    with pytest.raises(JournalError, match="event 1 of run r: this is not an event"):
         read_events(tmp_path, "r")
 
 

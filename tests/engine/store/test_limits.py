@@ -35,7 +35,7 @@ def nested(levels: int) -> dict[str, object]:
 @given(st.dictionaries(TEXT, JSON, max_size=5))
 def test_any_object_within_the_limits_comes_back_equal(value: dict[str, object]) -> None:
     """Encoding and decoding are inverse."""
-    assert decode_value(encode_value(value, where="record x")) == value
+    assert decode_value(encode_value(value, where="record x"), where="record x") == value
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
@@ -73,4 +73,4 @@ def test_what_is_beyond_a_limit_is_refused(value: object, message: str) -> None:
 def test_the_limits_themselves_are_allowed() -> None:
     """64-bit bounds and the deepest nesting pass."""
     value = nested(MAX_DEPTH - 1) | {"low": -(2**63), "high": 2**63 - 1}
-    assert decode_value(encode_value(value, where="record x")) == value
+    assert decode_value(encode_value(value, where="record x"), where="record x") == value

@@ -16,7 +16,7 @@ from engine.skills.entries import EntryRecord
 from engine.store import STANDARD_KINDS, verified_value
 from engine.store.mongo_reading import read_collection
 from engine.store.ros_documents import RosEntry, entries_from_ros, ros_document
-from engine.store.ros_plain import read_ros_file
+from engine.store.ros_plain import MAX_DOCUMENTS, MAX_FILE, read_ros_file
 from tests.engine.store.mongod import Mongod
 from tests.engine.store.stores import database_of
 
@@ -291,3 +291,37 @@ def test_the_database_of_mongodb_store_is_read_from_its_server(replicated_mongo:
         ("joints", "home", ""),
         ("dmp", "lift", ""),
     ]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[" * 100_000, "recursion"),
+        ('{"_meta": {"name": "a", "stored_type": "b/C"}, "x": ' + "[" * 70 + "]" * 70 + "}", "deeper than 64 levels"),
+        ('{"x": {"$numberInt": ["1"]}}', "int"),
+        ('{"x": {"$numberInt": "' + "9" * 10_000 + '"}}', "digits"),
+        ("{}" * (MAX_DOCUMENTS + 1), f"more than {MAX_DOCUMENTS} documents"),
+        ("[1]", "1 is no document"),
+    ],
+)
+def test_a_file_that_holds_too_much_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    (tmp_path / "x.json").write_text(text, encoding="utf-8")
+    with pytest.raises(StoreError, match=rf"x\.json: the documents cannot be read: .*{said}"):
+        read_ros_file(tmp_path / "x.json")
+
+
+def test_a_file_that_is_mostly_a_hole_is_refused(tmp_path: Path) -> None:
+    with (tmp_path / "x.bson").open("wb") as stream:
+        stream.truncate(MAX_FILE + 1)
+    with pytest.raises(StoreError, match=f"more than {MAX_FILE} bytes"):
+        read_ros_file(tmp_path / "x.bson")
+
+
+@pytest.mark.parametrize("meta", ["text", 7, ["a"], {"name": "a", "stored_type": "b/C", "flexcell": "text"}])
+def test_a_document_whose_meta_is_something_else_is_no_accident(meta: object) -> None:
+    document = {"_meta": meta, "message": {"x": 1}}
+    if isinstance(meta, dict):
+        assert entries_from_ros([document])[0].record.kind == "record"
+    else:
+        with pytest.raises(StoreError, match="it has no `_meta`"):
+            entries_from_ros([document])

@@ -1,0 +1,276 @@
+"""A journal as it is at one moment, every row verified before it is handed out."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections import Counter
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from typing import TypeVar
+
+import msgspec
+
+from engine.errors import JournalError
+from engine.event import AnyEvent
+from engine.journal.batch import WorldState
+from engine.journal.checksum import chain_start, checksum_of, next_checksum
+from engine.journal.codec import decode_event
+from engine.journal.database import (
+    CHECKSUMS_SINCE_VERSION,
+    DAMAGE_HINT,
+    DRIVER_SINCE_VERSION,
+    SCHEMA,
+    journal_fault,
+)
+from engine.journal.port import RunOrigin, RunRecord
+from engine.journal.presence import living_engines
+from engine.nearness import near_names
+from engine.sqlite_file import BoundedConnection, read_sqlite, stored_bytes
+
+T = TypeVar("T")
+
+_RUNS = """
+SELECT id, behavior, hash, status, epoch, started, {driver}, {checksums},
+       coalesce((SELECT max(seq) FROM event WHERE event.run = run.id), 0)
+FROM run {join} ORDER BY started, rowid
+"""
+_DRIVER = "(SELECT engine FROM driver WHERE driver.run = run.id)"
+_CHECKSUMS = "c.since, c.origin, c.record, c.seq, c.chain, c.world"
+_JOIN = "LEFT JOIN checksum c ON c.run = run.id"
+# The bytes of the text as they are stored: what is no text must not stop the reading of the others.
+_EVENTS = "SELECT run, seq, time_s, epoch, CAST(data AS BLOB), {checksum} FROM event WHERE run = ?"
+_MAX_UNIX_S = 2**37
+
+
+class EventRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """The row of one event."""
+
+    run: str
+    seq: int
+    time_s: float
+    epoch: int
+    data: bytes
+    checksum: bytes | None
+
+    def chained(self, before: bytes) -> bytes:
+        """Return the checksum that it has where its predecessor has `before`."""
+        return next_checksum(before, self.seq, self.time_s, self.epoch, self.data)
+
+
+class RunRow(msgspec.Struct, frozen=True, array_like=True):
+    """The row of one run with its checksums; `since` is None in a file without, 0 for a run of an older version."""
+
+    id: str
+    behavior: str
+    document: str
+    status: str
+    epoch: int
+    started_unix_s: float
+    engine: str | None
+    since: int | None
+    origin: bytes | None
+    record: bytes | None
+    seq: int | None
+    chain: bytes | None
+    world: bytes | None
+    last_seq: int
+
+    @property
+    def fault(self) -> str:
+        """What of it contradicts itself; empty where nothing does."""
+        if self.since is None or (self.since == 0 and (self.seq, self.chain, self.record) == (0, None, None)):
+            return ""
+        columns = (self.id, self.behavior, self.document, self.status, self.epoch, self.started_unix_s, self.engine)
+        if self.record != checksum_of((*columns, self.since, self.origin)):
+            return f"what the journal says of run {self.id} as a whole is damaged"
+        if self.last_seq != self.seq:
+            return f"run {self.id} has {self.last_seq} events in the journal, and {self.seq} were written"
+        return ""
+
+
+class JournalSnapshot:
+    """One journal file, opened for reading; used by one thread. Make it with `open_snapshot`."""
+
+    def __init__(self, path: Path, connection: BoundedConnection) -> None:
+        self.path = path
+        self._connection = connection
+        # All that is read is from one moment, whatever is written meanwhile.
+        connection.execute("BEGIN")
+        self._version = int(connection.execute("PRAGMA user_version").fetchone()[0])
+
+    def runs(self) -> tuple[RunRecord, ...]:
+        """Return all runs, oldest first; of a damaged one `damage` says what is wrong.
+
+        Raises:
+            JournalError: it cannot be told which runs there are.
+        """
+        living = living_engines(self.path)
+        return tuple(_record(row, living) for row in self._rows.values())
+
+    def run(self, run_id: str) -> RunRecord:
+        """Return one run.
+
+        Raises:
+            JournalError: there is no such run, or what is known of it is damaged.
+        """
+        return _record(self._row(run_id), living_engines(self.path))
+
+    def events(self, run_id: str) -> Iterator[AnyEvent]:
+        """Go through the events of a run.
+
+        Raises:
+            JournalError: there is no such run, or an event is damaged or missing; the message says which.
+        """
+        row = self._row(run_id)
+        chain, last, allowed = chain_start(run_id), 0, stored_bytes(self.path)
+        for found in self._connection.execute(f"{self._events} ORDER BY seq", (run_id,)):
+            event = self._typed(found, EventRow, what=f"the event after {last} of run {run_id}")
+            allowed -= len(event.data)
+            if allowed < 0:
+                raise self._damaged(f"run {run_id} has more text than the whole file holds")
+            chain, last = self._verified(row, event, chain), event.seq
+            yield self._decoded(event)
+        if row.since and row.chain != chain:
+            raise self._damaged(f"the events of run {run_id} end at {last}, and {row.seq} was the last")
+
+    def last_event(self, run_id: str) -> AnyEvent | None:
+        """Return the last event of a run without reading the others; None before the first.
+
+        Raises:
+            JournalError: there is no such run, or the event is damaged.
+        """
+        row = self._row(run_id)
+        found = self._connection.execute(f"{self._events} ORDER BY seq DESC LIMIT 2", (run_id,)).fetchall()
+        rows = [self._typed(each, EventRow, what=f"the last event of run {run_id}") for each in found]
+        if not rows:
+            return None
+        before = rows[1].checksum if len(rows) > 1 else None
+        chain = self._verified(row, rows[0], before or chain_start(run_id))
+        if row.since and rows[0].seq >= row.since and chain != row.chain:
+            raise self._damaged(f"event {rows[0].seq} of run {run_id} is not the last that was written")
+        return self._decoded(rows[0])
+
+    def origin(self, run_id: str) -> RunOrigin | None:
+        """Return how a run was started; None where the journal does not know.
+
+        Raises:
+            JournalError: there is no such run, or the entry is damaged.
+        """
+        row = self._row(run_id)
+        found = self._one("SELECT data FROM origin WHERE run = ?", run_id, tuple[str]) if self._version > 1 else None
+        if row.since == 1 or row.origin is not None:
+            now = checksum_of((run_id, found[0])) if found is not None else None
+            if now != row.origin:
+                raise self._damaged(f"the origin of run {run_id} is damaged: its checksum is wrong")
+        if found is None:
+            return None
+        try:
+            return msgspec.json.decode(found[0], type=RunOrigin)
+        except (msgspec.DecodeError, RecursionError) as error:
+            raise self._damaged(f"the origin of run {run_id} is damaged: {error}") from error
+
+    def world(self, run_id: str) -> WorldState | None:
+        """Return the simulated world as the last commit of a run left it; None where there was none.
+
+        Raises:
+            JournalError: there is no such run, or the state is damaged.
+        """
+        row, query = self._row(run_id), "SELECT seq, data FROM world WHERE run = ?"
+        found = self._one(query, run_id, tuple[int, bytes]) if self._version > 1 else None
+        if row.since == 1 or row.world is not None:
+            now = checksum_of((run_id, *found)) if found is not None else None
+            if now != row.world:
+                raise self._damaged(f"the simulated world of run {run_id} is damaged: its checksum is wrong")
+        return WorldState(*found) if found is not None else None
+
+    @property
+    def _events(self) -> str:
+        return _EVENTS.format(checksum="checksum" if self._version >= CHECKSUMS_SINCE_VERSION else "NULL")
+
+    @cached_property
+    def _rows(self) -> dict[str, RunRow]:
+        checked = self._version >= CHECKSUMS_SINCE_VERSION
+        query = _RUNS.format(
+            driver=_DRIVER if self._version >= DRIVER_SINCE_VERSION else "NULL",
+            checksums=_CHECKSUMS if checked else ", ".join(["NULL"] * 6),
+            join=_JOIN if checked else "",
+        )
+        rows = [self._typed(row, RunRow, what=f"run {row[0]!r:.80}") for row in self._connection.execute(query)]
+        if checked:
+            known = [str(row[0]) for row in self._connection.execute("SELECT run FROM checksum")]
+            wrong = Counter(known) - Counter(row.id for row in rows) or Counter(row.id for row in rows) - Counter(known)
+            if wrong:
+                raise self._damaged(f"run {min(wrong)!r:.80} is in one of its tables only")
+        return {row.id: row for row in rows}
+
+    def _row(self, run_id: str) -> RunRow:
+        row = self._rows.get(run_id)
+        if row is None:
+            raise JournalError(f"there is no run {run_id}", where=self.path, hint=near_names(run_id, self._rows))
+        if row.fault:
+            raise self._damaged(row.fault)
+        return row
+
+    def _verified(self, row: RunRow, event: EventRow, before: bytes) -> bytes:
+        """Return what the event after this one is chained to."""
+        checked = row.since is not None and 0 < row.since <= event.seq
+        wanted = event.chained(before) if checked else None
+        if (event.run, event.checksum) != (row.id, wanted):
+            raise self._damaged(f"event {event.seq} of run {row.id} is damaged or out of place: its checksum is wrong")
+        return wanted or before
+
+    def _decoded(self, event: EventRow) -> AnyEvent:
+        try:
+            return decode_event(event.data)
+        except JournalError as error:
+            raise self._damaged(f"event {event.seq} of run {event.run}: {error.message}") from error
+
+    def _one(self, query: str, run_id: str, kind: type[T]) -> T | None:
+        found = self._connection.execute(query, (run_id,)).fetchone()
+        return self._typed(found, kind, what=f"what is stored of run {run_id}") if found is not None else None
+
+    def _typed(self, row: object, kind: type[T], *, what: str) -> T:
+        try:
+            return msgspec.convert(row, kind)
+        except msgspec.ValidationError as error:
+            raise self._damaged(f"{what} is damaged: {error}") from error
+
+    def _damaged(self, what: str) -> JournalError:
+        return JournalError(what, where=self.path, hint=DAMAGE_HINT)
+
+
+@contextmanager
+def open_snapshot(path: Path) -> Generator[JournalSnapshot]:
+    """Open a journal file for reading, as it is now.
+
+    Raises:
+        JournalError: there is none, it cannot be read, or it is damaged.
+    """
+    if not path.is_file():
+        raise JournalError("there is no journal here", where=path, hint="give the directory given to --journal")
+    try:
+        connection = read_sqlite(path, schema=SCHEMA)
+        try:
+            yield JournalSnapshot(path, connection)
+        finally:
+            connection.close()
+    except sqlite3.Error as error:
+        raise journal_fault("cannot be read", path, error) from error
+
+
+def _record(row: RunRow, living: Mapping[str, int]) -> RunRecord:
+    started_s = row.started_unix_s
+    return RunRecord(
+        id=row.id,
+        behavior=row.behavior,
+        document=row.document,
+        status=row.status,
+        epoch=row.epoch,
+        started_unix_s=started_s if 0 <= started_s < _MAX_UNIX_S else 0.0,
+        last_seq=row.last_seq,
+        driver=living.get(row.engine) if row.status == "running" and row.engine is not None else None,
+        verified=row.since == 1,
+        damage=row.fault,
+    )
