@@ -50,10 +50,17 @@ class Execution:
     goes_on: bool = False
     """Whether the points are those of this very run, whose events tell how they were reached."""
 
+    steps: float = 0.0
+    """Steps of expressions since everybody else on the loop last had a turn; above `MAX_STEPS` they `give_way`."""
     replaced: dict[str, object] = field(default_factory=dict[str, object])
     """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
+
+    async def give_way(self) -> None:
+        """Let everybody else on the loop have a turn; due by count, never by the clock, so that runs repeat."""
+        self.steps = 0.0
+        await asyncio.sleep(0)
 
     def visit(self, path: str) -> int:
         """Count an activation of `path` and return which one it is, from 1."""

@@ -19,6 +19,8 @@ from engine.userdata import Scope
 
 _ITEMS = "items"
 _FAIRNESS = 256
+MAX_ROUNDS = 100_000
+MAX_COLLECTED = 10_000
 EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 
 
@@ -68,13 +70,20 @@ class ForEach:
                 raise StateError(
                     f"`times` gave {value!r}", where=self.position, hint="it must be a whole number, 0 or more"
                 )
+            self._require_few(value)
             items: list[object] = list(range(value))
         elif isinstance(value, list | tuple):
             items = list(cast("list[object]", value))
+            self._require_few(len(items))
         else:
             kind = type(value).__name__
             raise StateError(f"`items` gave a {kind}", where=self.position, hint="it must be a list")
         return Entry(None, {_ITEMS: items}, {_ITEMS: items})
+
+    def _require_few(self, rounds: int) -> None:
+        if rounds > MAX_ROUNDS:
+            message = f"{rounds:,} rounds, and at most {MAX_ROUNDS:,} are allowed"
+            raise StateError(message, where=self.position, hint="nest two, or lead a machine back to its begin")
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run the child in round after round, each in a scope of its own."""
@@ -130,4 +139,7 @@ class ForEach:
                     f"`collect` appends to {target!r}, which is a {kind}", where=self.position, hint="begin with []"
                 )
             together = [*cast("list[object]", gathered), value]
+            if len(together) > MAX_COLLECTED:
+                message = f"`collect` has more than {MAX_COLLECTED:,} values for {target!r}"
+                raise UserdataError(message, where=self.position, hint="keep what is needed in a state")
             execution.record_write(path, scope.write(target, together), target, together)

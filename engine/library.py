@@ -10,6 +10,7 @@ import msgspec
 
 from engine.check import Finding, check_behavior, read_beside
 from engine.document import Behavior, Parameter, load_behavior, load_source
+from engine.document.collection_pause import without_collection
 from engine.errors import DocumentError, Position
 from engine.graph import GraphNode, new_graph
 from engine.nearness import near_names
@@ -140,6 +141,7 @@ class Library:
             read = self._read[behavior_id] = self._load(behavior_id)
         return read
 
+    @without_collection
     def _load(self, behavior_id: str) -> _Read:
         file = self._project / behavior_id
         stamps = {file: _stamp(file)}
@@ -169,9 +171,15 @@ class Library:
 
 
 def _all_references(behavior: Behavior) -> Iterator[Behavior]:
-    for target in behavior.references.values():
-        yield target
-        yield from _all_references(target)
+    """Return what a behavior refers to, each once, however many lead there."""
+    known: set[int] = set()
+    due = list(behavior.references.values())
+    while due:
+        target = due.pop()
+        if id(target) not in known:
+            known.add(id(target))
+            due += target.references.values()
+            yield target
 
 
 def _stamp(file: Path) -> int:

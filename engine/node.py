@@ -15,6 +15,8 @@ import msgspec
 
 from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
+from engine.document.expression_cost import MAX_STEPS
+from engine.document.step_meter import METER
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
@@ -24,6 +26,10 @@ from engine.preemption import Overdue, being_cancelled, preempt
 from engine.settle import settle
 from engine.state import Outcome, State
 from engine.userdata import Scope
+
+_FAIRNESS = 256
+"""Repetitions in a row without a wait after which everybody else has a turn."""
+_MOST_DOUBLED = 60
 
 
 class Left(msgspec.Struct, frozen=True):
@@ -186,7 +192,7 @@ class Node:
 
     async def _guarded(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         try:
-            if self.guard is not None and point is None and not self._open(self.guard, scope):
+            if self.guard is not None and point is None and not self._open(self.guard, scope, execution):
                 self._record_diverted(execution, "guard", self.guard.target, None)
                 return Left("", self.guard.target)
             if self.timeout is None:
@@ -202,9 +208,11 @@ class Node:
             self._record_diverted(execution, "on_error", self.on_error, cause)
             return Left("", self.on_error, cause)
 
-    def _open(self, guard: Guard, scope: Scope) -> bool:
+    def _open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
         where = self.position or self.path
+        before = METER.spent
         value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
+        execution.steps += METER.spent - before
         if not isinstance(value, bool):
             raise ExpressionError(f"the guard gave {value!r}, which is no truth value", where=where, hint="compare it")
         return value
@@ -254,7 +262,7 @@ class Node:
                 again = cause_of(error)
             point = None
             attempt += 1
-            wait_s = retry.backoff_s * 2 ** (attempt - 2)
+            wait_s = retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED)
             recorder = execution.recorder
             recorder.record(
                 Retried(
@@ -268,14 +276,20 @@ class Node:
             )
             if wait_s > 0:
                 await execution.sleep(self.path, wait_s)
+            elif attempt % _FAIRNESS == 0:
+                await asyncio.sleep(0)
 
     async def _attempt(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         recorder = execution.recorder
         path = self.path
         if point is not None and not (point.entered and self.work.children):
             point = None
+        if execution.steps > MAX_STEPS:
+            await execution.give_way()
         visit = point.visit if point is not None and execution.goes_on else execution.visit(path)
-        entry, refused = self._entered(scope) if point is None else (Entry(None, point.inputs, {}, point), None)
+        entry, refused = (
+            self._entered(scope, execution) if point is None else (Entry(None, point.inputs, {}, point), None)
+        )
         if point is None or not execution.goes_on:
             recorder.record(
                 Entered(
@@ -316,12 +330,15 @@ class Node:
         self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
         return Left(outcome.name, None, outcome.cause)
 
-    def _entered(self, scope: Scope) -> tuple[Entry, FlexcellError | None]:
+    def _entered(self, scope: Scope, execution: Execution) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""
+        before = METER.spent
         try:
             return self.work.enter(scope), None
         except FlexcellError as error:
             return NOTHING, error
+        finally:
+            execution.steps += METER.spent - before
 
     def _record_exit(
         self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None

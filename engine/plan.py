@@ -9,6 +9,7 @@ from functools import cached_property
 from engine import concurrency, machine
 from engine.document import behavior as document
 from engine.document import node as nodes
+from engine.document.collection_pause import without_collection
 from engine.document.expression import Template, compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
@@ -82,6 +83,7 @@ class Plan:
         return dict(given)
 
 
+@without_collection
 def new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str = "root") -> Plan:
     """Make a behavior executable; `path` is that of its root node.
 

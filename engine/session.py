@@ -18,6 +18,8 @@ from engine.cause import describe
 from engine.cell import OpenCell
 from engine.cell_connection import CellConnection
 from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
+from engine.document import Behavior
+from engine.document.collection_pause import without_collection
 from engine.document.faults import Faults
 from engine.editing import Documents
 from engine.errors import ControlError, FlexcellError
@@ -28,7 +30,7 @@ from engine.journal import Journal, RunRecord, list_runs
 from engine.launch import Moment, moment_of, new_origin, new_run, plan_resume, resume_run
 from engine.library import BehaviorView, Library
 from engine.nearness import near_names
-from engine.plan import Catalogue, new_plan
+from engine.plan import Catalogue, Plan, new_plan
 from engine.recorded_run import read_run
 from engine.session_entries import StoredEntries
 from engine.session_operators import Attachment, Operators
@@ -162,8 +164,7 @@ class Session:
         Raises:
             FlexcellError: it cannot start: the behavior has errors, or a parameter is not acceptable.
         """
-        behavior = self._library.behavior(behavior_id)
-        plan = new_plan(behavior, self._library.catalogue)
+        behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         watched = supervision or Supervision()
         if breakpoints:
             watched = replace(watched, breakpoints=load_breakpoints(behavior.file))
@@ -212,13 +213,13 @@ class Session:
             there = found.origin.cell or "no cell"
             raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
         catalogue = self._library.catalogue
-        behavior = self._library.behavior(behavior_id)
+        behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
             found,
-            new_plan(behavior, catalogue),
+            plan,
             catalogue=catalogue,
             answers=answers,
             changed=changed,
@@ -269,8 +270,14 @@ class Session:
         """
         self.control(run_id)
         started = self._known(run_id)
-        behavior = self._library.behavior(started.behavior_id)
-        return started.run.change(new_plan(behavior, self._library.catalogue))
+        _, plan = self._planned(started.behavior_id)
+        return started.run.change(plan)
+
+    @without_collection
+    def _planned(self, behavior_id: str) -> tuple[Behavior, Plan]:
+        """Read, check and plan a behavior: on a thread, for it may be large."""
+        behavior = self._library.behavior(behavior_id)
+        return behavior, new_plan(behavior, self._library.catalogue)
 
     async def stop(self, run_id: str, *, reason: str) -> None:
         """Ask a run to stop and return at once; stopping one that is over does nothing."""

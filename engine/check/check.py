@@ -26,11 +26,18 @@ from engine.check.units import check_units
 from engine.check.wiring import check_wiring
 from engine.document.behavior import Behavior
 from engine.document.cell import load_cell
+from engine.document.collection_pause import without_collection
 from engine.document.entries import load_entries
+from engine.document.expression_cost import MAX_STEPS
 from engine.document.loader import CircularReference, read_behavior
+from engine.document.step_meter import METER
 from engine.errors import DocumentError, Position
 
+MAX_CHECK_STEPS = 200 * MAX_STEPS
+"""What the constant expressions of a behavior may cost in a check together: 2 s."""
 
+
+@without_collection
 def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | None = None) -> tuple[Finding, ...]:
     """Return everything that is wrong with a behavior and those it refers to, in document order.
 
@@ -51,8 +58,9 @@ def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | 
     for subject in subjects:
         keys = [*(each.key for each in read[id(subject)]), *passed_on.get(id(subject), ())]
         flows[id(subject)] = Flow(subject, Sites(dict.fromkeys(keys)))
-    for subject in subjects:
-        findings += _check_one(subject, entries, read[id(subject)], Flows(flows))
+    with METER.limited(MAX_CHECK_STEPS, "this check"):
+        for subject in subjects:
+            findings += _check_one(subject, entries, read[id(subject)], Flows(flows))
     return tuple(findings)
 
 

@@ -12,6 +12,8 @@ from engine.cause import cause_of, describe
 from engine.control.autonomy import AutonomyLevel, passes
 from engine.control.breakpoint import Breakpoint, GatePoint
 from engine.control.step import Step
+from engine.document.expression_cost import MAX_STEPS
+from engine.document.step_meter import METER
 from engine.errors import FlexcellError
 from engine.event import GatePassed, GateReached, Logged, OutcomeRequested, OutcomeWithdrawn
 from engine.recorder import Recorder
@@ -198,11 +200,12 @@ class Gate:
         if self._step is not None and self._step.ends_at(path, point):
             self.pause()
             return
-        for each in self.breakpoints:
-            if each.matches(path, point, outcome) and self._due(each, path, scope):
-                self._log(path, f"breakpoint {point} {each.path}")
-                self.pause()
-                return
+        with METER.limited(MAX_STEPS, "the breakpoints here"):
+            for each in self.breakpoints:
+                if each.matches(path, point, outcome) and self._due(each, path, scope):
+                    self._log(path, f"breakpoint {point} {each.path}")
+                    self.pause()
+                    return
 
     def _due(self, due: Breakpoint, path: str, scope: Scope) -> bool:
         try:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from engine.document.behavior import Behavior, BehaviorDocument
+from engine.document.collection_pause import without_collection
 from engine.document.conversion import convert
 from engine.document.meaning import meaning_hash
 from engine.document.structure import require_structure
@@ -14,7 +15,8 @@ from engine.document.yaml_source import Source, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 MAX_CHAIN = 64
-MAX_EXPANDED_NODES = 200_000
+MAX_EXPANDED_NODES = 50_000
+"""Each takes some 2 kB in a plan."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +44,7 @@ def load_behavior(path: Path | str) -> Behavior:
     return behavior
 
 
+@without_collection
 def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, ...]]:
     """Read a behavior like `load_behavior`, returning circular references, left open, beside it.
 
@@ -53,6 +56,7 @@ def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, 
     return behavior, tuple(reading.circles)
 
 
+@without_collection
 def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     """Return the behavior that `text` describes; references are read relative to `file`, which need not exist.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from engine.document.behavior import Behavior
-from engine.document.expression import RESERVED
+from engine.document.cel_expression import RESERVED
 from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node, Parallel
 from engine.errors import DocumentError
 from engine.nearness import near_names

@@ -24,6 +24,9 @@ from engine.errors import DocumentError, Position
 MAX_BYTES = 2_000_000
 MAX_DEPTH = 64
 MAX_NODES = 200_000
+MAX_EXPRESSIONS = 5_000
+MAX_EXPRESSION_TEXT = 100_000
+"""Characters of all texts with expressions in them together."""
 DataPath = tuple[str | int, ...]
 
 _INT = re.compile(r"[-+]?[0-9]+")
@@ -240,6 +243,8 @@ class _Builder:
         self._file = file
         self._documents = 0
         self._nodes = 0
+        self._expressions = 0
+        self._expression_text = 0
         self.said: object = None
         self._root: list[object] = []
         self._root_place = Place(0, 0, 0, 0)
@@ -301,8 +306,19 @@ class _Builder:
         if type(container) is dict and self._key is None:
             self._take_key(event, value, plain)
             return
+        if "${" in value:
+            self._count_expressions(event, value)
         resolved = self.said = self._resolve(event, value) if plain else value
         self._add(resolved, mark.line, mark.column)
+
+    def _count_expressions(self, event: _Event, value: str) -> None:
+        self._expressions += value.count("${")
+        self._expression_text += len(value)
+        hint = "split it with behavior references"
+        if self._expressions > MAX_EXPRESSIONS:
+            self._refuse(event, f"the document has more than {MAX_EXPRESSIONS} expressions", hint)
+        if self._expression_text > MAX_EXPRESSION_TEXT:
+            self._refuse(event, f"the texts with expressions have more than {MAX_EXPRESSION_TEXT} characters", hint)
 
     def _take_key(self, event: _Event, key: str, plain: bool) -> None:
         container = cast("dict[str, object]", self._container)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 from collections import OrderedDict
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from engine.document.collection_pause import collection_paused
 from engine.editing.apply import Edited, apply_edits, apply_to
 from engine.editing.draft import Draft
 from engine.editing.edit import AnyEdit
@@ -20,6 +19,8 @@ from engine.library import FindingView
 
 KEPT = 6
 """So many texts are kept: the last steps of a few pages; one of 1,000 states takes some 10 MB."""
+KEPT_CHARACTERS = 1_000_000
+"""Length of the kept texts together; the newest is kept whatever its length."""
 
 
 @dataclass
@@ -40,7 +41,7 @@ class Desk:
 
     def draw(self, text: str, *, file: Path, knowledge: Knowledge) -> Examination:
         """Read and draw a text; what is wrong with it is looked for only where it cannot be read."""
-        with _undisturbed():
+        with collection_paused():
             draft = self._taken(file, text)
             try:
                 draft = draft or Draft(text, file=str(file))
@@ -52,7 +53,7 @@ class Desk:
         self, text: str, edits: Sequence[AnyEdit], *, file: Path, knowledge: Knowledge
     ) -> tuple[Edited, Examination]:
         """Make edits in a text, all or none, and draw what comes of it."""
-        with _undisturbed():
+        with collection_paused():
             draft = self._taken(file, text)
             done = (
                 apply_to(draft, edits, knowledge=knowledge)
@@ -66,7 +67,7 @@ class Desk:
     def examine(self, text: str, *, file: Path, knowledge: Knowledge) -> Examination:
         """Draw a text and look for what is wrong with it."""
         drawn = self.draw(text, file=file, knowledge=knowledge)
-        with _undisturbed():
+        with collection_paused():
             return checked(drawn, text, file=file, knowledge=knowledge)
 
     def findings(self, text: str, *, file: Path, knowledge: Knowledge) -> tuple[FindingView, ...]:
@@ -74,7 +75,7 @@ class Desk:
         with self._lock:
             sheet = self._sheets.get((file, text))
         drawn = sheet.drawn if sheet is not None else self.draw(text, file=file, knowledge=knowledge)
-        with _undisturbed():
+        with collection_paused():
             return checked(drawn, text, file=file, knowledge=knowledge).findings
 
     def _taken(self, file: Path, text: str) -> Draft | None:
@@ -91,18 +92,9 @@ class Desk:
         with self._lock:
             self._sheets[file, draft.given] = _Sheet(drawn, draft)
             self._sheets.move_to_end((file, draft.given))
-            while len(self._sheets) > self._kept:
+            while len(self._sheets) > 1 and self._too_much():
                 self._sheets.popitem(last=False)
         return drawn
 
-
-@contextmanager
-def _undisturbed() -> Generator[None]:
-    """Let Python look for garbage afterwards: what is read is kept, and each look at it takes as long as reading it."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
+    def _too_much(self) -> bool:
+        return len(self._sheets) > self._kept or sum(len(text) for _, text in self._sheets) > KEPT_CHARACTERS

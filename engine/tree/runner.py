@@ -11,6 +11,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from engine.cause import cause_of, describe
+from engine.document.expression_cost import MAX_STEPS
+from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
 from engine.event import Event, UserdataWritten
 from engine.execution import Execution
@@ -149,6 +151,8 @@ class TreeRunner:
             guard.said = None
         steps = root.tick()
         while (step := self._advance(steps)) is not None:
+            if self._execution.steps > MAX_STEPS:
+                await self._execution.give_way()
             if step is self._growth.turn:
                 await self._take_turn()
             else:
@@ -160,8 +164,11 @@ class TreeRunner:
         self._leaves.begun.clear()
 
     def _advance(self, steps: Iterator[Behaviour]) -> Behaviour | None:
+        before = METER.spent
         with self._blackboard:
-            return next(steps, None)
+            step = next(steps, None)
+        self._execution.steps += METER.spent - before
+        return step
 
     async def _take_turn(self) -> None:
         check, self._growth.turn.check = self._growth.turn.check, None
@@ -191,7 +198,8 @@ class TreeRunner:
         written, self._written = self._written, set()
         asked = [each for each in self._growth.guards if each.said is not None and each.keys & written]
         try:
-            return any(each.holds() is not each.said for each in asked)
+            with METER.limited(MAX_STEPS, "the guards of this tree"):
+                return any(each.holds() is not each.said for each in asked)
         except FlexcellError:
             return True  # the tick will meet the error where a decorator may take it
 

@@ -11,8 +11,9 @@ from typing import Any, cast
 import msgspec
 import msgspec.inspect as inspect
 
+from engine.document.cel_environment import ValueType
+from engine.document.cel_expression import as_text
 from engine.document.conversion import in_words
-from engine.document.expression import ValueType, as_text
 
 
 @dataclass(frozen=True)

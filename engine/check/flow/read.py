@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.check.subject import Placed, Subject, template
-from engine.document.expression import Expression, Template, split_text
+from engine.document.cel_expression import Expression
+from engine.document.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 

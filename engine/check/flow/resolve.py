@@ -24,7 +24,8 @@ from engine.check.flow.kind import (
 )
 from engine.check.flow.site import Site
 from engine.check.subject import Subject, template
-from engine.document.expression import Expression, Template, split_text
+from engine.document.cel_expression import Expression
+from engine.document.expression import Template, split_text
 from engine.document.parameter import Parameter
 from engine.errors import ExpressionError
 

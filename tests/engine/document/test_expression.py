@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import time
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.expression import RESERVED, compile_template
+from engine.document.cel_expression import RESERVED
+from engine.document.expression import compile_template
 from engine.errors import ExpressionError
 from engine.messages import Pose
 
@@ -106,7 +106,7 @@ def test_the_names_used_are_known_before_a_run(text: object, names: set[str]) ->
         ("${foo(1)}", "no function `foo`"),
         ("${in}", "Syntax error"),
         ("${'a' * 2}", "no matching overload"),
-        ("${" + "x" * 3000 + "}", "longer than 2000"),
+        ("${" + "x" * 3000 + "}", "longer than 1000"),
         ("${" + "[" * 60 + "]" * 60 + "}", "recursion"),
         ("${speed > 0 ? 'a' : 1}", "no matching overload"),
         ("${__import__('os')}", "no function"),
@@ -148,15 +148,13 @@ def test_a_failed_evaluation_names_expression_and_variables(text: str, says: str
     assert text in str(failure.value)
 
 
-def test_an_expression_that_would_run_for_ever_is_stopped() -> None:
-    """Nested comprehensions meet the budget of the evaluator."""
+def test_an_expression_that_would_run_for_ever_is_refused_before_a_run() -> None:
+    """Nested comprehensions cost too much whatever they are given."""
     text = "i"
     for name in "abcdef":
         text = f"[1,2,3,4,5,6,7,8,9,10].map({name}, {text if text != 'i' else name})"
-    start = time.process_time()
-    with pytest.raises(ExpressionError, match="budget"):
-        compile_template("${" + text + "}").evaluate({})
-    assert time.process_time() - start < 1.0
+    with pytest.raises(ExpressionError, match="steps"):
+        compile_template("${" + text + "}")
 
 
 @given(st.text("${}'\"\\ ab1+*.()[]<?:&|", max_size=30))

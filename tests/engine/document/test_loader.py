@@ -263,7 +263,7 @@ def test_references_that_multiply_without_end_are_refused(tmp_path: Path) -> Non
         text = f"flexcell: 1\nname: x\noutcomes: [done]\nroot: {root}\n"
         (tmp_path / f"f{i}.yaml").write_text(text)
     (tmp_path / "f30.yaml").write_text(LEAF)
-    with pytest.raises(DocumentError, match="more than 200000 nodes"):
+    with pytest.raises(DocumentError, match="more than 50000 nodes"):
         load_behavior(tmp_path / "f0.yaml")
 
 

@@ -1,0 +1,90 @@
+"""The one environment of CEL in which every expression is compiled.
+
+An environment of its own for each set of names costs 150 kB with its first program, so the names
+in a text are replaced by aliases that the shared one declares, `__flexcell_text_0`, by type and number.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any, Literal
+
+from cel_expr_python import cel
+
+MAX_NAMES = 64
+"""Variables in one expression."""
+ALIAS = "__flexcell_"
+"""How aliases begin; no expression may use such a name."""
+
+ValueType = Literal["boolean", "integer", "number", "text", "list", "mapping", "nothing", "anything"]
+"""What is known of a value before a run."""
+
+NameUse = tuple[str, int]
+"""A name and the character at which it stands."""
+
+
+def alias(number: int, kind: ValueType = "anything") -> str:
+    """Return what the variable of this number and type is called in the environment."""
+    return f"{ALIAS}{kind}_{number}"
+
+
+def aliased(text: str, uses: Sequence[NameUse], aliases: Mapping[str, str]) -> str:
+    """Return an expression with its variables called by their aliases."""
+    pieces: list[str] = []
+    end = 0
+    for name, start in sorted(uses, key=lambda use: use[1]):
+        pieces += [text[end:start], aliases[name]]
+        end = start + len(name)
+    return "".join([*pieces, text[end:]])
+
+
+@lru_cache(maxsize=1)
+def environment() -> Any:
+    """Return the environment."""
+    known = {alias(number, kind): of_cel for kind, of_cel in _cel_types().items() for number in range(MAX_NAMES)}
+    return cel.NewEnv(variables=known, extensions=[_mixed_arithmetic()])
+
+
+def word_for(of_cel: str) -> ValueType:
+    """Return what a type is called outside of CEL."""
+    outer = of_cel.partition("<")[0]
+    for word, known in _cel_types().items():
+        if known.name().partition("<")[0] == outer:
+            return word
+    return "anything"
+
+
+@lru_cache(maxsize=1)
+def _cel_types() -> Mapping[ValueType, Any]:
+    kinds = cel.Type
+    return {
+        "boolean": kinds.BOOL,
+        "integer": kinds.INT,
+        "number": kinds.DOUBLE,
+        "text": kinds.STRING,
+        "list": kinds.LIST,
+        "mapping": kinds.MAP,
+        "nothing": kinds.NULL,
+        "anything": kinds.DYN,
+    }
+
+
+def _mixed_arithmetic() -> Any:
+    """Let an integer meet a decimal in `+ - * /`, which CEL alone refuses."""
+    integer, decimal = cel.Type.INT, cel.Type.DOUBLE
+    functions: list[Any] = []
+    for symbol, compute in (("+", operator.add), ("-", operator.sub), ("*", operator.mul), ("/", _divide)):
+        overloads = [
+            cel.Overload(f"mixed_{compute.__name__}_{order}", decimal, list(pair), False, compute)
+            for order, pair in (("left", (integer, decimal)), ("right", (decimal, integer)))
+        ]
+        functions.append(cel.FunctionDecl(f"_{symbol}_", overloads))
+    return cel.CelExtension("mixed_arithmetic", functions)
+
+
+def _divide(dividend: float, divisor: float) -> float:
+    # A raised error would leave the evaluator in the middle; infinity is refused as a result.
+    return dividend / divisor if divisor else math.inf

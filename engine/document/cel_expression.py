@@ -1,0 +1,337 @@
+"""One expression of a document: compiled by CEL once, with what it costs known before each evaluation.
+
+Integers and decimals mix freely in arithmetic: both integers give an integer (`7 / 2` is 3), else
+the result is a decimal.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sized
+from dataclasses import dataclass
+from typing import Any, cast
+
+import msgspec
+from cel_expr_python import cel
+
+from engine.document.cel_environment import (
+    ALIAS,
+    MAX_NAMES,
+    NameUse,
+    ValueType,
+    alias,
+    aliased,
+    environment,
+    word_for,
+)
+from engine.document.cel_syntax import ParsedExpression, Syntax, read_parsed
+from engine.document.expression_cost import MAX_STEPS, Sizes, cost_of
+from engine.document.text_cache import TextCache
+from engine.document.value_size import SCALAR, SMALL, measure
+from engine.errors import ExpressionError
+
+MAX_LENGTH = 1_000
+MAX_TEXT = 100_000
+"""Characters of text that an expression or a text with expressions in it may give."""
+MAX_RESULT_WEIGHT = 10_000
+"""Values in a list or mapping that an expression may give."""
+RESERVED = frozenset(
+    {
+        *("as", "break", "const", "continue", "else", "for", "function", "if", "import", "in", "let", "loop"),
+        *("namespace", "package", "return", "var", "void", "while", "true", "false", "null"),
+        *("bool", "bytes", "double", "dyn", "int", "list", "map", "null_type", "string", "type", "uint"),
+    }
+)
+"""Words of the expression language, which cannot name a parameter or a userdata key."""
+
+Variables = Mapping[str, object]
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_UNDECLARED = re.compile(r"undeclared reference to '([^']*)'")
+_ERROR_LINE = re.compile(r"ERROR: <input>:(-?\d+):(-?\d+): (.*)")
+_ERROR_STATUS = re.compile(r"^[A-Z_]+: ")
+_NO_OVERLOAD = re.compile(r"found no matching overload for '([^']*)' applied to '\((.*)\)'")
+_NO_FIELDS = re.compile(r"expression of type '([^']*)' cannot be the operand of a select operation")
+_SYMBOL = re.compile(r"^@?_?|_$")
+_STRICT = frozenset(
+    {
+        *("_+_", "_-_", "_*_", "_/_", "_<_", "_<=_", "_>_", "_>=_", "!_", "-_", "_&&_", "_||_"),
+        *("size", "startsWith", "endsWith", "contains", "matches"),
+    }
+)
+"""What fails when run with the wrong types; comparing unlike values, for one, is only refused by the type check."""
+_MIXED_NUMBERS = re.compile(r"found no matching overload for .* applied to '\(.*\b(?:int.*double|double.*int)\b.*\)'")
+
+
+def as_text(value: object) -> str:
+    """Return a value as it appears inside text: text as it is, everything else as JSON."""
+    return value if isinstance(value, str) else msgspec.json.encode(value).decode()
+
+
+@dataclass(frozen=True)
+class Expression:
+    """One compiled expression and the variables it uses."""
+
+    text: str
+    names: frozenset[str]
+    small_steps: float
+    """What it costs when all variables are small."""
+    _program: Any  # cel.Expression; None where the expression is just the name of a variable
+    _syntax: Syntax | None
+    _uses: tuple[NameUse, ...]
+    _aliases: Mapping[str, str]
+
+    @property
+    def bare(self) -> bool:
+        """True when it is just the name of a variable."""
+        return self._program is None
+
+    def result_type(self, variables: Mapping[str, ValueType]) -> ValueType:
+        """Return the type of its value, as far as the types of the variables tell.
+
+        Raises:
+            ExpressionError: it fails whenever the variables have these types; says at which operation.
+        """
+        if self.bare:
+            return variables.get(self.text, "anything")
+        names = enumerate(self._aliases)
+        aliases = {name: alias(number, variables.get(name, "anything")) for number, name in names}
+        return _result_type(self.text, aliased(self.text, self._uses, aliases))
+
+    def steps(self, sizes: Sizes) -> float:
+        """Return what an evaluation takes at most with variables of these sizes.
+
+        Raises:
+            ExpressionError: nobody knows.
+        """
+        if self._syntax is None:
+            return 0.0
+        try:
+            return cost_of(self._syntax, {name: sizes[name] for name in self.names if name in sizes}).steps
+        except ExpressionError as error:
+            raise ExpressionError(f"`${{{shortened(self.text)}}}`: {error.message}", hint=error.hint) from None
+
+    def too_long(self, steps: float) -> ExpressionError:
+        """Return why it is not evaluated."""
+        count = f"{steps:,.0f}" if steps < 1e12 else "endless"
+        message = f"`${{{shortened(self.text)}}}`: this may take {count} steps with values of this size"
+        hint = f"{MAX_STEPS:,.0f} are allowed; use smaller values, a simpler expression or a state"
+        return ExpressionError(message, hint=hint)
+
+    def compute(self, variables: Variables) -> object:
+        """Return the value of the expression, whose cost was looked at before."""
+        if self._program is None:
+            return self._variable(variables, self.text)
+        shown = {name: self._variable(variables, name) for name in self.names}
+        try:
+            data = {called: _plain(shown[name]) for name, called in self._aliases.items()}
+            result = self._program.eval(data=data)
+        except (RuntimeError, ValueError, TypeError, OverflowError) as error:
+            raise self._failed(_ERROR_STATUS.sub("", str(error)), shown) from error
+        if result.type() == cel.Type.ERROR:
+            raise self._failed(_ERROR_STATUS.sub("", str(result.value())), shown)
+        return self._checked(result.plain_value(), shown)
+
+    def text_of(self, variables: Variables) -> str:
+        """Return its value as it appears inside text."""
+        value = self.compute(variables)
+        try:
+            return as_text(value)
+        except (TypeError, ValueError, OverflowError, RecursionError) as error:
+            raise self._failed(str(error), {}) from error
+
+    def _variable(self, variables: Variables, name: str) -> object:
+        if name not in variables:
+            raise ExpressionError(
+                f"`${{{self.text}}}`: `{name}` is not defined", hint="it is no parameter or userdata key"
+            )
+        return variables[name]
+
+    def _checked(self, value: object, data: Variables) -> object:
+        if isinstance(value, float) and not math.isfinite(value):
+            raise self._failed(f"the result is {value}", data)
+        if value is not None and not isinstance(value, bool | int | float | str | list | dict):
+            raise self._failed(f"the result is a {type(value).__name__}, which no document value can be", data)
+        if isinstance(value, str) and len(value) > MAX_TEXT:
+            raise self._failed(too_much_text(len(value)), data)
+        if isinstance(value, list | dict):
+            self._check_size(cast("object", value), data)
+        return cast("object", value)
+
+    def _check_size(self, value: object, data: Variables) -> None:
+        try:
+            weight = measure(value, name="the result").weight
+        except ExpressionError as error:
+            raise self._failed(error.message, data) from None
+        if weight > MAX_RESULT_WEIGHT:
+            raise self._failed(f"the result holds more than {MAX_RESULT_WEIGHT:,} values", data)
+
+    def _failed(self, reason: str, data: Variables) -> ExpressionError:
+        shown = ", ".join(f"{name} = {_shown(value)}" for name, value in data.items())
+        return ExpressionError(
+            f"`${{{shortened(self.text)}}}`: {reason.strip()}", hint=f"with {shown}" if shown else None
+        )
+
+
+def compile_expression(text: str) -> Expression:
+    """Compile the text between `${` and `}`.
+
+    Raises:
+        ExpressionError: it is not well formed, or would take too long whatever it is given.
+    """
+    text = text.strip()
+    if len(text) > MAX_LENGTH:
+        raise ExpressionError(
+            f"`${{{shortened(text)}}}`: longer than {MAX_LENGTH} characters", hint="use a state instead"
+        )
+    if not text:
+        raise ExpressionError("`${}`: the expression is empty", hint="write a name or a formula")
+    return _COMPILED.get(text, _compile)
+
+
+def _compile(text: str) -> Expression:
+    if _NAME.fullmatch(text) and text not in RESERVED:
+        return Expression(text, frozenset((text,)), 1.0, None, None, (), {})
+    parsed = _parse(text)
+    uses = tuple(use for use in parsed.free_names() if use[0] not in RESERVED)
+    names = tuple(dict.fromkeys(name for name, _ in uses))
+    _check_names(text, names, uses)
+    aliases = {name: alias(number) for number, name in enumerate(names)}
+    program = _checked_program(text, aliased(text, uses, aliases))
+    made = Expression(text, frozenset(names), 0.0, program, parsed.root, uses, aliases)
+    least = made.steps(dict.fromkeys(names, SCALAR))
+    if least > MAX_STEPS:
+        raise made.too_long(least)
+    return Expression(text, made.names, _small_steps(made), program, parsed.root, uses, aliases)
+
+
+def _small_steps(made: Expression) -> float:
+    try:
+        return made.steps(dict.fromkeys(made.names, SMALL))
+    except ExpressionError:
+        return math.inf  # it depends on the value: a pattern, say
+
+
+_COMPILED: TextCache[Expression] = TextCache(max_characters=200_000)
+_TYPES: TextCache[ValueType] = TextCache(max_characters=500_000)
+
+
+def _parse(text: str) -> ParsedExpression:
+    try:
+        return read_parsed(environment().compile(text, disable_check=True).serialize())
+    except RuntimeError as error:
+        for _, column, reason in _ERROR_LINE.findall(str(error)):
+            raise _malformed(text, _in_words(reason), int(column)) from None
+        reason = _ERROR_STATUS.sub("", str(error)).splitlines()[0]
+        raise ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint="use a simpler expression") from None
+
+
+def _check_names(text: str, names: tuple[str, ...], uses: tuple[NameUse, ...]) -> None:
+    if len(names) > MAX_NAMES:
+        raise _malformed(text, f"it uses more than {MAX_NAMES} names")
+    if ALIAS in text:
+        raise _malformed(text, f"`{ALIAS}` cannot be part of an expression")
+    for name, start in uses:
+        if not _NAME.fullmatch(name) or text[start : start + len(name)] != name:
+            raise _malformed(text, f"`{name}` is no name")
+
+
+def _checked_program(text: str, called: str) -> Any:
+    """Compile an expression; without its types where its only fault is that it compares integers with decimals.
+
+    CEL refuses `1 < 2.5` before running it and computes it well when run.
+    """
+    try:
+        return environment().compile(called)
+    except RuntimeError as error:
+        for _, _, reason in _ERROR_LINE.findall(str(error)):
+            if not _MIXED_NUMBERS.match(reason):
+                raise _malformed(text, _in_words(reason)) from None
+    try:
+        return environment().compile(called, disable_check=True)
+    except RuntimeError as error:
+        reason = _ERROR_STATUS.sub("", str(error)).splitlines()[0]
+        raise ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint="use a simpler expression") from None
+
+
+def _malformed(text: str, reason: str, column: int = 0) -> ExpressionError:
+    place = f"at character {column}" if column > 0 else None
+    return ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint=place)
+
+
+def _in_words(reason: str) -> str:
+    unknown = _UNDECLARED.match(reason)
+    if unknown:
+        return f"there is no function `{unknown[1]}`"
+    # The parser lists every token it would have accepted; the reader only needs what it met.
+    return re.sub(r" expecting \{.*", "", reason).replace("'<EOF>'", "end")
+
+
+def _result_type(text: str, called: str) -> ValueType:
+    def read(called: str) -> ValueType:
+        try:
+            return word_for(environment().compile(called).return_type().name())
+        except RuntimeError as error:
+            for _, _, reason in _ERROR_LINE.findall(str(error)):
+                if impossible := _impossible(reason):
+                    raise ExpressionError(f"`${{{shortened(text)}}}`: {impossible}") from None
+            return "anything"
+
+    return _TYPES.get(called, read)
+
+
+def _impossible(reason: str) -> str | None:
+    """Say what fails when run; None for what only the type check refuses."""
+    selected = _NO_FIELDS.match(reason)
+    if selected:
+        return f"{_type_in_words(selected[1])} has no fields"
+    refused = _NO_OVERLOAD.match(reason)
+    if refused is None or refused[1] not in _STRICT or _MIXED_NUMBERS.match(reason):
+        return None
+    operands = [_type_in_words(operand) for operand in re.split(r", (?![^(]*\))", refused[2])]
+    return f"`{_SYMBOL.sub('', refused[1])}` cannot be applied to {' and '.join(operands)}"
+
+
+def _type_in_words(of_cel: str) -> str:
+    known = {
+        "string": "text",
+        "int": "an integer",
+        "double": "a number",
+        "bool": "true or false",
+        "null_type": "nothing",
+        "list": "a list",
+        "map": "a mapping",
+    }
+    return known.get(of_cel.partition("(")[0], of_cel)
+
+
+def too_much_text(length: int) -> str:
+    """Say that a text is too long."""
+    return f"the text has {length:,} characters, and at most {MAX_TEXT:,} are allowed"
+
+
+def _shown(value: object) -> str:
+    """Return the beginning of a value; nobody writes out a large one for a message."""
+    if isinstance(value, str):
+        return shortened(repr(value[:100]))
+    if isinstance(value, list | tuple | dict):
+        items = cast("Sized", value)
+        return shortened(repr(items)) if len(items) <= 20 else f"a {type(items).__name__} of {len(items)}"
+    return shortened(repr(value))
+
+
+def _plain(value: object) -> object:
+    """Return a value in the types that CEL knows."""
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in cast("Mapping[str, object]", value).items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in cast("list[object]", value)]
+    return _plain(msgspec.to_builtins(value)) if isinstance(value, msgspec.Struct) else value
+
+
+def shortened(text: str) -> str:
+    """Return the beginning of a text on one line."""
+    text = " ".join(text[:200].split())
+    return text if len(text) <= 80 else f"{text[:77]}…"

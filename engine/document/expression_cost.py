@@ -1,0 +1,230 @@
+"""What the evaluation of an expression may cost at most, from its syntax and the sizes of its variables.
+
+The cost is counted in steps of about a microsecond. Figures are those of the slowest inputs that
+were measured; `benchmarks/hostile.py` holds them against the clock. Whatever is not known here is
+refused, so that no evaluation begins whose end is not known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from engine.document.cel_syntax import (
+    Call,
+    Comprehension,
+    ListLiteral,
+    Literal,
+    MappingLiteral,
+    Name,
+    Selection,
+    Syntax,
+)
+from engine.document.pattern_cost import pattern_weight
+from engine.document.value_size import SCALAR, Size, either, joined, list_size, text_size
+from engine.errors import ExpressionError
+
+MAX_STEPS = 10_000.0
+"""What one evaluation may cost: 10 ms."""
+
+Sizes = Mapping[str, Size]
+
+_START = 10.0
+_NODE = 0.15
+_READ = 1.0
+"""For each unit of weight that is handed over to the evaluator."""
+_RESULT = 1.5
+"""For each unit of weight that is handed back."""
+_ROUND = 0.4
+_COPY = 0.2
+"""For each item that is copied when lists are joined; `map` and `filter` join one item at a time."""
+_COMPARE = 0.3
+_FIND = 0.1
+_ARITHMETIC = 4.0
+_CHARACTER = 0.004
+_ENDLESS = 1e15
+_ZONE = re.compile(r"[A-Za-z][A-Za-z0-9_+-]*(?:/[A-Za-z0-9_+-]+){0,2}|[+-]?\d\d:\d\d")
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """Upper bounds: of the steps of an evaluation, and of the size of its value."""
+
+    steps: float
+    result: Size
+
+
+def cost_of(root: Syntax, sizes: Sizes) -> Cost:
+    """Return what an expression may cost with variables of these sizes; of those that are absent as little as can be.
+
+    Raises:
+        ExpressionError: it uses a function or a message whose cost nobody knows.
+    """
+    counting = _Counting(_START + _READ * sum(size.weight for size in sizes.values()))
+    result = counting.size(root, sizes)
+    return Cost(min(counting.steps + _RESULT * result.weight, _ENDLESS), result)
+
+
+class _Counting:
+    """One walk over a syntax tree."""
+
+    def __init__(self, steps: float = 0.0) -> None:
+        self.steps = steps
+
+    def size(self, node: Syntax, sizes: Sizes) -> Size:
+        """Return the size of the value of a node, counting what it costs."""
+        self.steps += _NODE
+        match node:
+            case Literal():
+                return text_size(len(node.text), node.text) if node.text is not None else SCALAR
+            case Name():
+                return sizes.get(node.name, SCALAR)
+            case Selection():
+                found = self.size(node.operand, sizes).inside
+                return SCALAR if node.test else found
+            case Call():
+                return self._call(node, sizes)
+            case ListLiteral():
+                return self._items(node.items, sizes)
+            case MappingLiteral():
+                if node.message:
+                    raise _unknown(node.message)
+                return self._items(node.items, sizes)
+            case Comprehension():
+                return self._fold(node, sizes)
+
+    def _items(self, items: tuple[Syntax, ...], sizes: Sizes) -> Size:
+        weight, item = 1.0, None
+        for each in items:
+            found = self.size(each, sizes)
+            weight += found.weight
+            item = either(item, found) if item is not None else found
+        self.steps += _COPY * len(items)
+        return Size(min(weight, _ENDLESS), 0.0, float(len(items)), item)
+
+    def _call(self, node: Call, sizes: Sizes) -> Size:
+        if node.function == "_?_:_":
+            return self._choice(node.arguments, sizes)
+        charge = _CHARGES.get(node.function)
+        if charge is None or (node.function in _OF_TWO and len(node.arguments) != 2):
+            raise _unknown(node.function)
+        steps, result = charge([self.size(each, sizes) for each in node.arguments])
+        self.steps = min(self.steps + steps, _ENDLESS)
+        return result
+
+    def _choice(self, arguments: tuple[Syntax, ...], sizes: Sizes) -> Size:
+        condition, one, other = arguments
+        self.size(condition, sizes)
+        return either(self.size(one, sizes), self.size(other, sizes))
+
+    def _fold(self, node: Comprehension, sizes: Sizes) -> Size:
+        values = self.size(node.values, sizes)
+        self.size(node.start, sizes)
+        inside = {**sizes, node.variable: values.inside, node.accumulator: SCALAR}
+        each = _Counting(_ROUND)
+        each.size(node.condition, inside)
+        growth = _growth(node)
+        item = each.size(growth, inside) if growth is not None else None
+        if item is None or _is_conditional(node.step):
+            each.size(node.step, inside)
+        rounds = values.length
+        # `map` joins a list to one item in every round, and so copies all before it.
+        copied = _COPY * rounds * (rounds + 1) / 2 if item is not None and item.length else 0.0
+        self.steps = min(self.steps + rounds * each.steps + copied, _ENDLESS)
+        made = list_size(rounds * item.length, item.inside) if item is not None and item.length else SCALAR
+        return self.size(node.result, {**sizes, node.accumulator: made})
+
+
+def _growth(node: Comprehension) -> Syntax | None:
+    """Return what a round adds to the accumulator, None where that is a truth value."""
+    step = node.step
+    if isinstance(step, Call) and _is_conditional(step):
+        step = step.arguments[1]
+    if isinstance(step, Call) and step.function in ("_||_", "_&&_"):
+        return None
+    if isinstance(step, Call) and step.function == "_+_" and _is_name(step.arguments[0], node.accumulator):
+        return step.arguments[1]
+    raise _unknown("comprehension")
+
+
+def _is_conditional(step: Syntax) -> bool:
+    return isinstance(step, Call) and step.function == "_?_:_"
+
+
+def _is_name(node: Syntax, name: str) -> bool:
+    return isinstance(node, Name) and node.name == name
+
+
+def _unknown(name: str) -> ExpressionError:
+    return ExpressionError(f"`{name}` cannot be used in an expression", hint="use a state instead")
+
+
+_Charge = Callable[[list[Size]], tuple[float, Size]]
+
+
+def _scalar(steps: float) -> _Charge:
+    return lambda given: (steps + _CHARACTER * max((each.text for each in given), default=0.0), SCALAR)
+
+
+def _join(given: list[Size]) -> tuple[float, Size]:
+    made = joined(*given) if len(given) == 2 and any(each.text or each.length for each in given) else SCALAR
+    return _ARITHMETIC + _CHARACTER * made.text + _COPY * made.length, made
+
+
+def _compare(given: list[Size]) -> tuple[float, Size]:
+    return _COMPARE * min((each.weight for each in given), default=1.0), SCALAR
+
+
+def _find(given: list[Size]) -> tuple[float, Size]:
+    sought, values = given
+    alike = min(sought.weight, values.inside.weight)
+    return values.length * (_FIND + (_COMPARE * alike if alike > 1 else 0.0)), SCALAR
+
+
+def _contains(given: list[Size]) -> tuple[float, Size]:
+    text, part = (each.text for each in given)
+    return 1 + _CHARACTER * text + text * part / 10_000, SCALAR
+
+
+def _matches(given: list[Size]) -> tuple[float, Size]:
+    text, pattern = given
+    if pattern.literal is None and pattern.text:
+        hint = "write it as text, or give it as a parameter or key of its own"
+        raise ExpressionError("the pattern of `matches` is put together", hint=hint)
+    weight = pattern_weight(pattern.literal or "")
+    return 20 + 2 * weight + text.text * weight / 10, SCALAR
+
+
+def _zoned(given: list[Size]) -> tuple[float, Size]:
+    # The evaluator opens the file of the zone, whatever it is.
+    if len(given) > 1 and not _ZONE.fullmatch(given[1].literal or ""):
+        raise ExpressionError("this is no time zone", hint="write it as `Europe/Berlin` or `+02:00`")
+    return 5.0, SCALAR
+
+
+def _text(given: list[Size]) -> tuple[float, Size]:
+    characters = 4 * max((each.text for each in given), default=0.0) + 40
+    return 1 + _CHARACTER * characters, text_size(characters)
+
+
+_OF_TWO = frozenset(("_[_]", "@in", "contains", "matches"))
+_ZONED = ("FullYear", "Month", "Date", "DayOfMonth", "DayOfWeek", "DayOfYear", "Hours", "Minutes", "Seconds")
+_CHARGES: Mapping[str, _Charge] = {
+    **dict.fromkeys(("_<_", "_<=_", "_>_", "_>=_", "!_", "-_", "_%_", "_&&_", "_||_"), _scalar(_NODE)),
+    **dict.fromkeys(("_-_", "_*_", "_/_"), _scalar(_ARITHMETIC)),
+    **dict.fromkeys(("@not_strictly_false", "__not_strictly_false__", "type"), _scalar(_NODE)),
+    **dict.fromkeys(("size", "int", "uint", "double", "bool", "timestamp", "duration"), _scalar(1.0)),
+    **dict.fromkeys(("startsWith", "endsWith"), _scalar(1.0)),
+    **dict.fromkeys((f"get{part}" for part in (*_ZONED, "Milliseconds")), _zoned),
+    "_+_": _join,
+    "_==_": _compare,
+    "_!=_": _compare,
+    "@in": _find,
+    "_[_]": lambda given: (_NODE, given[0].inside),
+    "contains": _contains,
+    "matches": _matches,
+    "string": _text,
+    "bytes": _text,
+    "dyn": lambda given: (0.0, given[0]),
+}

@@ -1,0 +1,154 @@
+"""How much a value holds: what an evaluation costs follows from the sizes of what it is given.
+
+The weight of a value is the number of values in it, itself included, and one more for every 100
+characters of text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime, timedelta
+from enum import Enum
+from itertools import chain
+from typing import Any, NamedTuple, cast
+
+import msgspec
+
+from engine.errors import ExpressionError
+
+CHARACTERS_PER_WEIGHT = 100
+MAX_WEIGHT = 20_000
+"""The largest weight of a value that an expression may read."""
+MAX_VALUE_DEPTH = 64
+_MAX_LITERAL = 1_000
+_ENDLESS = 1e15
+_SCALARS = frozenset((int, float, bool, type(None), datetime, timedelta))
+
+
+class Size(NamedTuple):
+    """Upper bounds of what a value may hold."""
+
+    weight: float = 1.0
+    text: float = 0.0
+    """Characters, where it may be text."""
+    length: float = 0.0
+    """Items, where it may be a list or mapping."""
+    item: Size | None = None
+    """What any key or item may hold; None where there is none."""
+    literal: str | None = None
+    """The text itself, where it is short and known."""
+
+    @property
+    def inside(self) -> Size:
+        """What any item may hold."""
+        return self.item or SCALAR
+
+
+SCALAR = Size()
+
+
+def text_size(characters: float, literal: str | None = None) -> Size:
+    """Return the size of text."""
+    characters = min(characters, _ENDLESS)
+    return Size(1 + characters / CHARACTERS_PER_WEIGHT, characters, literal=literal)
+
+
+def list_size(length: float, item: Size) -> Size:
+    """Return the size of a list of so many items, or of a mapping of half as many."""
+    length = min(length, _ENDLESS)
+    return Size(min(1 + length * item.weight, _ENDLESS), 0.0, length, item)
+
+
+def joined(one: Size, other: Size) -> Size:
+    """Return the size of both together: texts or lists one behind the other."""
+    text = min(one.text + other.text, _ENDLESS)
+    length = min(one.length + other.length, _ENDLESS)
+    return Size(min(one.weight + other.weight, _ENDLESS), text, length, _common_item(one, other))
+
+
+def either(one: Size, other: Size) -> Size:
+    """Return the size of a value that is one or the other."""
+    if one is other:
+        return one
+    length = max(one.length, other.length)
+    return Size(max(one.weight, other.weight), max(one.text, other.text), length, _common_item(one, other))
+
+
+def _common_item(one: Size, other: Size) -> Size | None:
+    if not one.length:
+        return other.item
+    if not other.length:
+        return one.item
+    return either(one.inside, other.inside)
+
+
+_SHORT = text_size(100)
+SMALL = Size(1 + 2 * 16 * _SHORT.weight, _SHORT.text, 16.0, _SHORT)
+"""What most values keep to: numbers, short texts, and flat lists and mappings of a few of them."""
+
+
+def measure(value: object, *, name: str) -> Size:
+    """Return the size of a value; `name` is what messages call it.
+
+    Raises:
+        ExpressionError: it is too large, nested too deeply, or of a type that no document value has.
+    """
+    if isinstance(value, str):
+        literal = value if len(value) <= _MAX_LITERAL else None
+        return text_size(len(value), literal)
+    return _Measuring(name).level([value], 0)
+
+
+class _Measuring:
+    """One walk over a value, all that stands equally deep at once; it ends at the largest weight that is allowed."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._weight = 0.0
+
+    def level(self, values: Sequence[object], depth: int) -> Size:
+        """Return a size that each of the values keeps to."""
+        before = self._weight
+        self._count(len(values))
+        kinds: set[type] = set(map(type, values)) - _SCALARS
+        if not kinds:
+            return SCALAR
+        if depth > MAX_VALUE_DEPTH:
+            raise self._refused(f"is nested more than {MAX_VALUE_DEPTH} deep")
+        text = length = slots = 0
+        inside: list[object] = []
+        for kind in kinds:
+            those = [value for value in values if type(value) is kind] if len(values) > 1 else values
+            if issubclass(kind, str | bytes):
+                text = max(text, *map(len, cast("Sequence[str]", those)), 0)
+                self._count(sum(map(len, cast("Sequence[str]", those))) / CHARACTERS_PER_WEIGHT)
+            elif not issubclass(kind, int | float | Enum):
+                items = self._opened(cast("type[object]", kind), those)
+                length = max(length, *map(len, items))
+                slots = max(slots, length * (2 if len(items) > len(those) else 1))
+                self._count(sum(map(len, items)))
+                inside.extend(chain.from_iterable(items))
+        self._weight -= len(inside)
+        item = self.level(inside, depth + 1) if inside else None
+        weight = 1 + text / CHARACTERS_PER_WEIGHT + (slots * item.weight if item is not None else 0)
+        return Size(min(weight, self._weight - before), text, length, item)
+
+    def _opened(self, kind: type[object], values: Sequence[object]) -> list[Any]:
+        """Return what is inside each of the values; of mappings the keys and the values are one each."""
+        if issubclass(kind, list | tuple | set | frozenset):
+            return list(values)
+        if issubclass(kind, msgspec.Struct):
+            names = kind.__struct_fields__
+            return [*([names] * len(values)), *([getattr(value, name) for name in names] for value in values)]
+        if issubclass(kind, Mapping):
+            known = cast("Sequence[Mapping[object, object]]", values)
+            return [*(each.keys() for each in known), *(each.values() for each in known)]
+        raise self._refused(f"is or holds a {kind.__name__}, which is no document value")
+
+    def _count(self, weight: float) -> None:
+        self._weight += weight
+        if self._weight > MAX_WEIGHT:
+            raise self._refused(f"holds more than {MAX_WEIGHT:,} values")
+
+    def _refused(self, reason: str) -> ExpressionError:
+        return ExpressionError(f"`{self._name}` {reason}", hint="an expression takes less; hand the value to a state")
