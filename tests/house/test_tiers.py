@@ -26,7 +26,9 @@ def test_a_file_has_the_markers_of_what_it_and_its_helpers_import(file: str, kin
     assert kind in kinds_of(ROOT / file)
 
 
-@pytest.mark.parametrize("file", ["tests/engine/document/test_loader.py", "tests/house/test_locks.py"])
+@pytest.mark.parametrize(
+    "file", ["tests/engine/document/test_loader.py", "tests/house/test_locks.py", "tests/replay/two_arm_transfer.mcap"]
+)
 def test_other_files_have_none(file: str) -> None:
     """They are what a fast run is made of."""
     assert kinds_of(ROOT / file) == frozenset()
