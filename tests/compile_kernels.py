@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import asyncio
 from importlib import import_module
 from pathlib import Path
 
-from robots.planning.worker import PlanningWorker
+from robots.planning.planner import ScenePlanner
+from robots.planning.worker_main import _warm  # pyright: ignore[reportPrivateUsage] - as a planning process starts
 
 ROOT = Path(__file__).resolve().parents[1]
 
 
-async def main() -> None:
-    """Import what is compiled when it is imported, and start a planner, which compiles the rest."""
+def main() -> None:
+    """Import what is compiled when it is imported, and plan once, which compiles the rest."""
     for file in sorted((ROOT / "robots").rglob("*kernels.py")):
         import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
-    async with PlanningWorker():
-        pass
+    _warm(ScenePlanner())
 
 
 if __name__ == "__main__":
-    asyncio.run(main())
+    main()
