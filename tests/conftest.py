@@ -61,10 +61,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(getattr(pytest.mark, kind))
         if isinstance(item, pytest.Function) and _is_against_wall_time(item):
             item.add_marker(pytest.mark.flaky(reruns=1))
-    if not config.getoption("--nightly"):
-        later = [item for item in items if item.get_closest_marker("nightly") or _is_in_the_dark(item)]
-        config.hook.pytest_deselected(items=later)
-        items[:] = [item for item in items if item not in later]
+    left_out = [item for item in items if _is_left_out(item, config)]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
+
+
+def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:
+    if config.getoption("--fast") and kinds_of(item.path):
+        return True
+    is_more = item.get_closest_marker("nightly") is not None or _is_in_the_dark(item)
+    return is_more and not config.getoption("--nightly")
 
 
 def _is_in_the_dark(item: pytest.Item) -> bool:
