@@ -41,6 +41,17 @@ COMPILE = [
     *("pip", "compile", "--quiet", "--universal", "--python-version=3.11", "--generate-hashes"),
     "--only-binary=:all:",
 ]
+CHECKS = {
+    "format": ["ruff", "format", "--check", "."],
+    "lint": ["ruff", "check", "."],
+    "types": ["pyright", "--warnings"],
+    "layers": ["lint-imports"],
+}
+SLOW_CHECKS = {
+    "advisories": ["python", ".ci/audit.py"],
+    # Once, and not by each test process for itself.
+    "kernels": ["python", "-m", "tests.compile_kernels"],
+}
 MESA_DRIVERS = ("*/dri/swrast_dri.so", "*/libgallium-*.so")
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
@@ -73,15 +84,12 @@ def demo(options: list[str]) -> int:
 def test(options: list[str]) -> int:
     """Run lint, types, import contracts and the tests; pytest's own line is the last one."""
     install("development")
-    ensure_browser()
-    ensure_graphics()
-    for name, command in (
-        ("format", ["ruff", "format", "--check", "."]),
-        ("lint", ["ruff", "check", "."]),
-        ("types", ["pyright", "--warnings"]),
-        ("layers", ["lint-imports"]),
-        ("advisories", ["python", ".ci/audit.py"]),
-    ):
+    checks = CHECKS
+    if "--fast" not in options:
+        ensure_browser()
+        ensure_graphics()
+        checks = {**CHECKS, **SLOW_CHECKS}
+    for name, command in checks.items():
         started_s = time.monotonic()
         _check([BIN / command[0], *command[1:]])
         _say(f"{name}: {time.monotonic() - started_s:.0f} s")

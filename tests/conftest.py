@@ -1,36 +1,99 @@
-"""Runs `async def` tests on a real or virtual event loop and fails a test that leaks a task."""
+"""Runs `async def` tests on a real or virtual event loop, fails a test that leaks a task, and chooses what is run."""
 
 from __future__ import annotations
 
 import asyncio
 import inspect
-from typing import Any
+import os
+import sys
+from pathlib import Path
+from types import FunctionType
+from typing import Any, cast
 
 import pytest
 from hypothesis import settings
 
 from engine.clock import run_virtual
+from tests.tiers import kinds_of
 
 # How long an example takes depends on what else the machine does: only the time-out of the whole test counts.
 settings.register_profile("flexcell", deadline=None)
 settings.load_profile("flexcell")
 
 
+# Events of the interpreter when a process is started.
+PROCESS_EVENTS = frozenset({"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"})
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add what chooses how much is run."""
+    parser.addoption("--fast", action="store_true", help="run only what needs no browser, process or physics")
+    parser.addoption("--nightly", action="store_true", help="also run the values marked `nightly`: more of the same")
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Name the marker that chooses the loop."""
-    config.addinivalue_line("markers", "virtual: run this async test on a virtual event loop")
+    """Name the markers; a fast run lets no test start a process, a browser among them."""
+    for line in (
+        "virtual: run this async test on a virtual event loop",
+        "browser: drives a real browser (set by what the file imports, see tests/tiers.py)",
+        "process: starts processes (set by what the file imports)",
+        "physics: steps a simulated world (set by what the file imports)",
+        "nightly: more of what other values show already; run with --nightly",
+    ):
+        config.addinivalue_line("markers", line)
+    if config.getoption("--fast"):
+        sys.addaudithook(_refuse_process)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Give a second try to what runs against wall time; see docs/decisions/0020-second-try.md."""
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave out files with a marker in a fast run, unread: what they import takes longest."""
+    is_test = collection_path.suffix == ".py" and collection_path.name.startswith("test_")
+    return True if is_test and config.getoption("--fast") and kinds_of(collection_path) else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark tests by what they need, and leave out those for the night.
+
+    What runs against wall time gets a second try; see docs/decisions/0020-second-try.md.
+    """
     for item in items:
+        for kind in sorted(kinds_of(item.path)):
+            item.add_marker(getattr(pytest.mark, kind))
         if isinstance(item, pytest.Function) and _is_against_wall_time(item):
             item.add_marker(pytest.mark.flaky(reruns=1))
+    left_out = [item for item in items if _is_left_out(item, config)]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
+
+
+def _is_left_out(item: pytest.Item, config: pytest.Config) -> bool:
+    if config.getoption("--fast") and kinds_of(item.path):
+        return True
+    is_more = item.get_closest_marker("nightly") is not None or _is_in_the_dark(item)
+    return is_more and not config.getoption("--nightly")
+
+
+def _is_in_the_dark(item: pytest.Item) -> bool:
+    """Whether a test does in the dark theme what it does in the light one, and there looks at both."""
+    if not isinstance(item, pytest.Function) or "dark" not in _values(item):
+        return False
+    return "require_accessible" in cast(FunctionType, item.obj).__code__.co_names
+
+
+def _refuse_process(event: str, arguments: tuple[Any, ...]) -> None:
+    # Set while a test runs; pytest itself starts its worker processes.
+    if event in PROCESS_EVENTS and "PYTEST_CURRENT_TEST" in os.environ:
+        raise AssertionError(f"a fast test starts a process ({event} {arguments[:1]}): see tests/tiers.py")
 
 
 def _is_against_wall_time(item: pytest.Function) -> bool:
-    arguments = item.callspec.params.values() if hasattr(item, "callspec") else ()
-    return "browser" in item.fixturenames or any(isinstance(each, str) and each == "process" for each in arguments)
+    return "browser" in item.fixturenames or "process" in _values(item)
+
+
+def _values(item: pytest.Function) -> list[str]:
+    """The texts among the values that a test is called with."""
+    values = item.callspec.params.values() if hasattr(item, "callspec") else ()
+    return [each for each in values if isinstance(each, str)]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -18,6 +18,7 @@ from tests.editor_web.limits import GUARD_S
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 Scheme = Literal["light", "dark"]
+SCHEMES: tuple[Scheme, Scheme] = ("light", "dark")
 Size = tuple[int, int]
 DESK: Size = (1366, 768)
 PHONE: Size = (390, 844)
@@ -64,10 +65,23 @@ def opened_page(
 
 
 def require_accessible(page: Page, what: str, *, part: str = "") -> None:
-    """axe-core finds nothing on the page as it is, or in the part of it that a selector names."""
+    """axe-core finds nothing on the page, or in the part that a selector names, in its theme and in the other one."""
+    page.evaluate(f"() => {{ {AXE.read_text(encoding='utf-8')} }}")
+    is_dark: bool = page.evaluate("() => matchMedia('(prefers-color-scheme: dark)').matches")
+    own, other = SCHEMES[is_dark], SCHEMES[not is_dark]
+    for scheme in (own, other):
+        page.emulate_media(color_scheme=scheme)
+        _require_accessible(page, f"{what}, {scheme}", scheme, part)
+    page.emulate_media(color_scheme=own)
+
+
+def _require_accessible(page: Page, what: str, scheme: Scheme, part: str) -> None:
+    # The page for logging in has no themes of its own.
+    page.wait_for_function(
+        "(s) => [s, undefined].includes(document.documentElement.dataset.mantineColorScheme)", arg=scheme
+    )
     # Colours fade for a moment when something changes.
     page.evaluate("() => Promise.all(document.getAnimations().map((a) => a.finished.catch(() => null)))")
-    page.evaluate(f"() => {{ {AXE.read_text(encoding='utf-8')} }}")
     result: dict[str, Any] = page.evaluate("(part) => axe.run(part || document)", part)
     found = [(v["id"], [n["html"][:160] for n in v["nodes"]][:4]) for v in result["violations"]]
     assert found == [], f"{what}: {found}"

@@ -32,19 +32,10 @@ OSV: object = {
         }
     ]
 }
-NPM: object = {
-    "elkjs": [
-        {
-            "id": 1,
-            "url": "x/GHSA-1",
-            "title": "It leaks",
-            "severity": "high",
-            "vulnerable_versions": "<9",
-            "cwe": [],
-            "cvss": {},
-        }
-    ]
-}
+NPM: object = json.loads(
+    '{"elkjs": [{"id": 1, "url": "x/GHSA-1", "title": "It leaks", "severity": "high", "vulnerable_versions": "<9",'
+    ' "cwe": [], "cvss": {}}]}'
+)
 
 
 def _audit() -> Any:

@@ -105,9 +105,14 @@ def told(ran: Ran) -> tuple[str | None, str]:
 
 
 @pytest.mark.parametrize(
-    ("cell", "steps"), [("dual_panda", PANDA_HAND), ("ur10", ROBOTIQ)], ids=["panda_hand", "robotiq_2f85"]
+    ("cell", "steps", "seed"),
+    [
+        pytest.param("dual_panda", PANDA_HAND, None, id="panda_hand"),
+        pytest.param("ur10", ROBOTIQ, 3, id="robotiq_2f85-3"),
+        pytest.param("dual_panda", PANDA_HAND, 3, id="panda_hand-3", marks=pytest.mark.nightly),
+        pytest.param("ur10", ROBOTIQ, None, id="robotiq_2f85", marks=pytest.mark.nightly),
+    ],
 )
-@pytest.mark.parametrize("seed", [None, 3])
 def test_two_fingers_take_a_part_where_it_lies_and_put_it_down_straight(
     tmp_path: Path, cell: str, steps: str, seed: int | None
 ) -> None:

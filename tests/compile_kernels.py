@@ -1,0 +1,22 @@
+"""Compiles every numeric kernel into the cache, where all test processes find them: `-m tests.compile_kernels`."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from robots.planning.planner import ScenePlanner
+from robots.planning.worker_main import _warm  # pyright: ignore[reportPrivateUsage] - as a planning process starts
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def main() -> None:
+    """Import what is compiled when it is imported, and plan once, which compiles the rest."""
+    for file in sorted((ROOT / "robots").rglob("*kernels.py")):
+        import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
+    _warm(ScenePlanner())
+
+
+if __name__ == "__main__":
+    main()

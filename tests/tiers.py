@@ -1,0 +1,75 @@
+"""Which tests drive a browser, start processes or step physics, told from what their files import."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+from _pytest.mark import ParameterSet
+
+ROOT = Path(__file__).resolve().parents[1]
+IMPORT = re.compile(r"^\s*(?:from|import) ([\w.]+)(?: import ([\w, ]+|\())?", re.MULTILINE)
+KINDS = {
+    "playwright": "browser",
+    "subprocess": "process",
+    "multiprocessing": "process",
+    "robots.planning.worker": "process",
+    "benchmarks": "process",
+    "mujoco": "physics",
+    "robots.sim": "physics",
+    # Cells name their world; these open whatever is named.
+    "engine.cell": "physics",
+    "engine.session": "physics",
+}
+FOLDERS = {
+    "tests/behaviors": "physics",
+    "tests/benchmarks": "process",
+    "tests/replay": "physics",
+    # They have an arm and a wall of their own, at 1 kHz.
+    "tests/robots/control": "physics",
+}
+# They call what starts npm and other tools.
+FILES = {"tests/editor_web/test_frontend.py": "process", "tests/house/test_audit.py": "process"}
+
+
+def nightly(value: object) -> ParameterSet:
+    """Make a value of a parametrized test one of those that only run with `--nightly`."""
+    return pytest.param(value, marks=pytest.mark.nightly)
+
+
+@cache
+def kinds_of(file: Path) -> frozenset[str]:
+    """Return the markers of all tests of a file: `browser`, `process`, `physics`, or none."""
+    # A recording is replayed without robots, and what lies elsewhere is not ours.
+    return _kinds_of(file, set()) if file.suffix == ".py" and file.is_relative_to(ROOT) else frozenset()
+
+
+def _kinds_of(file: Path, seen: set[Path]) -> frozenset[str]:
+    seen.add(file)
+    relative = file.relative_to(ROOT).as_posix()
+    found = {kind for folder, kind in FOLDERS.items() if relative.startswith(f"{folder}/")}
+    found |= {FILES[relative]} if relative in FILES else set()
+    for name in _imported(file):
+        found |= {kind for start, kind in KINDS.items() if f"{name}.".startswith(f"{start}.")}
+        helper = _helper(name)
+        if helper is not None and helper not in seen:
+            found |= _kinds_of(helper, seen)
+    return frozenset(found)
+
+
+def _imported(file: Path) -> set[str]:
+    """Every module that a file names, and every name that it takes from one, which may be a module too."""
+    found: set[str] = set()
+    for module, names in IMPORT.findall(file.read_text(encoding="utf-8")):
+        found |= {module, *(f"{module}.{name.strip()}" for name in names.split(",") if name.strip("( "))}
+    return found
+
+
+def _helper(module: str) -> Path | None:
+    """The file of a module of the tests."""
+    if not module.startswith("tests."):
+        return None
+    file = ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    return file if file.is_file() else None
