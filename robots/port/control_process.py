@@ -63,6 +63,7 @@ class EngineMonitor:
         self._is_gone = False
         self._is_heard = True
         self._braking_since_s: float | None = None
+        self._braked_for = ""
         self._was_at_rest = False
 
     def look(self, now_s: float) -> None:
@@ -79,13 +80,11 @@ class EngineMonitor:
         self._is_gone = True
 
     def _brake(self, now_s: float) -> None:
+        cause = ENGINE_GONE if self._is_gone else f"the engine has been silent for {self._silence.silent_s:.1f} s"
         if self._is_heard and not self._devices.at_rest:
-            self._braking_since_s = now_s
+            self._braking_since_s, self._braked_for = now_s, cause
         self._is_heard = False
-        self._devices.brake(self._cause())
-
-    def _cause(self) -> str:
-        return ENGINE_GONE if self._is_gone else f"the engine has been silent for {self._silence.silent_s:.1f} s"
+        self._devices.brake(cause)
 
     def _tell_rest(self, now_s: float) -> None:
         at_rest = self._devices.at_rest
@@ -94,4 +93,4 @@ class EngineMonitor:
             self._heartbeat.tell_rest(round(now_s * 1e9) if at_rest else 0)
         if at_rest and self._braking_since_s is not None:
             took_s, self._braking_since_s = now_s - self._braking_since_s, None
-            self._log(f"{self._cause()}; everything came to rest {took_s:.3f} s later, at {now_s:.3f} s (monotonic)")
+            self._log(f"{self._braked_for}; everything came to rest {took_s:.3f} s later, at {now_s:.3f} s (monotonic)")

@@ -81,6 +81,18 @@ def test_a_silent_engine_brakes_after_a_fifth_of_a_second_and_the_log_says_when_
     assert f"at {rested_ns / 1e9:.3f} s (monotonic)" in line
 
 
+def test_the_log_gives_the_silence_that_braked_also_when_the_engine_is_back_before_everything_rests(
+    process: Process,
+) -> None:
+    process.control(1, pulse_every=1)
+    process.control(220)
+    process.control(20, pulse_every=5)
+    process.devices.moving = False
+    process.control(1)
+    (line,) = process.log
+    assert line.startswith("the engine has been silent for 0.2 s; everything came to rest 0.0")
+
+
 def test_nothing_is_braked_any_more_once_the_engine_pulses_again(process: Process) -> None:
     process.control(1, pulse_every=1)
     process.control(300)

@@ -13,7 +13,6 @@ from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
-from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 from robots.sim.world import SimWorld, new_world
 
@@ -35,7 +34,7 @@ def box(name: str, xyz: Vector3 = PART_XYZ, *, mass_kg: float = 0.12) -> PartBod
     return PartBody(name=name, shape="box", size_m=(0.06, 0.03, 0.04), mass_kg=mass_kg, pose=Pose(xyz=xyz))
 
 
-# Longer than a loaded machine keeps a process waiting; what is to be noticed at once says so with `watched`.
+# Longer than a loaded machine keeps a process waiting; what is to be noticed says so with `watched`.
 PATIENT_S = 20.0
 
 
@@ -49,9 +48,9 @@ def two_arms(*parts: PartBody) -> Scene:
     return _patient(LEFT, RIGHT, parts=parts)
 
 
-def watched(scene: Scene) -> Scene:
-    """Return a scene in which engine and world notice each other's silence as soon as in a real cell."""
-    return msgspec.structs.replace(scene, engine_silence_s=ENGINE_SILENCE_S, world_silence_s=CONTROL_SILENCE_S)
+def watched(scene: Scene, *, silence_s: float = 1.0) -> Scene:
+    """Return a scene in which engine and world act on each other's silence that soon."""
+    return msgspec.structs.replace(scene, engine_silence_s=silence_s, world_silence_s=silence_s)
 
 
 def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> Scene:

@@ -22,7 +22,7 @@ from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.robot import DeviceStatus
 from robots.port import MotionEnd, Tolerance
-from robots.port.heartbeat import CONTROL_SILENCE_S, Heartbeat
+from robots.port.heartbeat import Heartbeat
 from robots.sim.process_host import ProcessHost
 from robots.sim.scene import FixtureBody, Scene
 from robots.sim.world import SimWorld
@@ -79,11 +79,11 @@ async def test_a_frozen_world_is_ended_and_its_motions_fail_with_that_cause() ->
 
 async def test_a_world_is_not_lost_because_the_engine_itself_did_not_look() -> None:
     """A loop that was blocked for seconds looks again before it judges."""
-    scene = msgspec.structs.replace(one_arm(), world_silence_s=CONTROL_SILENCE_S)
+    scene = msgspec.structs.replace(one_arm(), world_silence_s=0.5)
     host = ProcessHost(scene)
     async with SimWorld(one_arm(), host=host) as world:
         for _ in range(3):
-            time.sleep(0.4)  # noqa: ASYNC251
+            time.sleep(0.8)  # noqa: ASYNC251
             await asyncio.sleep(0.0)
         assert (world.status, (await move(world.arm("left"), HOME + 0.02, 0.2)).end) == (
             DeviceStatus.READY,
@@ -108,7 +108,7 @@ def test_a_world_whose_engine_is_killed_brings_its_arm_to_rest_and_then_ends() -
 
 
 def test_a_world_whose_engine_is_suspended_brings_its_arm_to_rest_and_waits_for_it() -> None:
-    parent, world = engine_in_mid_motion("watched(one_arm())")
+    parent, world = engine_in_mid_motion("watched(one_arm(), silence_s=2.0)")
     heartbeat = Heartbeat.of_process(world)
     parent.send_signal(signal.SIGSTOP)
     while heartbeat.at_rest_since_ns == 0:
@@ -117,7 +117,7 @@ def test_a_world_whose_engine_is_suspended_brings_its_arm_to_rest_and_waits_for_
     parent.send_signal(signal.SIGCONT)
     answer, log = parent.communicate()
     assert re.fullmatch(r"failed the engine has been silent for \d\.\d s; left came to rest by itself\n", answer)
-    assert "flexcell world: the engine has been silent for 0." in log
+    assert "flexcell world: the engine has been silent for 2." in log
     heartbeat.close()
 
 

@@ -16,6 +16,8 @@ from engine.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
 from engine.shapes import Box, Obstacle
 from engine.skills.people import Reach
 from robots.planning.scene import AttachedPart, PlanningScene
+from robots.sim.host import HostListener
+from robots.sim.lockstep_host import LockstepHost
 from robots.sim.world import SimWorld
 from robots.vision.lockstep_watch import LockstepWatch
 from robots.vision.watch import PROCESSING_S
@@ -95,6 +97,37 @@ def test_a_persons_arm_is_in_the_map_and_gone_when_it_is_gone(tmp_path: Path) ->
     reached, gone = run_virtual(main())
     assert reached > 10
     assert gone == 0
+
+
+def test_the_map_of_a_lost_world_is_not_trusted_until_the_world_is_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Images of a world that does not step any more would look like a cell at rest."""
+    listeners: list[HostListener] = []
+    original = LockstepHost.open
+
+    async def heard(self: LockstepHost, listener: HostListener) -> None:
+        listeners.append(listener)
+        await original(self, listener)
+
+    monkeypatch.setattr(LockstepHost, "open", heard)
+
+    async def main() -> list[str]:
+        async with OpenCell(watched(tmp_path)) as cell:
+            cameras = cameras_of(cell)
+            cameras.require()
+            await asyncio.sleep(0.5)
+            reasons = [cameras.stale_reason]
+            listeners[0].lost("the world's process was ended by SIGKILL")
+            await asyncio.sleep(0.5)
+            reasons.append(cameras.stale_reason)
+            await cell.reconnect()
+            await asyncio.sleep(0.5)
+            return [*reasons, cameras.stale_reason]
+
+    before, lost, after = run_virtual(main())
+    assert (before, after) == ("", "")
+    assert "SIGKILL" in lost
 
 
 def test_two_runs_see_the_same_bytes(tmp_path: Path) -> None:
