@@ -28,7 +28,7 @@ _ENTRIES = tuple((key, "entries") for key in SECTIONS.values())
 def check(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Behavior, cell or entries documents, or FILE.py:NAME.", show_default=False),
+        typer.Argument(help="Behavior, cell, entries or project documents, or FILE.py:NAME.", show_default=False),
     ] = None,
     format_: Annotated[
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
