@@ -11,8 +11,7 @@ export function Interruption() {
   if (connection === 'denied') {
     return (
       <Alert color="red" variant="light" radius={0} icon={<IconLock size={18} aria-hidden />} title="You are logged out" styles={READABLE} role="alert">
-        Your session has ended. Open the address that <code>flexcell login</code> prints, or <a href="/login" target="_blank">log in</a> in
-        another tab: this page then goes on, and keeps what is not saved.
+        The server has new keys. Open the address that <code>flexcell serve</code> printed, or <a href="/login">log in</a>.
       </Alert>
     )
   }
