@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import sys
 import webbrowser
@@ -13,6 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
+from engine.bus.remote import ServerRecord
 from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
@@ -84,7 +86,7 @@ async def _serve(
     state = folder.path
 
     def ready(dashboard: Any) -> None:
-        folder.announce(url=dashboard.url, token=dashboard.token)
+        folder.announce(ServerRecord(url=dashboard.url, token=dashboard.token, pid=os.getpid()))
         # What is late before is late for nobody.
         watched.enter_context(Watchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")
