@@ -22,14 +22,14 @@ class StateFolder:
     def __init__(self, path: Path) -> None:
         self.path = path
 
-    def announce(self, record: ServerRecord) -> None:
-        """Say where the server is reached, readable by the owner only, as the token commands the cell."""
+    def announce(self, *, url: str, token: str) -> None:
+        """Say where the server is reached, readable by its owner only."""
         file = server_file(self.path)
         part = file.with_suffix(".part")
         part.unlink(missing_ok=True)
         descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(descriptor, "wb") as stream:
-            stream.write(msgspec.json.encode(record))
+            stream.write(msgspec.json.encode(ServerRecord(url=url, token=token, pid=os.getpid())))
         part.replace(file)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import signal
 import sys
 import webbrowser
@@ -14,7 +13,6 @@ from typing import Annotated, Any
 
 import typer
 
-from engine.bus.remote import ServerRecord
 from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
@@ -86,7 +84,7 @@ async def _serve(
     state = folder.path
 
     def ready(dashboard: Any) -> None:
-        folder.announce(ServerRecord(url=dashboard.url, token=dashboard.token, pid=os.getpid()))
+        folder.announce(url=dashboard.url, token=dashboard.token)
         # What is late before is late for nobody.
         watched.enter_context(Watchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")

@@ -15,14 +15,12 @@ from engine.errors import BusError, FlexcellError
 from engine.state_folder import LOCK_FILE, locked_state_folder
 
 URL = "http://127.0.0.1:1/"
-RECORD = ServerRecord(url=URL, token="t", pid=os.getpid())
 HOLD = """
 import sys
 from pathlib import Path
-from engine.bus.remote import ServerRecord
 from engine.state_folder import locked_state_folder
 with locked_state_folder(Path(sys.argv[1])) as folder:
-    folder.announce(ServerRecord(url="http://127.0.0.1:1/", token="t", pid=0))
+    folder.announce(url="http://127.0.0.1:1/", token="t")
     print("held", flush=True)
     sys.stdin.read()
 """
@@ -31,13 +29,13 @@ with locked_state_folder(Path(sys.argv[1])) as folder:
 def test_a_second_server_is_refused_with_the_first_ones_process_and_address(tmp_path: Path) -> None:
     """What the first has said of itself stays."""
     with locked_state_folder(tmp_path / "state") as folder:
-        folder.announce(RECORD)
+        folder.announce(url=URL, token="t")
         with (
             pytest.raises(FlexcellError, match=rf"process {os.getpid()} at {URL}.*--state"),
             locked_state_folder(tmp_path / "state"),
         ):
             pass
-        assert ServerRecord.read(tmp_path / "state") == RECORD
+        assert ServerRecord.read(tmp_path / "state") == ServerRecord(url=URL, token="t", pid=os.getpid())
     with pytest.raises(BusError, match="no server runs here"):
         ServerRecord.read(tmp_path / "state")
 
@@ -56,7 +54,7 @@ def test_the_address_and_the_token_are_for_the_owner_only(tmp_path: Path) -> Non
     """Mode 0600, also over a file that was not."""
     server_file(tmp_path).with_suffix(".part").write_text("{}")
     with locked_state_folder(tmp_path) as folder:
-        folder.announce(RECORD)
+        folder.announce(url=URL, token="t")
         assert stat.S_IMODE(server_file(tmp_path).stat().st_mode) == 0o600
 
 
