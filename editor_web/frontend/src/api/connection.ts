@@ -8,7 +8,7 @@ export interface ConnectionEvents {
   readonly onOpen: () => void
   readonly onFrame: (frame: Frame) => void
   readonly onLost: () => void
-  /** The server does not know this page any more; nothing is tried again. */
+  /** The session of this page has ended; asked again now and then, as somebody may log in in another tab. */
   readonly onDenied: () => void
 }
 
@@ -20,6 +20,7 @@ export interface LiveConnection {
 
 const SILENCE_MS = 12_000
 const ANSWER_MS = 4000
+const DENIED_MS = 5000
 const RETRY_MS = [250, 500, 1000, 2000, 3000]
 
 /** Open a connection and keep it open. */
@@ -76,6 +77,7 @@ export function keepConnected(events: ConnectionEvents): LiveConnection {
     if (ended) return
     if (denied) {
       events.onDenied()
+      retry = setTimeout(() => void again(), DENIED_MS)
       return
     }
     retry = setTimeout(open, RETRY_MS[Math.min(attempt, RETRY_MS.length - 1)])

@@ -11,7 +11,8 @@ export function Interruption() {
   if (connection === 'denied') {
     return (
       <Alert color="red" variant="light" radius={0} icon={<IconLock size={18} aria-hidden />} title="You are logged out" styles={READABLE} role="alert">
-        The server has new keys. Open the address that <code>flexcell serve</code> printed, or <a href="/login">log in</a>.
+        Your session has ended. Open the address that <code>flexcell login</code> prints, or <a href="/login" target="_blank">log in</a> in
+        another tab: this page then goes on, and keeps what is not saved.
       </Alert>
     )
   }
