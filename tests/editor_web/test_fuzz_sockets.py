@@ -139,7 +139,7 @@ async def test_no_frame_that_is_none_leaves_a_trace(
         async with opened(served, path, served.cookie) as wire:
             wire.transport.write(frame)
             wire.transport.write_eof()
-            wire.transport.abort()
+            await closed(wire)
         assert (await served.http.get("/api/v1/session")).status_code == 200
     require_calm(caplog)
 
