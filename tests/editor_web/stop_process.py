@@ -82,7 +82,7 @@ class StopProcess:
             do_POST = _take  # noqa: N815 - the library finds it by this name
             do_OPTIONS = _take  # noqa: N815 - the same
 
-            def log_message(self, *args: object) -> None:
+            def log_message(self, format: str, *args: object) -> None:  # noqa: A002 - the library's name
                 """Say nothing."""
 
         return Handler
@@ -99,7 +99,8 @@ def tell_of_stop(page: Page, stop: StopProcess) -> None:
             route.fulfill(response=told)
 
     # A document that a test fulfills is of no address space, and Chromium lets it reach no loopback port.
-    page.context.new_cdp_session(page).send("Page.setBypassCSP", {"enabled": True})
+    session_of_browser = page.context.new_cdp_session(page)
+    session_of_browser.send("Page.setBypassCSP", {"enabled": True})  # pyright: ignore[reportUnknownMemberType]
     page.route("**/api/v1/session", session)
     page.reload()
     # It stands there once the page knows its session, which it keeps from then on.

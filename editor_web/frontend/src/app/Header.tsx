@@ -44,7 +44,7 @@ export function Header({ cellName, mayOperate, shown, active, onHome, isTeaching
       {cellName && <span className="cell-name">{cellName}</span>}
       <PageLink href={TEACH_HREF} className="header-link" isCurrent={isTeaching} onOpen={onTeach}>
         <IconHandFinger size={16} aria-hidden />
-        Teach
+        <span className="header-link-words">Teach</span>
       </PageLink>
       <ConnectionLabel />
       <span className="spacer" />
@@ -84,10 +84,9 @@ function StopButton({ run }: { run: RunLine }) {
   return (
     <Tooltip label={isConnected ? (problem ?? 'The robots decelerate to rest') : 'Not possible: the server does not answer. Stop the cell works'}>
       <Button
-        color="red.8"
-        variant="outline"
+        variant="default"
         size="xs"
-        leftSection={<IconPlayerStopFilled size={14} aria-hidden />}
+        leftSection={<IconPlayerStopFilled size={14} color="var(--failed)" aria-hidden />}
         disabled={isStopping || !isConnected}
         onClick={() => {
           api.stop(run.id).then(

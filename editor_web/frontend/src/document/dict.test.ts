@@ -1,4 +1,4 @@
-/** Names that every object inherits are names as any other. */
+/** Names that every object inherits are names like all others. */
 import { describe, expect, it } from 'vitest'
 import { lookup, without, type Dict } from './dict'
 import { withChild } from './editing/rules'

@@ -1,4 +1,4 @@
-/** Dictionaries whose keys are names that people choose: `constructor` and `__proto__` are names as any other. Pure. */
+/** Dictionaries whose keys are names that people choose: `constructor` and `__proto__` are names like all others. Pure. */
 
 /** Every key that is written in our own sources. A `string` is none of them. */
 type Literal = `${any}`
