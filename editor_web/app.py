@@ -168,6 +168,8 @@ def _version() -> str:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     services: Services = app.state.services
+    # Routes are built at first use, which would hold the event loop for a second while arms move.
+    await asyncio.to_thread(app.openapi)
     services.hub.open()
     await services.hub.robots.open()
     services.hub.documents.open()
