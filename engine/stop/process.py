@@ -45,6 +45,8 @@ _READ_BYTES = 65536
 _MAX_DESCRIPTORS = 16
 GRACE_S = 0.1
 """How long the engine may take to answer a question; the lines are told of a signal after that."""
+NOTE_S = 0.05
+"""How long an answer to STOP waits for the engine; a later one finds it in the status."""
 ACKNOWLEDGE_S = 0.2
 """How long an answer to STOP waits for the devices."""
 LINGER_S = 5.0
@@ -114,7 +116,7 @@ class Relay:
     async def stopped(self, reason: str) -> StopStatus:
         """Stop, and return the status once all have acknowledged and the engine was heard, or is late."""
         number = self.stop(reason, "http")
-        late_s = self._since_s + GRACE_S
+        late_s = self._since_s + NOTE_S
         await self._until(lambda: self._engine_informed or self._loop.time() >= late_s, late_s)
         give_up_s = self._since_s + ACKNOWLEDGE_S
         await self._until(lambda: self.status().acknowledged or self._newest.stop != number, give_up_s)

@@ -1,0 +1,155 @@
+"""How long STOP takes: `python -P -m benchmarks.stop [--trials N] [--paths http cli signal] [--conditions …]`.
+
+A real `flexcell serve` moves an arm; STOP is given over the relay's HTTP port (as the page does), by `flexcell stop`,
+or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or holding the interpreter),
+200 clients ask all the time, or the engine is suspended or killed. Told are the times until STOP is acknowledged and
+until the world's own process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Generator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import httpx
+import numpy as np
+
+from benchmarks.stop_server import Server, server
+
+_FLEXCELL = Path(sys.executable).with_name("flexcell")
+_BLOCK_S = 1.0
+_INTO_S = 0.03
+CONDITIONS = ("free", "state", "interpreter", "clients", "suspended", "killed")
+PATHS = ("http", "cli", "signal")
+# A suspended process gets no signal, and a killed one neither.
+_SENSELESS = {("signal", "suspended"), ("signal", "killed")}
+_HOW = {"state": "sleep", "interpreter": "hold"}
+
+
+@dataclass(kw_only=True)
+class Times:
+    """What was measured of one path under one condition, in seconds from STOP."""
+
+    path: str
+    condition: str
+    acknowledged_s: list[float] = field(default_factory=list[float])
+    at_rest_s: list[float] = field(default_factory=list[float])
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--trials", type=int, default=100)
+    parser.add_argument("--paths", nargs="+", choices=PATHS, default=PATHS)
+    parser.add_argument("--conditions", nargs="+", choices=CONDITIONS, default=CONDITIONS)
+    options = parser.parse_args()
+    print(f"{'path':8}{'engine is':14}{'n':>5}  {'acknowledged ms p50/p99/max':>30}  {'at rest ms p50/p99/max':>28}")
+    for path in options.paths:
+        for condition in options.conditions:
+            if (path, condition) not in _SENSELESS:
+                _print(_measure(path, condition, options.trials))
+
+
+def _measure(path: str, condition: str, trials: int) -> Times:
+    times = Times(path=path, condition=condition)
+    ends = condition == "killed" or path == "signal"
+    with tempfile.TemporaryDirectory() as folder:
+        if ends:
+            for number in range(trials):
+                with server(Path(folder) / str(number)) as running:
+                    _trial(running, times)
+        else:
+            with server(Path(folder) / "one") as running:
+                for _ in range(trials):
+                    _trial(running, times)
+                    running.signal(signal.SIGCONT)
+                    running.wait_until_idle()
+    return times
+
+
+def _trial(running: Server, times: Times) -> None:
+    with _clients(running) if times.condition == "clients" else ExitStack():
+        running.start_run(_HOW.get(times.condition, "none"), _BLOCK_S)
+        match times.condition:
+            case "suspended":
+                running.signal(signal.SIGSTOP)
+            case "killed":
+                running.signal(signal.SIGKILL)
+            case _:
+                pass
+        time.sleep(_INTO_S)
+        began_s = time.monotonic()
+        acknowledged = _ACKNOWLEDGED[times.path](running)
+        times.acknowledged_s.append(acknowledged - began_s)
+        times.at_rest_s.append(max(0.0, running.resting_since_s() - began_s))
+
+
+def _over_http(running: Server) -> float:
+    body = json.dumps({"token": running.record["stop_token"], "reason": "benchmark"})
+    answer = httpx.post(running.record["stop_url"], content=body, timeout=10.0, trust_env=False)
+    assert answer.json()["acknowledged"], answer.text
+    return time.monotonic()
+
+
+def _by_command(running: Server) -> float:
+    command = [_FLEXCELL, "stop", "--state", running.state]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        said_s = time.monotonic()
+        process.communicate()
+    assert line.startswith(b"STOP acknowledged"), line
+    return said_s
+
+
+def _by_signal(running: Server) -> float:
+    log = running.folder / "log"
+    before = log.stat().st_size
+    running.signal(signal.SIGINT)
+    while b"robots" not in log.read_bytes()[before:]:
+        time.sleep(0.001)
+    return time.monotonic()
+
+
+_ACKNOWLEDGED: dict[str, Callable[[Server], float]] = {
+    "http": _over_http,
+    "cli": _by_command,
+    "signal": _by_signal,
+}
+
+
+@contextmanager
+def _clients(running: Server) -> Generator[None]:
+    url = httpx.URL(running.record["url"])
+    command = [sys.executable, "-m", "benchmarks.stop_clients", url.host, str(url.port), running.record["token"]]
+    process = subprocess.Popen(command, env=dict(os.environ), stderr=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def _print(times: Times) -> None:
+    columns = [_row(times.acknowledged_s), _row(times.at_rest_s)]
+    count = len(times.acknowledged_s)
+    print(f"{times.path:8}{times.condition:14}{count:5}  {columns[0]:>30}  {columns[1]:>28}", flush=True)
+
+
+def _row(values_s: list[float]) -> str:
+    p50, p99 = np.percentile(values_s, (50, 99)) * 1000.0
+    return f"{p50:.0f} / {p99:.0f} / {max(values_s) * 1000.0:.0f}"
+
+
+if __name__ == "__main__":
+    main()

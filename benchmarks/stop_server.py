@@ -1,0 +1,157 @@
+"""A real `flexcell serve` with a moving arm, for `benchmarks/stop.py`: started, blocked, frozen, killed, looked at."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from benchmarks.process_cpu import descendants
+from robots.port.heartbeat import Heartbeat
+
+_ROOT = Path(__file__).parents[1]
+_FLEXCELL = Path(sys.executable).with_name("flexcell")
+_MOVING_S = 0.4
+_LOOK_S = 0.002
+
+CELL = """
+flexcell: 1
+cell: stop
+world: {kind: mujoco, step_s: 0.001}
+robots:
+  left: {model: panda, driver: sim, base: {xyz: [0, 0, 0], rpy: [0, 0, 0]}}
+"""
+BEHAVIOR = """
+flexcell: 1
+name: swing
+cell: cell.yaml
+parameters:
+  how: {type: string, default: none}
+  for_s: {type: number, default: 1.0}
+  tell: {type: string, default: ""}
+outcomes: [ended]
+success: [ended]
+root:
+  concurrency:
+    states:
+      arm:
+        machine:
+          initial: there
+          states:
+            there:
+              state: motion.MoveJoints
+              with: {robot: left, target: [1.2, -0.4, 0, -2.2, 0, 1.8, 0.8], speed: 0.4}
+              transitions: {reached: back, failed: ended}
+            back:
+              state: motion.MoveJoints
+              with: {robot: left, target: [-1.2, -0.4, 0, -2.2, 0, 1.8, 0.8], speed: 0.4}
+              transitions: {reached: there, failed: ended}
+      block:
+        state: stop_states:Block
+        with: {how: "${how}", after_s: AFTER, for_s: "${for_s}", tell: "${tell}"}
+    conditions:
+      - {ended: {arm: ended}}
+      - {ended: {block: done}}
+"""
+
+
+class Server:
+    """One server and its processes."""
+
+    def __init__(self, process: subprocess.Popen[bytes], folder: Path) -> None:
+        self.process = process
+        self.folder = folder
+        self.record: dict[str, Any] = json.loads((folder / "state" / "server.json").read_bytes())
+        self._http = httpx.Client(
+            base_url=self.record["url"],
+            headers={"Authorization": f"Bearer {self.record['token']}"},
+            timeout=60.0,
+            trust_env=False,
+        )
+        world = [pid for pid in descendants(process.pid) if b"sim.process_main" in _command(pid)]
+        self.heartbeat = Heartbeat.of_process(world[0])
+
+    @property
+    def state(self) -> Path:
+        """Its state folder."""
+        return self.folder / "state"
+
+    def start_run(self, how: str, for_s: float) -> None:
+        """Start the arm and return when it moves, just before the loop is blocked in this way."""
+        tell = self.folder / "moving"
+        tell.write_bytes(b"")
+        parameters = {"how": how, "for_s": for_s, "tell": str(tell)}
+        body = {"behavior": "behaviors/swing.yaml", "parameters": parameters, "seed": 1}
+        self._http.post("/api/v1/runs", json=body).raise_for_status()
+        while not tell.read_bytes():
+            time.sleep(_LOOK_S)
+
+    def wait_until_idle(self) -> None:
+        """Wait until no run is under way and the devices take motions again."""
+        while any(run["status"] in ("running", "stopping") for run in self._http.get("/api/v1/runs").json()):
+            time.sleep(0.02)
+
+    def resting_since_s(self) -> float:
+        """Wait until the world's own process measures rest and return since when, on the monotonic clock."""
+        while not (since_ns := self.heartbeat.at_rest_since_ns):
+            time.sleep(_LOOK_S)
+        return since_ns / 1e9
+
+    def signal(self, number: signal.Signals) -> None:
+        """Send a signal to the engine's process."""
+        os.kill(self.process.pid, number)
+
+    def close(self) -> None:
+        """Close what looks at it."""
+        self._http.close()
+        self.heartbeat.close()
+
+
+@contextmanager
+def server(folder: Path) -> Generator[Server]:
+    """Start a server in a new project and kill what is left of it at the end."""
+    _write_project(folder)
+    command = [_FLEXCELL, "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state", "--no-record"]
+    with (folder / "log").open("wb") as log:
+        process = subprocess.Popen(
+            command, cwd=folder, stdout=subprocess.PIPE, stderr=log, env={**os.environ, "PYTHONPATH": str(_ROOT)}
+        )
+    assert process.stdout is not None
+    try:
+        for line in process.stdout:
+            if line.startswith(b"Dashboard:"):
+                break
+        running = Server(process, folder)
+        try:
+            yield running
+        finally:
+            running.close()
+    finally:
+        process.kill()
+        process.wait()
+        process.stdout.close()
+
+
+def _write_project(folder: Path) -> None:
+    (folder / "behaviors").mkdir(parents=True)
+    (folder / "behaviors" / "cell.yaml").write_text(CELL, encoding="utf-8")
+    (folder / "behaviors" / "swing.yaml").write_text(BEHAVIOR.replace("AFTER", str(_MOVING_S)), encoding="utf-8")
+    (folder / "flexcell.yaml").write_text("flexcell: 1\nstates: [stop_states]\n", encoding="utf-8")
+    shutil.copy(Path(__file__).with_name("stop_states.py"), folder / "stop_states.py")
+
+
+def _command(pid: int) -> bytes:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_bytes()
+    except OSError:
+        return b""
