@@ -39,6 +39,11 @@ class Desk:
         self._sheets: OrderedDict[tuple[Path, str], _Sheet] = OrderedDict()
         self._lock = threading.Lock()
 
+    @property
+    def kept_characters(self) -> int:
+        """Length of the texts that are kept."""
+        return sum(len(text) for _, text in self._sheets)
+
     def draw(self, text: str, *, file: Path, knowledge: Knowledge) -> Examination:
         """Read and draw a text; what is wrong with it is looked for only where it cannot be read."""
         with collection_paused():
@@ -97,4 +102,4 @@ class Desk:
         return drawn
 
     def _too_much(self) -> bool:
-        return len(self._sheets) > self._kept or sum(len(text) for _, text in self._sheets) > KEPT_CHARACTERS
+        return len(self._sheets) > self._kept or self.kept_characters > KEPT_CHARACTERS

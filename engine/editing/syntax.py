@@ -47,7 +47,7 @@ class Member:
     stop: int
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Collection:
     """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
 
