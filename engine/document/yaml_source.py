@@ -19,6 +19,7 @@ from typing import NoReturn, Protocol, cast
 
 import yaml
 
+from engine.document.text_portions import TextPortions
 from engine.errors import DocumentError, Position
 
 MAX_BYTES = 2_000_000
@@ -202,24 +203,9 @@ class _Event(Protocol):
     tags: dict[str, str] | None
 
 
-class _Portions:
-    """A text in portions: between two of them other threads have a turn, also inside of a very long scalar."""
-
-    name = "document"
-
-    def __init__(self, text: str) -> None:
-        self._data = text.encode()
-        self._index = 0
-
-    def read(self, size: int) -> bytes:
-        """Return the next bytes."""
-        self._index += size
-        return self._data[self._index - size : self._index]
-
-
 def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     # PyYAML's C parser is untyped: the cast contains it here.
-    parser = yaml.CSafeLoader(_Portions(text))
+    parser = yaml.CSafeLoader(TextPortions(text))
     next_event = cast(Callable[[], _Event | None], parser.get_event)
     try:
         while (event := next_event()) is not None:

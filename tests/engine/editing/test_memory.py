@@ -6,7 +6,7 @@ import weakref
 from pathlib import Path
 
 from engine.document.collection_pause import collection_paused
-from engine.editing.desk import KEPT_CHARACTERS, Desk
+from engine.editing.desk import KEPT_ENTRIES, Desk
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Knowledge
 
@@ -23,10 +23,10 @@ def test_a_draft_has_no_cycles() -> None:
 
 
 def test_of_long_texts_only_the_last_are_kept(tmp_path: Path) -> None:
-    """Their length together is bounded."""
+    """What they hold together is bounded."""
     desk = Desk()
     knowledge = Knowledge({}, tmp_path, tmp_path)
     for letter in "abc":
-        text = f"{TEXT}{letter * (KEPT_CHARACTERS // 2)}}}\n"
+        text = f"{TEXT}{letter}}}\n" + "\n" * (KEPT_ENTRIES // 2)
         desk.draw(text, file=tmp_path / "x.yaml", knowledge=knowledge)
-    assert desk.kept_characters <= KEPT_CHARACTERS
+    assert desk.kept_entries <= KEPT_ENTRIES
