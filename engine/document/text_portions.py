@@ -13,7 +13,7 @@ class TextPortions:
         self._data = text.encode()
         self._index = 0
 
-    def read(self, size: int) -> bytes:
+    def read(self, size: int = 65_536, /) -> bytes:
         """Return the next bytes."""
         self._index += size
         return self._data[self._index - size : self._index]
