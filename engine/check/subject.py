@@ -157,7 +157,8 @@ def template(value: object) -> Template | ExpressionError:
     try:
         return compile_template(value)
     except ExpressionError as error:
-        return error
+        # Without its traceback, whose frames would keep all that is being looked at.
+        return ExpressionError(error.message, where=error.where, hint=error.hint)
 
 
 def leaf_success(placed: Placed, subject: Subject) -> frozenset[str]:

@@ -46,7 +46,10 @@ def _atom(pattern: str, index: int) -> tuple[int, float]:
     character = pattern[index]
     if character == "\\":
         escaped = pattern[index + 1 : index + 2]
-        return index + 2, _MANY if escaped in ("p", "P") else _OPEN
+        if escaped not in ("p", "P"):
+            return index + 2, _OPEN
+        named = pattern.find("}", index) if pattern.startswith("{", index + 2) else index + 2
+        return (named if named >= 0 else len(pattern)) + 1, _MANY
     if character == "[":
         end = index + 2
         while end < len(pattern) and pattern[end] != "]":

@@ -64,10 +64,12 @@ def _require_names(behavior: Behavior) -> None:
             raise DocumentError(f"`{name}` is a parameter and a userdata key", where=where, hint="rename one of them")
     for key in ("outcomes", "success"):
         names: tuple[str, ...] = getattr(document, key)
+        known: set[str] = set()
         for index, name in enumerate(names):
-            if name in names[:index]:
+            if name in known:
                 where = behavior.source.position((key, index))
                 raise DocumentError(f"`{name}` is repeated in `{key}`", where=where, hint="remove it")
+            known.add(name)
 
 
 def _require_one_kind(behavior: Behavior, path: str, node: Node) -> None:

@@ -93,10 +93,9 @@ def measure(value: object, *, name: str) -> Size:
     Raises:
         ExpressionError: it is too large, nested too deeply, or of a type that no document value has.
     """
-    if isinstance(value, str):
-        literal = value if len(value) <= _MAX_LITERAL else None
-        return text_size(len(value), literal)
-    return _Measuring(name).level([value], 0)
+    found = _Measuring(name).level([value], 0)
+    short = isinstance(value, str) and len(value) <= _MAX_LITERAL
+    return found._replace(literal=value) if short else found
 
 
 class _Measuring:

@@ -19,6 +19,7 @@ from typing import NoReturn, Protocol, cast
 
 import yaml
 
+from engine.document.text_portions import TextPortions
 from engine.errors import DocumentError, Position
 
 MAX_BYTES = 2_000_000
@@ -204,7 +205,7 @@ class _Event(Protocol):
 
 def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     # PyYAML's C parser is untyped: the cast contains it here.
-    parser = yaml.CSafeLoader(text)
+    parser = yaml.CSafeLoader(TextPortions(text))
     next_event = cast(Callable[[], _Event | None], parser.get_event)
     try:
         while (event := next_event()) is not None:

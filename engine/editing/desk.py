@@ -19,8 +19,8 @@ from engine.library import FindingView
 
 KEPT = 6
 """So many texts are kept: the last steps of a few pages; one of 1,000 states takes some 10 MB."""
-KEPT_CHARACTERS = 1_000_000
-"""Length of the kept texts together; the newest is kept whatever its length."""
+KEPT_ENTRIES = 60_000
+"""Entries in the kept texts together, each of some 500 bytes; the newest text is kept whatever it has."""
 
 
 @dataclass
@@ -38,6 +38,11 @@ class Desk:
         self._kept = kept
         self._sheets: OrderedDict[tuple[Path, str], _Sheet] = OrderedDict()
         self._lock = threading.Lock()
+
+    @property
+    def kept_entries(self) -> int:
+        """Entries in the texts that are kept, counted by their separators."""
+        return sum(text.count("\n") + text.count(",") for _, text in self._sheets)
 
     def draw(self, text: str, *, file: Path, knowledge: Knowledge) -> Examination:
         """Read and draw a text; what is wrong with it is looked for only where it cannot be read."""
@@ -97,4 +102,4 @@ class Desk:
         return drawn
 
     def _too_much(self) -> bool:
-        return len(self._sheets) > self._kept or sum(len(text) for _, text in self._sheets) > KEPT_CHARACTERS
+        return len(self._sheets) > self._kept or self.kept_entries > KEPT_ENTRIES

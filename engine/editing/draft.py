@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from engine.editing.matching import same
 from engine.editing.rewriting import Rewriter
-from engine.editing.syntax import Collection, Origin, read_syntax
+from engine.editing.syntax import Collection, Origin, SyntaxTree, read_syntax
 from engine.errors import DocumentError, FlexcellError
 
 
@@ -31,17 +31,21 @@ class Draft:
         self.file = file
         self.given = text
         self._newline = "\r\n" if "\r\n" in text and "\n" not in text.replace("\r\n", "") else "\n"
-        self._origin = read_syntax(self._plain(text), file=file)
+        self._tree = read_syntax(self._plain(text), file=file)
         self._sources: dict[int, Collection] = {}
         self._kept: list[object] = []
-        self._take(self._origin)
-        root = cast("Collection", self._origin.root)
+        self._take(self._tree)
+        root = cast("Collection", self._tree.root)
         self.data = cast("dict[str, object]", root.data)
 
     @property
     def origin(self) -> Origin:
         """The text as it was read, with its spans."""
-        return self._origin
+        return self._tree.origin
+
+    def collections(self) -> Iterator[Collection]:
+        """Go through every collection as it was read, those outside first."""
+        return self._tree.collections()
 
     @property
     def sources(self) -> Mapping[int, Collection]:
@@ -51,7 +55,7 @@ class Draft:
     @property
     def json(self) -> bool:
         """True where it is JSON."""
-        return self._origin.json
+        return self._tree.origin.json
 
     def adopt(self, text: str) -> dict[str, object]:
         """Read other YAML, a mapping, whose text comes along wherever its parts are put.
@@ -91,7 +95,7 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than was asked for.
         """
-        made = Rewriter(self._sources, self.json).document(self._origin, self.data)
+        made = Rewriter(self._sources, self.json).document(self._tree, self.data)
         # What ends with a line feed cannot be shown on a last line without one.
         again = self._read_back(made) or self._read_back(made + "\n")
         if again is None:
@@ -110,8 +114,8 @@ class Draft:
     def _plain(self, text: str) -> str:
         return text.replace("\r\n", "\n") if self._newline != "\n" else text
 
-    def _take(self, origin: Origin) -> None:
-        for found in origin.collections():
+    def _take(self, tree: SyntaxTree) -> None:
+        for found in tree.collections():
             self._sources[id(found.data)] = found
             self._kept.append(found.data)
 

@@ -112,7 +112,7 @@ class _Drawing:
         self._ends: dict[str, Ends] = {}
         self._places = {
             id(member.value): member.at
-            for found in draft.origin.collections()
+            for found in draft.collections()
             for member in found.members
             if isinstance(member.value, Collection)
         }

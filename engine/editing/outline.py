@@ -142,15 +142,15 @@ def own_name(node: Plain) -> str:
 
 def tree_names(children: list[Plain]) -> list[str]:
     """Name the children of a composite; a name that is taken gets a number."""
-    names: list[str] = []
+    names: dict[str, None] = {}
     seen: dict[str, int] = {}
     for child in children:
         own = name = own_name(child)
         while name in names:
             seen[own] = seen.get(own, 1) + 1
             name = f"{own}_{seen[own]}"
-        names.append(name)
-    return names
+        names[name] = None
+    return list(names)
 
 
 def leads(node: Plain) -> Iterator[tuple[Plain, str, str]]:

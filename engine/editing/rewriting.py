@@ -15,7 +15,7 @@ from typing import cast
 from engine.document.node import KINDS, TREE_KINDS
 from engine.editing.matching import Pair, pairs, same
 from engine.editing.notation import flow_text, key_text, literal_text, scalar_text
-from engine.editing.syntax import Collection, Member, Origin, Scalar, Syntax
+from engine.editing.syntax import Collection, Member, Origin, Scalar, Syntax, SyntaxTree
 
 WIDTH = 120
 """Columns up to which a new value stands on one line."""
@@ -61,9 +61,9 @@ class Rewriter:
     _blocks: dict[int, bool] = field(default_factory=dict[int, bool])
     _whole: dict[int, bool] = field(default_factory=dict[int, bool])
 
-    def document(self, origin: Origin, data: dict[str, object]) -> str:
-        """Return the text of `origin` with `data` in place of its own."""
-        root = origin.root
+    def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
+        """Return the text of a tree with `data` in place of its own."""
+        origin, root = tree.origin, tree.root
         column = root.column if isinstance(root, Collection) else 0
         written = self.value(data, Place(column, origin.indent_at(root.start), self.json))
         return origin.text[: root.start] + written.text + origin.text[root.end :]
@@ -228,8 +228,7 @@ class Rewriter:
     def _home_of(self, origin: Collection) -> tuple[Collection, Member] | None:
         """Return the entry that a collection of a text was."""
         if not self._homes:
-            origins = {id(each.origin): each.origin for each in self.sources.values()}
-            for collection in (c for each in origins.values() for c in each.collections()):
+            for collection in self.sources.values():
                 for member in collection.members:
                     self._homes[id(member.value)] = (collection, member)
         return self._homes.get(id(origin))

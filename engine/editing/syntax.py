@@ -47,7 +47,7 @@ class Member:
     stop: int
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Collection:
     """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
 
@@ -70,11 +70,23 @@ Syntax = Scalar | Collection
 
 @dataclass(slots=True, eq=False)
 class Origin:
-    """A text that was read: `root` is its outermost value."""
+    """A text that was read. It knows nothing of what stands in it, so that a tree goes as soon as nobody needs it."""
 
     text: str
     json: bool
-    root: Syntax = field(default_factory=lambda: Scalar(0, 0, None, ""))
+
+    def indent_at(self, offset: int) -> int:
+        """Return the indentation of the line that `offset` is in."""
+        start = self.text.rfind("\n", 0, offset) + 1
+        return len(self.text) - start - len(self.text[start:].lstrip(" ")) if start < len(self.text) else 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SyntaxTree:
+    """A text and its outermost value."""
+
+    origin: Origin
+    root: Syntax
 
     def collections(self) -> Iterator[Collection]:
         """Go through every collection, those outside first."""
@@ -84,11 +96,6 @@ class Origin:
             if isinstance(found, Collection):
                 yield found
                 due += [member.value for member in found.members]
-
-    def indent_at(self, offset: int) -> int:
-        """Return the indentation of the line that `offset` is in."""
-        start = self.text.rfind("\n", 0, offset) + 1
-        return len(self.text) - start - len(self.text[start:].lstrip(" ")) if start < len(self.text) else 0
 
 
 class _Mark(Protocol):
@@ -104,7 +111,7 @@ class _Event(Protocol):
     flow_style: bool
 
 
-def read_syntax(text: str, *, file: str) -> Origin:
+def read_syntax(text: str, *, file: str) -> SyntaxTree:
     """Read YAML or JSON text with lines that end in a line feed.
 
     Raises:
@@ -116,10 +123,9 @@ def read_syntax(text: str, *, file: str) -> Origin:
     if not isinstance(reading.source().data, dict) or found is None:
         where = Position(file=file, line=1, column=1)
         raise DocumentError("the document is no mapping", where=where, hint="begin with `flexcell: 1`")
-    origin.root = found
     # A file may be called `.json` and hold YAML, which the reader takes: then it goes on as YAML.
-    origin.json = origin.json and isinstance(origin.root, Collection) and origin.root.flow
-    return origin
+    origin.json = origin.json and isinstance(found, Collection) and found.flow
+    return SyntaxTree(origin, found)
 
 
 class _Reader:

@@ -1,4 +1,4 @@
-"""No document keeps the loop: costly expressions, repetitions and rounds let everybody else have a turn, or are refused."""
+"""No document keeps the loop: costly expressions, repetitions and rounds give way, or are refused."""
 
 from __future__ import annotations
 

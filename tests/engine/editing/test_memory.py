@@ -1,0 +1,32 @@
+"""Texts under edit are given back as soon as nobody needs them, and few are kept."""
+
+from __future__ import annotations
+
+import weakref
+from pathlib import Path
+
+from engine.document.collection_pause import collection_paused
+from engine.editing.desk import KEPT_ENTRIES, Desk
+from engine.editing.draft import Draft
+from engine.editing.knowledge import Knowledge
+
+TEXT = "flexcell: 1\nname: x\noutcomes: [a]\nroot: {state: flow.Wait, with: {duration_s: 1}, description: "
+
+
+def test_a_draft_has_no_cycles() -> None:
+    """Without the collector nothing of it is left."""
+    with collection_paused():
+        draft = Draft(f"{TEXT}x}}\n", file="x.yaml")
+        left = [weakref.ref(draft), *(weakref.ref(found) for found in draft.collections())]
+        del draft
+        assert [each() for each in left] == [None] * len(left)
+
+
+def test_of_long_texts_only_the_last_are_kept(tmp_path: Path) -> None:
+    """What they hold together is bounded."""
+    desk = Desk()
+    knowledge = Knowledge({}, tmp_path, tmp_path)
+    for letter in "abc":
+        text = f"{TEXT}{letter}}}\n" + "\n" * (KEPT_ENTRIES // 2)
+        desk.draw(text, file=tmp_path / "x.yaml", knowledge=knowledge)
+    assert desk.kept_entries <= KEPT_ENTRIES
