@@ -31,7 +31,7 @@ def served_page(
     (folder / "behaviors").mkdir()
     (folder / NAP_ID).write_text(NAP, encoding="utf-8")
     with started("serve", "--host", loopback, "--port", "0", cwd=folder) as server:
-        served = dashboard_of(server)
+        served = dashboard_of(server, folder / ".flexcell")
         with (
             StopProcess(host=loopback, origin=served.url.rstrip("/")) as stop,
             opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page,
@@ -62,6 +62,24 @@ def test_stop_goes_through_while_the_engine_is_frozen(browser: Browser, tmp_path
     assert (first.method, first.content_type) == ("POST", "text/plain")
     assert first.body == {"token": stop.token, "reason": "the cell was stopped in the dashboard"}
     assert {each.method for each in stop.asked} == {"POST"}
+
+
+def test_the_relay_of_a_frozen_server_answers_its_page(browser: Browser, tmp_path: Path, loopback: str) -> None:
+    """The real one, under the real policy of the page: nothing stands in."""
+    (tmp_path / "behaviors").mkdir()
+    (tmp_path / NAP_ID).write_text(NAP, encoding="utf-8")
+    with started("serve", "--host", loopback, "--port", "0", cwd=tmp_path) as server:
+        served = dashboard_of(server, tmp_path / ".flexcell")
+        with opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page:
+            expect(stop_button(page)).to_be_visible()
+            server.send_signal(signal.SIGSTOP)
+            try:
+                stop_button(page).click()
+                expect(stop_news(page)).to_contain_text("Stop acknowledged")
+                expect(stop_news(page)).to_contain_text("Engine does not answer (silent since ")
+            finally:
+                os.kill(server.pid, signal.SIGCONT)
+            expect(stop_news(page)).not_to_contain_text("Engine does not answer")
 
 
 def test_stop_goes_through_after_the_engine_has_died(browser: Browser, tmp_path: Path, loopback: str) -> None:
