@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import struct
 from collections import Counter
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager
@@ -126,11 +127,13 @@ class JournalSnapshot:
         row = self._row(run_id)
         chain, last, allowed = chain_start(run_id), 0, stored_bytes(self.path)
         for found in self._connection.execute(f"{self._events} ORDER BY seq", (run_id,)):
-            event = self._typed(found, EventRow, what=f"the event after {last} of run {run_id}")
+            # What has the right checksum has the right types; only the others must be looked at.
+            event = EventRow(*found) if row.since == 1 else self._typed(found, EventRow, what=_after(last, run_id))
+            chain = self._verified(row, event, chain)
             allowed -= len(event.data)
             if allowed < 0:
                 raise self._damaged(f"run {run_id} has more text than the whole file holds")
-            chain, last = self._verified(row, event, chain), event.seq
+            last = event.seq
             yield self._decoded(event)
         if row.since and row.chain != chain:
             raise self._damaged(f"the events of run {run_id} end at {last}, and {row.seq} was the last")
@@ -215,9 +218,12 @@ class JournalSnapshot:
 
     def _verified(self, row: RunRow, event: EventRow, before: bytes) -> bytes:
         """Return what the event after this one is chained to."""
-        checked = row.since is not None and 0 < row.since <= event.seq
-        wanted = event.chained(before) if checked else None
-        if (event.run, event.checksum) != (row.id, wanted):
+        try:
+            checked = row.since is not None and 0 < row.since <= event.seq
+            wanted = event.chained(before) if checked else None
+        except (TypeError, OverflowError, struct.error) as error:
+            raise self._damaged(f"an event of run {row.id} is damaged: {error}") from error
+        if event.checksum != wanted or event.run != row.id:
             raise self._damaged(f"event {event.seq} of run {row.id} is damaged or out of place: its checksum is wrong")
         return wanted or before
 
@@ -239,6 +245,10 @@ class JournalSnapshot:
 
     def _damaged(self, what: str) -> JournalError:
         return JournalError(what, where=self.path, hint=DAMAGE_HINT)
+
+
+def _after(seq: int, run: str) -> str:
+    return f"the event after {seq} of run {run}"
 
 
 @contextmanager

@@ -173,8 +173,8 @@ async def test_the_same_sequence_number_twice_is_refused(tmp_path: Path, inline:
 
 
 @BOTH
-async def test_a_locked_file_fails_this_commit_and_all_later_ones(tmp_path: Path, inline: bool) -> None:
-    """A failed journal stays failed, even when the lock goes away: events are missing in it."""
+async def test_a_locked_file_fails_the_run_for_good_and_no_other(tmp_path: Path, inline: bool) -> None:
+    """What lost events stays failed when the lock goes away; what lost none goes on, and the next run begins."""
     with Journal.open(tmp_path, inline=inline, busy_timeout_s=0.01) as journal:
         run, other, idle = (begun(journal, f"run-{n}") for n in (1, 2, 3))
         thief = sqlite3.connect(journal.path, isolation_level=None)
@@ -184,14 +184,35 @@ async def test_a_locked_file_fails_this_commit_and_all_later_ones(tmp_path: Path
             JournalError, match=r"journal\.db: the journal cannot be written: .*locked.*end that program"
         ):
             await run.commit()
-        thief.close()
-        other.append(said(1))
-        for run_journal in (run, other, idle):
-            with pytest.raises(JournalError, match="locked"):
-                await run_journal.commit()
         with pytest.raises(JournalError, match="locked"):
             begun(journal, "run-4")
-    assert [record.last_seq for record in list_runs(tmp_path)] == [0, 0, 0]
+        thief.close()
+        for run_journal in (run, other, idle):
+            run_journal.append(said(2 if run_journal is run else 1))
+        await other.commit()
+        await idle.commit()
+        with pytest.raises(JournalError, match="locked"):
+            await run.commit()
+        begun(journal, "run-4")
+    assert [record.last_seq for record in list_runs(tmp_path)] == [0, 1, 1, 0]
+
+
+@BOTH
+async def test_a_failure_that_no_commit_waits_for_is_told(tmp_path: Path, inline: bool) -> None:
+    """A run that only waits hears of it from the commit of another, or from the writer by itself."""
+    heard: asyncio.Queue[JournalError] = asyncio.Queue()
+    with Journal.open(tmp_path, inline=inline, busy_timeout_s=0.01) as journal:
+        waiting, other = begun(journal, "run-1"), begun(journal, "run-2")
+        waiting.on_failure(heard.put_nowait)
+        thief = sqlite3.connect(journal.path, isolation_level=None)
+        thief.execute("BEGIN IMMEDIATE")
+        waiting.append(said(1))
+        other.append(said(1))
+        with pytest.raises(JournalError, match="locked"):
+            await other.commit()
+        assert "locked" in (await asyncio.wait_for(heard.get(), 30)).message
+        thief.close()
+    assert heard.empty()
 
 
 def test_closing_reports_a_failure_that_no_commit_had_reported(tmp_path: Path) -> None:
