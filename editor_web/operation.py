@@ -67,7 +67,7 @@ class Operation(Protocol):
         """
         ...
 
-    def change(self, run_id: str) -> ChangeReport:
+    async def change(self, run_id: str) -> ChangeReport:
         """Let the behavior as its file is now take the place of the one that a paused run executes.
 
         Raises:

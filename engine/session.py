@@ -261,7 +261,7 @@ class Session:
         """
         return self._operators.attach(run_id, self.control(run_id))
 
-    def change(self, run_id: str) -> ChangeReport:
+    async def change(self, run_id: str) -> ChangeReport:
         """Let the behavior as its file is now take the place of the one that a paused run executes.
 
         Raises:
@@ -270,7 +270,8 @@ class Session:
         """
         self.control(run_id)
         started = self._known(run_id)
-        _, plan = self._planned(started.behavior_id)
+        _, plan = await asyncio.to_thread(self._planned, started.behavior_id)
+        self.control(run_id)
         return started.run.change(plan)
 
     @without_collection

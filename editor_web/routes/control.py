@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, HTTPException
+from starlette.concurrency import run_in_threadpool
 
 from editor_web.control_wire import (
     AutonomyBody,
@@ -121,7 +122,7 @@ async def set_autonomy(control: ControlOf, body: AutonomyBody) -> ControlBody:
 @router.post("/{run_id}/control/breakpoints")
 async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlBody:
     """Replace all breakpoints of a run."""
-    control.set_breakpoints(made_breakpoints(body))
+    control.set_breakpoints(await run_in_threadpool(made_breakpoints, body))
     return _seen(control)
 
 
@@ -129,7 +130,7 @@ async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlB
 async def change(run_id: str, control: ControlOf, services: ServicesOf) -> ChangeBody:
     """Let the behavior as its file is now take the place of the one that a paused run executes."""
     del control
-    return ChangeBody.model_validate(services.backend.change(run_id))
+    return ChangeBody.model_validate(await services.backend.change(run_id))
 
 
 @interrupted_router.get("")

@@ -188,7 +188,7 @@ class FakeBackend:
     def operate(self, run_id: str) -> Attached:
         raise ControlError("this fake has no control", where=run_id)
 
-    def change(self, run_id: str) -> ChangeReport:
+    async def change(self, run_id: str) -> ChangeReport:
         raise ControlError("this fake has no control", where=run_id)
 
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
