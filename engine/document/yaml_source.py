@@ -25,7 +25,7 @@ from engine.errors import DocumentError, Position
 MAX_BYTES = 2_000_000
 MAX_DEPTH = 64
 MAX_NODES = 200_000
-MAX_EXPRESSIONS = 5_000
+MAX_EXPRESSIONS = 20_000
 MAX_EXPRESSION_TEXT = 100_000
 """Characters of all texts with expressions in them together."""
 DataPath = tuple[str | int, ...]

@@ -75,7 +75,7 @@ def test_the_relay_of_a_frozen_server_answers_its_page(browser: Browser, tmp_pat
             server.send_signal(signal.SIGSTOP)
             try:
                 stop_button(page).click()
-                expect(stop_news(page)).to_contain_text("Stop acknowledged")
+                expect(stop_news(page)).to_contain_text("All arms at rest")
                 expect(stop_news(page)).to_contain_text("Engine does not answer (silent since ")
             finally:
                 os.kill(server.pid, signal.SIGCONT)
