@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any, Literal
 
-from playwright.sync_api import Browser, ConsoleMessage, Locator, Page, expect
+from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Locator, Page, Route, expect
 
 import hatch_build
 from editor_web.server import Dashboard
@@ -109,3 +109,8 @@ def switch(box: Locator, *, on: bool = True) -> None:
     expect(box).to_be_enabled()
     box.press("Space")
     expect(box).to_be_checked(checked=on)
+
+
+def fetched(route: Route) -> APIResponse:
+    """Ask the server in the name of the page: a request of a test does not say where it comes from, and is refused."""
+    return route.fetch(headers={**route.request.all_headers(), "sec-fetch-site": "same-origin"})

@@ -10,6 +10,8 @@ from typing import Any, Self
 
 from playwright.sync_api import Locator, Page, Route, expect
 
+from tests.editor_web.browsing import fetched
+
 
 @dataclass(frozen=True, kw_only=True)
 class Asked:
@@ -92,7 +94,7 @@ def tell_of_stop(page: Page, stop: StopProcess) -> None:
     """Let the page of an operator know the stop process, as its server will: in the session and in its policy."""
 
     def session(route: Route) -> None:
-        told = route.fetch()
+        told = fetched(route)
         if told.ok and (body := told.json())["role"] == "operator":
             route.fulfill(response=told, json={**body, "stop": stop.channel})
         else:

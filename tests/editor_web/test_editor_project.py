@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, Route, expect
 
+from tests.editor_web.browsing import fetched
 from tests.editor_web.editing import at_editor, card, file_text, idle, save
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
 
@@ -77,7 +78,7 @@ def test_a_named_entry_is_chosen_from_those_of_its_kind_and_added_from_the_libra
     ]
 
     def with_entries(route: Route) -> None:
-        answer = route.fetch()
+        answer = fetched(route)
         route.fulfill(response=answer, body=json.dumps({**answer.json(), "entries": entries}))
 
     with at_editor(browser, shop, NAP_ID) as page:

@@ -6,7 +6,7 @@ import re
 
 from playwright.sync_api import Browser, Page, Route, expect
 
-from tests.editor_web.browsing import opened_page, require_accessible
+from tests.editor_web.browsing import fetched, opened_page, require_accessible
 from tests.editor_web.stop_process import stop_button
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
@@ -17,7 +17,7 @@ def damaged(page: Page, changes: dict[str, object]) -> None:
     """Let the page be answered what it cannot read."""
 
     def answer(route: Route) -> None:
-        told = route.fetch()
+        told = fetched(route)
         route.fulfill(response=told, json={**told.json(), **changes})
 
     page.route(BEHAVIOR, answer)
