@@ -160,6 +160,9 @@ class OpenCell:
         if self.document is None:
             return
         await self._open_store(self.document)
+        if self.relay is not None:
+            # Before the devices, which get their new lines from it when all are connected again.
+            self._connections.follow(self.relay)
         world = await self._open_world(self.document)
         await self._open_robots(self.document, world)
         self._stack.push_async_callback(self._close_bus)

@@ -40,7 +40,7 @@ class CellConnections:
         lost = [device.lost_reason for device in self._devices if device.lost_reason]
         return CellConnection(connected=not lost, reason="; ".join(lost or self._notes))
 
-    def follow(self, device: Robot) -> None:
+    def follow(self, device: Robot | Reconnectable) -> None:
         """Tell from now on when `device` is lost and when it is back; nothing for one that cannot be."""
         if isinstance(device, Reconnectable):
             self._devices.append(device)

@@ -38,6 +38,11 @@ class StopLine:
         return bool(self.reason)
 
     @property
+    def cut(self) -> bool:
+        """Whether the other end is gone: no STOP can come any more, so the process is to end, once all rests."""
+        return self._cut
+
+    @property
     def awaits_rest(self) -> bool:
         """Whether somebody still waits to hear, by `tell_rest`, that everything has come to rest."""
         return not self._rest_told

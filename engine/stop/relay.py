@@ -20,7 +20,7 @@ from urllib.parse import urlsplit
 
 import msgspec
 
-from engine.errors import CellError, FlexcellError
+from engine.errors import CellError, FlexcellError, RobotError
 from engine.stop.messages import (
     Answer,
     Close,
@@ -88,8 +88,34 @@ class StopRelay:
         self._requests = 0
         self._callback: StopCallback | None = None
         self._carried_out: set[asyncio.Task[None]] = set()
-        self.lost_reason = ""
+        self._origins: tuple[str, ...] = ()
+        self._watches_signals = False
+        self._when_connection_changes: list[Callable[[], None]] = []
+        self._lost_reason = ""
+
+    @property
+    def lost_reason(self) -> str:
         """Why the relay is gone; empty while it works."""
+        return self._lost_reason
+
+    def when_connection_changes(self, tell: Callable[[], None]) -> None:
+        """Call `tell`, on the event loop, when the relay is gone and when it is back."""
+        self._when_connection_changes.append(tell)
+
+    async def reconnect(self) -> str:
+        """Start the relay's process again; devices need new lines, so they are connected again after it.
+
+        Raises:
+            RobotError: it does not start.
+        """
+        if self._lost_reason:
+            self._end_process()
+            try:
+                await self._start()
+            except CellError as error:
+                raise RobotError(error.message, where=error.where, hint=error.hint) from error
+            self._tell_connection()
+        return ""
 
     @property
     def endpoint(self) -> StopEndpoint | None:
@@ -141,7 +167,8 @@ class StopRelay:
 
     def allow_origins(self, origins: Iterable[str]) -> None:
         """Let pages of these origins, such as `http://127.0.0.1:8642`, read the answer to STOP."""
-        self._send(Configure(token=self._token, origins=tuple(origins)))
+        self._origins = tuple(origins)
+        self._configure()
 
     def new_line(self, device: str) -> socket.socket:
         """Return the device's end of a new stop line, to be handed to its process and closed here.
@@ -149,9 +176,9 @@ class StopRelay:
         Raises:
             CellError: the relay is gone.
         """
-        if self._control is None or self.lost_reason:
+        if self._control is None or self._lost_reason:
             raise CellError(
-                self.lost_reason or "the stop relay is not open", where=device, hint="connect the cell again"
+                self._lost_reason or "the stop relay is not open", where=device, hint="connect the cell again"
             )
         ours, theirs = socket.socketpair()
         try:
@@ -168,7 +195,7 @@ class StopRelay:
 
     async def order(self, reason: str) -> int | None:
         """Have every device told to stop, and return the stop's number, for `release`; None where the relay is gone."""
-        if self._control is None or self.lost_reason:
+        if self._control is None or self._lost_reason:
             return None
         self._requests += 1
         ordered = self._orders[self._requests] = asyncio.get_running_loop().create_future()
@@ -195,9 +222,11 @@ class StopRelay:
         """
         assert self._signals is not None
         before = signal.set_wakeup_fd(self._signals.fileno(), warn_on_full_buffer=False)
+        self._watches_signals = True
         try:
             yield
         finally:
+            self._watches_signals = False
             signal.set_wakeup_fd(before)
 
     async def _start(self) -> None:
@@ -212,11 +241,14 @@ class StopRelay:
         finally:
             theirs.close()
             signals_theirs.close()
-        self._control, self._signals, self.lost_reason = control, signals, ""
+        self._control, self._signals, self._lost_reason = control, signals, ""
+        self._reader = MessageReader(FromRelay)
         loop = asyncio.get_running_loop()
         self._ready = loop.create_future()
         loop.add_reader(control.fileno(), self._read)
-        self._send(Configure(token=self._token, origins=()))
+        self._configure()
+        if self._watches_signals:
+            signal.set_wakeup_fd(signals.fileno(), warn_on_full_buffer=False)
         try:
             async with asyncio.timeout(_START_S):
                 await self._ready
@@ -269,13 +301,21 @@ class StopRelay:
     def _lost(self) -> None:
         """Treat the loss of the relay as a stop: every device has found its line cut."""
         self._forget_control()
-        if self.lost_reason:
+        if self._lost_reason:
             return
-        self.lost_reason = f"the stop relay has ended{_how(self._process)}"
+        self._lost_reason = f"the stop relay has ended{_how(self._process)}"
         if self._ready is not None and not self._ready.done():
-            self._ready.set_exception(CellError(f"{self.lost_reason} before it was ready"))
+            self._ready.set_exception(CellError(f"{self._lost_reason} before it was ready"))
             return
-        self._take(StopNotice(stop=0, reason=self.lost_reason, source="loss"))
+        self._tell_connection()
+        self._take(StopNotice(stop=0, reason=self._lost_reason, source="loss"))
+
+    def _tell_connection(self) -> None:
+        for tell in self._when_connection_changes:
+            tell()
+
+    def _configure(self) -> None:
+        self._send(Configure(token=self._token, origins=self._origins))
 
     def _send(self, message: ToRelay) -> None:
         self._unsent += encoded(message)
@@ -305,11 +345,15 @@ class StopRelay:
             control.close()
 
     def _end(self) -> None:
-        self.lost_reason = self.lost_reason or "the stop relay was closed"
+        self._lost_reason = self._lost_reason or "the stop relay was closed"
         self._forget_control()
-        for each in (self._signals, self._listener):
-            if each is not None:
-                each.close()
+        if self._listener is not None:
+            self._listener.close()
+        self._end_process()
+
+    def _end_process(self) -> None:
+        if self._signals is not None:
+            self._signals.close()
         process, self._process = self._process, None
         if process is not None:
             with suppress(subprocess.TimeoutExpired):

@@ -20,6 +20,11 @@ class StopMonitor:
         self._line = line
         self._devices = devices
 
+    @property
+    def cut(self) -> bool:
+        """Whether the line is cut: the process ends once everything rests, and is connected again with a new one."""
+        return self._line is not None and self._line.cut
+
     def look(self) -> None:
         """Take what has arrived; call it after the commands of a control period and before its step."""
         if self._line is None:

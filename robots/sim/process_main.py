@@ -173,6 +173,8 @@ class WorldLoop:
             self._take(command)
         # Before the engine's silence, so that what STOP ends says so.
         self._stop.look()
+        if self._stop.cut:
+            self.request_end()
         # After the commands: who sends one has given a pulse before.
         self._engine.look(time.monotonic())
         events = self._simulation.step()

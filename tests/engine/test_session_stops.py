@@ -91,5 +91,5 @@ async def test_a_relay_that_is_gone_ends_the_runs_and_hinders_no_stop(project: P
         opened.relay.kill()
         stopped = await opened.session.wait(run)
         await opened.session.stop_all(reason="again")
-        assert opened.arm.line.latched
+        assert opened.arm.line.cut
     assert (stopped.status, "the stop relay has ended" in stopped.cause) == ("stopped", True)
