@@ -39,7 +39,7 @@ async def test_the_printed_address_logs_in(tmp_path: Path, loopback: str) -> Non
         dashboard(FakeBackend(), token_file=tmp_path / "tokens", host=loopback, cell_view=False) as running,
         httpx.AsyncClient(trust_env=False, timeout=GUARD_S) as browser,
     ):
-        answer = await browser.get(running.new_new_login_url()())
+        answer = await browser.get(running.new_login_url())
         assert (answer.status_code, answer.headers["location"]) == (303, "/")
         ours = {"Sec-Fetch-Site": "same-origin"}
         assert (await browser.get(f"{running.url}api/v1/session", headers=ours)).json()["role"] == "operator"
