@@ -63,7 +63,7 @@ def watch_in_browser(url: str, token: str) -> dict[str, int]:
         browser = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
         page = browser.new_page()
         page.on("websocket", connected)
-        page.goto(f"{url}login?t={token}")
+        page.goto(login_link(url, token))
         page.goto(f"{url}cell/")
         page.locator("canvas").first.wait_for(timeout=60_000)
         print("ready", flush=True)

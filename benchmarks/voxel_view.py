@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import Page, sync_playwright
 
+from benchmarks.login_link import login_link
 from benchmarks.process_cpu import cpu_s
 from editor_web.cell_view.lock import new_server
 from editor_web.cell_view.newest import Newest
@@ -131,7 +132,7 @@ class _Page:
             arguments = ["--no-sandbox", "--enable-precise-memory-info", "--js-flags=--expose-gc"]
             browser = playwright.chromium.launch(executable_path=browser_program(), args=arguments)
             page = browser.new_page(locale="en-US", viewport={"width": 640, "height": 480})
-            page.goto(f"{self._url}login?t={self._token}")
+            page.goto(login_link(self._url, self._token))
             page.goto(f"{self._url}cell/")
             page.locator("canvas[data-engine]").wait_for(timeout=60_000)
             page.wait_for_timeout(_WARM_UP_S * 1e3)
