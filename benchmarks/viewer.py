@@ -17,6 +17,8 @@ import viser
 import websockets.asyncio.client
 from websockets.typing import Subprotocol
 
+from benchmarks.login_link import login_link
+
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
