@@ -1,4 +1,4 @@
-"""A real `flexcell serve` with a moving arm, for `benchmarks/stop.py`: started, blocked, frozen, killed, looked at."""
+"""A real `flexcell serve` with moving arms: started, blocked, killed, looked at; for `stop.py` and `chaos.py`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -72,14 +72,13 @@ class Server:
         self.process = process
         self.folder = folder
         self.record: dict[str, Any] = json.loads((folder / "state" / "server.json").read_bytes())
-        self._http = httpx.Client(
+        self.http = httpx.Client(
             base_url=self.record["url"],
             headers={"Authorization": f"Bearer {self.record['token']}"},
             timeout=60.0,
             trust_env=False,
         )
-        world = [pid for pid in descendants(process.pid) if b"sim.process_main" in _command(pid)]
-        self.heartbeat = Heartbeat.of_process(world[0])
+        self.look_at_world()
 
     @property
     def state(self) -> Path:
@@ -91,14 +90,30 @@ class Server:
         tell = self.folder / "moving"
         tell.write_bytes(b"")
         parameters = {"how": how, "for_s": for_s, "tell": str(tell)}
-        body = {"behavior": "behaviors/swing.yaml", "parameters": parameters, "seed": 1}
-        self._http.post("/api/v1/runs", json=body).raise_for_status()
+        self.start("behaviors/swing.yaml", parameters)
         while not tell.read_bytes():
             time.sleep(_LOOK_S)
 
+    def start(self, behavior: str, parameters: Mapping[str, object] | None = None) -> str:
+        """Start a run and return its id; raises HTTPStatusError where it is refused."""
+        body = {"behavior": behavior, "parameters": dict(parameters or {}), "seed": 1}
+        return str(self.http.post("/api/v1/runs", json=body).raise_for_status().json()["run"])
+
+    def run(self, run_id: str) -> dict[str, Any]:
+        """Return a run as the server tells it."""
+        return next(run for run in self.http.get("/api/v1/runs").json() if run["id"] == run_id)
+
+    def children(self, what: str) -> list[int]:
+        """Return the processes of the server whose command names `what`."""
+        return [pid for pid in descendants(self.process.pid) if what.encode() in _command(pid)]
+
+    def look_at_world(self) -> None:
+        """Read the heartbeat of the present world's process from now on."""
+        self.heartbeat = Heartbeat.of_process(self.children("sim.process_main")[0])
+
     def wait_until_idle(self) -> None:
         """Wait until no run is under way and the devices take motions again."""
-        while any(run["status"] in ("running", "stopping") for run in self._http.get("/api/v1/runs").json()):
+        while any(run["status"] in ("running", "stopping") for run in self.http.get("/api/v1/runs").json()):
             time.sleep(0.02)
 
     def resting_since_s(self) -> float:
@@ -113,14 +128,23 @@ class Server:
 
     def close(self) -> None:
         """Close what looks at it."""
-        self._http.close()
+        self.http.close()
         self.heartbeat.close()
 
 
+def write_swing(folder: Path) -> None:
+    """Write a project with one arm that swings, and a state that blocks."""
+    (folder / "behaviors").mkdir(parents=True)
+    (folder / "behaviors" / "cell.yaml").write_text(CELL, encoding="utf-8")
+    (folder / "behaviors" / "swing.yaml").write_text(BEHAVIOR.replace("AFTER", str(_MOVING_S)), encoding="utf-8")
+    (folder / "flexcell.yaml").write_text("flexcell: 1\nstates: [stop_states]\n", encoding="utf-8")
+    shutil.copy(Path(__file__).with_name("stop_states.py"), folder / "stop_states.py")
+
+
 @contextmanager
-def server(folder: Path) -> Generator[Server]:
-    """Start a server in a new project and kill what is left of it at the end."""
-    _write_project(folder)
+def server(folder: Path, *, write_project: Callable[[Path], None] = write_swing) -> Generator[Server]:
+    """Start a server in a new project, whose cell is `behaviors/cell.yaml`, and kill what is left of it at the end."""
+    write_project(folder)
     command = [_FLEXCELL, "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state", "--no-record"]
     with (folder / "log").open("wb") as log:
         process = subprocess.Popen(
@@ -140,14 +164,6 @@ def server(folder: Path) -> Generator[Server]:
         process.kill()
         process.wait()
         process.stdout.close()
-
-
-def _write_project(folder: Path) -> None:
-    (folder / "behaviors").mkdir(parents=True)
-    (folder / "behaviors" / "cell.yaml").write_text(CELL, encoding="utf-8")
-    (folder / "behaviors" / "swing.yaml").write_text(BEHAVIOR.replace("AFTER", str(_MOVING_S)), encoding="utf-8")
-    (folder / "flexcell.yaml").write_text("flexcell: 1\nstates: [stop_states]\n", encoding="utf-8")
-    shutil.copy(Path(__file__).with_name("stop_states.py"), folder / "stop_states.py")
 
 
 def _command(pid: int) -> bytes:
