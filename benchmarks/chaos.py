@@ -28,6 +28,7 @@ _FLEXCELL = Path(sys.executable).with_name("flexcell")
 _BEHAVIOR = "behaviors/shared.yaml"
 _REST_S = 5.0
 _END_S = 20.0
+_MOVING_S = 90.0
 _LOOK_S = 0.01
 _SUSPENDED_S = 1.0
 
@@ -106,10 +107,9 @@ def main() -> int:
 
 def _trial(loss: str, chance: random.Random) -> Ended:
     with tempfile.TemporaryDirectory() as folder, server(Path(folder) / "cell", write_project=_write) as running:
-        run = running.start(_BEHAVIOR)
-        _until(lambda: not running.heartbeat.at_rest_since_ns, _END_S, "no arm moves")
-        time.sleep(chance.uniform(0.0, 2.0))
         try:
+            run = _moving_run(running)
+            time.sleep(chance.uniform(0.0, 2.0))
             return _LOSSES[loss](running, run, loss)
         except (_Failed, httpx.HTTPError, OSError) as error:
             return Ended(loss=loss, rest_s=None, cause="", after="", wrong=f"FAILED: {error}")
@@ -204,10 +204,23 @@ def _cause(running: Server, run: str, word: str) -> str:
 
 def _runs_again(running: Server) -> str:
     """Start a new run, wait until an arm moves, stop it, and wait until everything rests."""
-    running.start(_BEHAVIOR)
-    _until(lambda: not running.heartbeat.at_rest_since_ns, _END_S, "no arm moves in the next run")
+    _moving_run(running)
     _stop(running)
     return "runs again"
+
+
+def _moving_run(running: Server) -> str:
+    """Start a run and return its id once an arm moves; it is refused as long as the cameras have seen nothing yet."""
+    deadline_s = time.monotonic() + _MOVING_S
+    run = ""
+    while time.monotonic() < deadline_s:
+        run = running.start(_BEHAVIOR)
+        while running.run(run)["status"] == "running":
+            if not running.heartbeat.at_rest_since_ns:
+                return run
+            time.sleep(_LOOK_S)
+        time.sleep(_SUSPENDED_S)
+    raise _Failed(f"no arm moves within {_MOVING_S:g} s: {running.run(run)['cause']}")
 
 
 def _stop(running: Server) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import sys
 import time
@@ -142,6 +143,10 @@ async def _execute(order: Order) -> Ended:
             _watch_for_standstill(run)
             if order.reload is not None:
                 stack.enter_context(OperatorConsole(run, say=_tell, reload=order.reload, policy=order.supervision))
+            if not order.virtual:
+                # A collection that went through all that was loaded would hold the loop while arms move.
+                gc.collect()
+                gc.freeze()
             with Watchdog():
                 result = await _within(order.timeout_s, run)
             over.set()

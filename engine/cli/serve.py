@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import signal
 import sys
 import webbrowser
@@ -99,6 +100,9 @@ async def _serve(
 
     def ready(dashboard: Any) -> None:
         folder.announce(url=dashboard.url, token=dashboard.token, stop=relay.endpoint)
+        # What is there now stays: a collection that went through all of it would hold the loop while arms move.
+        gc.collect()
+        gc.freeze()
         # What is late before is late for nobody.
         watched.enter_context(Watchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")
