@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, Route, expect
 
 import hatch_build
+from editor_web.access import VIEWER
 from engine.event import StopRequested
 from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, until
 from tests.editor_web.real_server import dashboard_of
@@ -172,7 +173,7 @@ def test_stop_is_above_a_dialog_and_its_key_works_there(browser: Browser, shop: 
 
 def test_a_viewer_has_no_stop(browser: Browser, shop: Workshop) -> None:
     """Neither the button nor its key."""
-    login = f"{shop.running.url}login?t={shop.access.viewer}"
+    login = shop.running.new_login_url(VIEWER)
     with opened_page(browser, shop.running, login=login) as page:
         expect(page.locator(".connection")).to_have_text("Live")
         stops: list[str] = []
