@@ -275,7 +275,7 @@ def test_the_preview_is_accessible(browser: Browser, site: TeachSite, scheme: Sc
     """Beside the form; on a phone as a sheet as wide as the screen, which Escape closes."""
     with editing(browser, site, "turn", scheme=scheme, size=size) as page:
         shown = open_preview(page, "aside")
-        expect(shown.get_by_role("status")).to_have_text("left is shown at aside")
+        expect(shown.get_by_role("status").first).to_have_text("left is shown at aside")
         require_accessible(page, f"the preview, {scheme}", part=".entry-preview")
         if size == PHONE:
             box = shown.bounding_box()

@@ -183,7 +183,7 @@ def test_the_transfer_with_two_arms_is_built_from_nothing_checked_run_paused_and
         page.get_by_role("button", name="New", exact=True).click()
         page.get_by_label("Name", exact=True).fill("my_transfer")
         page.get_by_role("button", name="Make it").click()
-        expect(page.get_by_role("tab", name="Behavior")).to_be_visible()
+        expect(page.get_by_role("tab", name="Behavior")).to_be_visible(timeout=GUARD_MS)
         declare(page)
         page.locator(".edit-canvas").click(position={"x": 30, "y": 500})
         add(page, "Concurrency", "root/concurrency", "transfer")
