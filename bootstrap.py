@@ -64,6 +64,8 @@ def main(arguments: list[str]) -> int:
     if not arguments or arguments[0] not in commands:
         sys.stderr.write(__doc__ or "")
         return 2
+    # A run starts hundreds of processes, and each would compile our modules for itself.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     try:
         return commands[arguments[0]](arguments[1:])
     except subprocess.CalledProcessError as error:

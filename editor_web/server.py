@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import ipaddress
 import socket
 from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager, contextmanager
@@ -22,6 +21,7 @@ from editor_web.connection import PageSocket, TimedConnection, WaitingConnection
 from editor_web.repeated_log import repeats_left_out
 from editor_web.sessions import LoginSessions
 from engine.errors import FlexcellError
+from engine.loopback import bound_socket, host_in_url
 from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3
@@ -107,9 +107,9 @@ async def dashboard(
     access = load_access(token_file)
     sessions = LoginSessions(file=token_file.with_name("sessions"), tokens=access.fingerprint())
     sessions.load()
-    listener = _bind(host, port)
+    listener = bound_socket(host, port, option="--port")
     bound = int(listener.getsockname()[1])
-    hosts = frozenset(f"{name}:{bound}" for name in (_in_url(host), "127.0.0.1", "localhost", "[::1]"))
+    hosts = frozenset(f"{name}:{bound}" for name in (host_in_url(host), "127.0.0.1", "localhost", "[::1]"))
     if relay is not None:
         relay.allow_origins(f"http://{name}" for name in hosts)
     limit = connection_limit() if max_connections is None else max_connections
@@ -142,7 +142,7 @@ async def dashboard(
         try:
             await _started(server, serving)
             yield Dashboard(
-                url=f"http://{_in_url(host)}:{bound}/", token=access.operator, port=bound, sessions=sessions
+                url=f"http://{host_in_url(host)}:{bound}/", token=access.operator, port=bound, sessions=sessions
             )
         finally:
             server.should_exit = True
@@ -174,36 +174,3 @@ async def _started(server: uvicorn.Server, serving: asyncio.Task[None]) -> None:
             await serving
             raise FlexcellError("the dashboard ended while it was starting", hint="see the log above")
         await asyncio.sleep(0.005)
-
-
-def _in_url(host: str) -> str:
-    return f"[{host}]" if ":" in host else host.lower()
-
-
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host.lower() == "localhost"
-
-
-def _bind(host: str, port: int) -> socket.socket:
-    if not _is_loopback(host):
-        raise FlexcellError(
-            "the dashboard listens on this machine only",
-            where=host,
-            hint="use 127.0.0.1, and from elsewhere an SSH tunnel: ssh -L 8642:127.0.0.1:8642 <machine>",
-        )
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind((host, port))
-    except OSError as error:
-        listener.close()
-        raise FlexcellError(
-            f"cannot listen on {host}:{port}: {error.strerror or error}",
-            where="--port",
-            hint="another server may be running; choose another --port",
-        ) from error
-    return listener

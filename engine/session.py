@@ -9,15 +9,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-import msgspec
-
 from engine.archive import Archive
 from engine.bus.access import BusAccess, LocalBus
 from engine.bus.desk import BusDesk
-from engine.cause import describe
 from engine.cell import OpenCell
 from engine.cell_connection import CellConnection
-from engine.control import Breakpoint, Control, ControlView, load_breakpoints, save_breakpoints
+from engine.control import Breakpoint, Control, load_breakpoints, save_breakpoints
 from engine.document import Behavior
 from engine.document.collection_pause import without_collection
 from engine.document.faults import Faults
@@ -35,7 +32,7 @@ from engine.recorded_run import read_run
 from engine.session_entries import StoredEntries
 from engine.session_operators import Attachment, Operators
 from engine.session_recordings import SessionRecordings, Start
-from engine.session_run import SessionRun
+from engine.session_run import RunView, SessionRun
 from engine.session_stops import SessionStops
 from engine.skill_port import BusPort
 from engine.supervision import Supervision
@@ -43,23 +40,6 @@ from engine.userdata_book import UserdataBook
 
 EventCallback = Callable[[str, Event], None]
 _KEPT_RUNS = 200
-
-
-class RunView(msgspec.Struct, frozen=True, kw_only=True):
-    """One run, under way or over; `status` is running, stopping, finished, stopped or errored.
-
-    `control` is what an operator sees of it while it is under way.
-    """
-
-    id: str
-    behavior: str
-    status: str
-    outcome: str | None
-    success: bool
-    cause: str
-    started_at_s: float
-    duration_s: float
-    control: ControlView | None = None
 
 
 class Session:
@@ -131,11 +111,11 @@ class Session:
 
     def runs(self) -> tuple[RunView, ...]:
         """Return the runs of this session, newest first."""
-        return tuple(self._view(run_id, started) for run_id, started in reversed(self._runs.items()))
+        return tuple(started.view(self.cell.bus.clock.now_s()) for started in reversed(self._runs.values()))
 
     def run(self, run_id: str) -> RunView:
         """Return one run; raises FlexcellError when the id names none."""
-        return self._view(run_id, self._known(run_id))
+        return self._known(run_id).view(self.cell.bus.clock.now_s())
 
     async def start(
         self,
@@ -410,18 +390,3 @@ class Session:
         over = [run_id for run_id, started in self._runs.items() if started.result is not None]
         for run_id in over[: max(0, len(self._runs) - _KEPT_RUNS)]:
             del self._runs[run_id]
-
-    def _view(self, run_id: str, started: SessionRun) -> RunView:
-        result = started.result
-        now_s = self.cell.bus.clock.now_s()
-        return RunView(
-            id=run_id,
-            behavior=started.behavior_id,
-            status=result.status if result else ("stopping" if started.stopping else "running"),
-            outcome=result.outcome if result else None,
-            success=result.success if result else False,
-            cause=describe(result.cause) if result and result.cause and not result.success else "",
-            started_at_s=started.started_at_s,
-            duration_s=result.duration_s if result else now_s - started.started_s,
-            control=started.run.control.view() if result is None and not started.run.ended else None,
-        )

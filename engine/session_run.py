@@ -6,8 +6,29 @@ import asyncio
 import time
 from collections.abc import Iterable
 
+import msgspec
+
+from engine.cause import describe
+from engine.control import ControlView
 from engine.event import Event
 from engine.run import Run, RunResult
+
+
+class RunView(msgspec.Struct, frozen=True, kw_only=True):
+    """One run, under way or over; `status` is running, stopping, finished, stopped or errored.
+
+    `control` is what an operator sees of it while it is under way.
+    """
+
+    id: str
+    behavior: str
+    status: str
+    outcome: str | None
+    success: bool
+    cause: str
+    started_at_s: float
+    duration_s: float
+    control: ControlView | None = None
 
 
 class SessionRun:
@@ -35,3 +56,18 @@ class SessionRun:
         if self.result is None:
             self.stopping = True
             self.run.stop(reason)
+
+    def view(self, now_s: float) -> RunView:
+        """Return how it stands at this time of the cell's clock."""
+        result = self.result
+        return RunView(
+            id=self.run.id,
+            behavior=self.behavior_id,
+            status=result.status if result else ("stopping" if self.stopping else "running"),
+            outcome=result.outcome if result else None,
+            success=result.success if result else False,
+            cause=describe(result.cause) if result and result.cause and not result.success else "",
+            started_at_s=self.started_at_s,
+            duration_s=result.duration_s if result else now_s - self.started_s,
+            control=self.run.control.view() if result is None and not self.run.ended else None,
+        )

@@ -17,9 +17,11 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from threading import RLock
 from types import ModuleType
+from typing import TYPE_CHECKING
 
-from msgspec import Struct, StructMeta
-from msgspec.json import Decoder
+if TYPE_CHECKING:
+    # Loaded with the first module that defines a type: the command that stops a cell does without.
+    from msgspec import Struct, StructMeta
 
 _lock = RLock()
 _waiting: list[StructMeta] = []
@@ -34,6 +36,8 @@ def prepare_type(kind: type[Struct]) -> None:
 
 def prepare_types() -> None:
     """Make all types of this process ready, whoever defined them; cheap for those that are."""
+    from msgspec import Struct
+
     with _lock:
         _prepare(list(_subclasses(Struct)))
 
@@ -46,6 +50,8 @@ def prepare_on_import(*packages: str) -> None:
 
 
 def _prepare(kinds: list[StructMeta]) -> None:
+    from msgspec.json import Decoder
+
     due = [*_waiting, *kinds]
     _waiting.clear()
     for kind in due:
@@ -67,6 +73,8 @@ def _subclasses(kind: StructMeta) -> Iterator[StructMeta]:
 
 def _types_of(module: ModuleType) -> Iterator[StructMeta]:
     """Go through the types that a module holds, in its classes too; those it imported cost next to nothing."""
+    from msgspec import StructMeta
+
     due: list[Mapping[str, object]] = [vars(module)]
     seen: set[type] = set()
     for names in due:
@@ -92,8 +100,9 @@ class _PreparingLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         self._own.exec_module(module)
-        with _lock:
-            _prepare(list(_types_of(module)))
+        if "msgspec" in sys.modules:
+            with _lock:
+                _prepare(list(_types_of(module)))
 
 
 class _Importer(MetaPathFinder):

@@ -30,7 +30,7 @@ async def get_session(request: Request, services: ServicesOf) -> SessionBody:
         has_cell_view=services.cell_view is not None,
         epoch=services.hub.epoch,
         cell=ConnectionBody.model_validate(services.backend.cell_connection),
-        stop=StopEndpointBody(url=stop.url, token=stop.token) if stop is not None and role == OPERATOR else None,
+        stop=StopEndpointBody.model_validate(stop) if stop is not None and role == OPERATOR else None,
     )
 
 

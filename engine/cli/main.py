@@ -11,51 +11,20 @@ from typing import Annotated
 
 import typer
 
-from engine.cli import (
-    bus,
-    cell,
-    check,
-    coverage,
-    export,
-    login,
-    replay,
-    resume,
-    run,
-    runs,
-    schema,
-    serve,
-    states,
-    store,
-    teach,
-)
+from engine.cli.commands import Commands
 from engine.cli.exit_code import ExitCode
 from engine.cli.stop import REASON, STATE_FOLDER, stop_cell
 from engine.errors import FlexcellError
 
 app = typer.Typer(
+    cls=Commands,
     help="Run, check and serve behaviors of robot work cells.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("run")(run.run)
-app.command("resume")(resume.resume)
-app.add_typer(runs.app, name="runs")
-app.command("check")(check.check)
-app.command("replay")(replay.replay)
-app.command("export")(export.export)
-app.command("serve")(serve.serve)
-app.command("login")(login.login)
-app.add_typer(coverage.app, name="coverage")
-app.add_typer(states.app, name="states")
-app.add_typer(store.app, name="store")
-app.add_typer(bus.app, name="bus")
-app.add_typer(cell.app, name="cell")
-app.add_typer(teach.app, name="teach")
-app.command("schema")(schema.schema)
 
 
-@app.command("stop")
 def stop(
     state: Annotated[Path, typer.Option(help="Folder in which the server keeps its state.")] = Path(STATE_FOLDER),
     reason: Annotated[str, typer.Option(help="Why; runs that end by it say so.")] = REASON,

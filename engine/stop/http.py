@@ -6,11 +6,11 @@ import asyncio
 import hmac
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable
-from typing import Protocol
 
 import h11
 import msgspec
 
+from engine.stop.dispatcher import StopDispatcher
 from engine.stop.messages import MAX_REASON, StopStatus
 
 MAX_CONNECTIONS = 256
@@ -19,18 +19,7 @@ REQUEST_S = 2.0
 _DEFAULT_REASON = "stopped by the operator"
 
 
-class _Stopper(Protocol):
-    """What answers: `engine.stop.process.Relay`."""
-
-    token: str
-    origins: frozenset[str]
-
-    async def stopped(self, reason: str) -> StopStatus: ...
-
-    def status(self) -> StopStatus: ...
-
-
-class StopBody(msgspec.Struct, frozen=True, kw_only=True):
+class StopRequest(msgspec.Struct, frozen=True, kw_only=True):
     """A request: plain JSON whatever its content type says, so that a page needs no preflight."""
 
     token: str
@@ -44,17 +33,17 @@ class _Refused(Exception):
         self.message = message
 
 
-def new_http_protocol(relay: _Stopper) -> Callable[[], asyncio.Protocol]:
+def new_http_protocol(dispatcher: StopDispatcher) -> Callable[[], asyncio.Protocol]:
     """Return the maker of protocols for a server; together they hold a bounded number of connections."""
     open_ones: OrderedDict[_Http, None] = OrderedDict()
-    return lambda: _Http(relay, open_ones)
+    return lambda: _Http(dispatcher, open_ones)
 
 
 class _Http(asyncio.Protocol):
     """One connection, one request. The oldest makes room when there are too many: a flood delays no STOP."""
 
-    def __init__(self, relay: _Stopper, open_ones: OrderedDict[_Http, None]) -> None:
-        self._relay = relay
+    def __init__(self, dispatcher: StopDispatcher, open_ones: OrderedDict[_Http, None]) -> None:
+        self._dispatcher = dispatcher
         self._open_ones = open_ones
         self._http = h11.Connection(h11.SERVER, max_incomplete_event_size=8192)
         self._request: h11.Request | None = None
@@ -124,31 +113,31 @@ class _Http(asyncio.Protocol):
         if request.method != b"POST":
             raise _Refused(405, "POST stops")
         origin = self._header(b"origin")
-        if origin and origin not in self._relay.origins:
+        if origin and origin not in self._dispatcher.origins:
             raise _Refused(403, "requests from other pages are refused")
         body = self._read_body()
         match request.target:
             case b"/stop":
-                return self._relay.stopped(body.reason[:MAX_REASON])
+                return self._dispatcher.stopped(body.reason[:MAX_REASON])
             case b"/stop/status":
                 return self._status()
             case _:
                 raise _Refused(404, "there are /stop and /stop/status")
 
     async def _status(self) -> StopStatus:
-        return self._relay.status()
+        return self._dispatcher.status()
 
-    def _read_body(self) -> StopBody:
+    def _read_body(self) -> StopRequest:
         scheme, _, bearer = self._header(b"authorization").partition(" ")
         try:
             if scheme.lower() == "bearer":
                 given = msgspec.json.decode(bytes(self._body) or b"{}", type=dict[str, object])
-                body = msgspec.convert({**given, "token": bearer.strip()}, StopBody)
+                body = msgspec.convert({**given, "token": bearer.strip()}, StopRequest)
             else:
-                body = msgspec.json.decode(bytes(self._body), type=StopBody)
+                body = msgspec.json.decode(bytes(self._body), type=StopRequest)
         except (msgspec.DecodeError, RecursionError) as error:
             raise _Refused(400, 'the body must be {"token": …, "reason": …}') from error
-        if not (self._relay.token and hmac.compare_digest(body.token.encode(), self._relay.token.encode())):
+        if not (self._dispatcher.token and hmac.compare_digest(body.token.encode(), self._dispatcher.token.encode())):
             raise _Refused(401, "this token does not stop this cell: see stop_token in the server's server.json")
         return body
 
@@ -165,7 +154,7 @@ class _Http(asyncio.Protocol):
         headers = [("content-type", "application/json"), ("content-length", str(len(payload)))]
         headers += [("cache-control", "no-store"), ("x-content-type-options", "nosniff"), ("connection", "close")]
         origin = self._header(b"origin") if self._request is not None else ""
-        if origin and origin in self._relay.origins:
+        if origin and origin in self._dispatcher.origins:
             headers += [("access-control-allow-origin", origin), ("vary", "origin")]
         try:
             head = self._http.send(h11.Response(status_code=status, headers=headers)) or b""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeVar
+from typing import Literal
 
 import msgspec
 
@@ -39,7 +39,7 @@ class StopAcknowledged(_Message, frozen=True, kw_only=True, tag="acknowledged"):
     at_rest: bool
 
 
-class Configure(_Message, frozen=True, kw_only=True, tag="configure"):
+class RelaySettings(_Message, frozen=True, kw_only=True, tag="settings"):
     """Engine to relay: who may stop over HTTP, and the origins of pages that may read the answer."""
 
     token: str
@@ -66,28 +66,28 @@ class StopOrdered(_Message, frozen=True, kw_only=True, tag="ordered"):
     request: int
 
 
-class Question(_Message, frozen=True, kw_only=True, tag="question"):
-    """Relay to engine: are you there? Answered at once by the event loop."""
+class EngineProbe(_Message, frozen=True, kw_only=True, tag="probe"):
+    """Relay to engine: are you there? The event loop replies at once."""
 
     number: int
 
 
-class Answer(_Message, frozen=True, kw_only=True, tag="answer"):
-    """Engine to relay: the event loop runs, and has taken note of everything before this question."""
+class ProbeReply(_Message, frozen=True, kw_only=True, tag="reply"):
+    """Engine to relay: the event loop runs, and has taken note of everything before this probe."""
 
     number: int
 
 
-class Ready(_Message, frozen=True, kw_only=True, tag="ready"):
+class RelayReady(_Message, frozen=True, kw_only=True, tag="ready"):
     """Relay to engine: it listens."""
 
 
-class Close(_Message, frozen=True, kw_only=True, tag="close"):
+class CloseRelay(_Message, frozen=True, kw_only=True, tag="close"):
     """Engine to relay: everything rests and is closed; end without a stop."""
 
 
-ToRelay = Configure | NewLine | StopOrder | StopRelease | Answer | Close
-FromRelay = Ready | StopNotice | StopOrdered | Question
+ToRelay = RelaySettings | NewLine | StopOrder | StopRelease | ProbeReply | CloseRelay
+FromRelay = RelayReady | StopNotice | StopOrdered | EngineProbe
 ToDevice = StopNotice | StopRelease
 
 
@@ -114,9 +114,6 @@ class StopStatus(msgspec.Struct, frozen=True, kw_only=True):
     engine: Literal["informed", "silent", "ended"]
     after_s: float
     devices: tuple[DeviceStop, ...]
-
-
-M = TypeVar("M")
 
 
 class MessageReader:

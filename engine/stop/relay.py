@@ -4,32 +4,32 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import os
 import secrets
 import signal
 import socket
 import subprocess
-import sys
 from collections.abc import Awaitable, Callable, Generator, Iterable
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 from urllib.parse import urlsplit
 
 import msgspec
 
+from engine.cell_connection import CONNECT_AGAIN
+from engine.child_process import exit_in_words, start_child
 from engine.errors import CellError, FlexcellError, RobotError
+from engine.loopback import bound_socket, host_in_url
 from engine.stop.messages import (
-    Answer,
-    Close,
-    Configure,
+    CloseRelay,
+    EngineProbe,
     FromRelay,
     MessageReader,
     NewLine,
-    Question,
-    Ready,
+    ProbeReply,
+    RelayReady,
+    RelaySettings,
     StopNotice,
     StopOrder,
     StopOrdered,
@@ -37,12 +37,14 @@ from engine.stop.messages import (
     ToRelay,
     encoded,
 )
+from engine.stop.outbox import Outbox
 
-_ROOT = str(Path(__file__).resolve().parents[2])
 _START = "from engine.stop.process import main; main()"
+_WHAT = "the stop relay"
 _START_S = 20.0
 _ORDER_S = 0.3
 _END_S = 2.0
+_WORDS_S = 0.2
 _READ_BYTES = 65536
 _log = logging.getLogger("flexcell.stop")
 
@@ -82,7 +84,7 @@ class StopRelay:
         self._control: socket.socket | None = None
         self._signals: socket.socket | None = None
         self._reader = MessageReader(FromRelay)
-        self._unsent = bytearray()
+        self._outbox: Outbox | None = None
         self._ready: asyncio.Future[None] | None = None
         self._orders: dict[int, asyncio.Future[int]] = {}
         self._requests = 0
@@ -110,10 +112,7 @@ class StopRelay:
         """
         if self._lost_reason:
             self._end_process()
-            try:
-                await self._start()
-            except CellError as error:
-                raise RobotError(error.message, where=error.where, hint=error.hint) from error
+            await self._start()
             self._tell_connection()
         return ""
 
@@ -122,8 +121,8 @@ class StopRelay:
         """Where STOP is taken over HTTP; None where it is not."""
         if self._listener is None:
             return None
-        host = f"[{self._host}]" if self._host and ":" in self._host else self._host
-        return StopEndpoint(url=f"http://{host}:{self._listener.getsockname()[1]}/stop", token=self._token)
+        host, port = self._listener.getsockname()[:2]
+        return StopEndpoint(url=f"http://{host_in_url(host)}:{port}/stop", token=self._token)
 
     @property
     def pid(self) -> int:
@@ -131,9 +130,9 @@ class StopRelay:
         return self._process.pid if self._process is not None else 0
 
     async def __aenter__(self) -> Self:
-        """Start the process; raises CellError when it does not start, or the port is taken."""
+        """Start the process; raises FlexcellError when it does not start, or the port is taken."""
         if self._host is not None:
-            self._listener = _bound(self._host, self._port)
+            self._listener = bound_socket(self._host, self._port, option="--stop-port")
         try:
             await self._start()
         except BaseException:
@@ -150,7 +149,7 @@ class StopRelay:
             task.cancel()
         if self._carried_out:
             await asyncio.wait(self._carried_out)
-        self._send(Close())
+        self._send(CloseRelay())
         self._end()
 
     def kill(self) -> None:
@@ -176,14 +175,12 @@ class StopRelay:
         Raises:
             CellError: the relay is gone.
         """
-        if self._control is None or self._lost_reason:
-            raise CellError(
-                self._lost_reason or "the stop relay is not open", where=device, hint="connect the cell again"
-            )
+        if self._control is None or self._outbox is None:
+            raise CellError(self._lost_reason or "the stop relay is not open", where=device, hint=CONNECT_AGAIN)
         ours, theirs = socket.socketpair()
         try:
-            self._flush()
-            if self._unsent:
+            self._outbox.send()
+            if not self._outbox.empty:
                 raise BlockingIOError("it does not read what it is told")
             socket.send_fds(self._control, [encoded(NewLine(device=device))], [ours.fileno()])
         except OSError as error:
@@ -195,11 +192,12 @@ class StopRelay:
 
     async def order(self, reason: str) -> int | None:
         """Have every device told to stop, and return the stop's number, for `release`; None where the relay is gone."""
-        if self._control is None or self._lost_reason:
+        if self._control is None:
             return None
         self._requests += 1
-        ordered = self._orders[self._requests] = asyncio.get_running_loop().create_future()
-        self._send(StopOrder(reason=reason, request=self._requests))
+        request = self._requests
+        ordered = self._orders[request] = asyncio.get_running_loop().create_future()
+        self._send(StopOrder(reason=reason, request=request))
         try:
             async with asyncio.timeout(_ORDER_S):
                 return await ordered
@@ -207,7 +205,7 @@ class StopRelay:
             _log.error("the stop relay does not answer; the robots are stopped without it")
             return None
         finally:
-            self._orders.pop(self._requests, None)
+            self._orders.pop(request, None)
 
     def release(self, stop: int) -> None:
         """Let devices that this stop, or an earlier one, has latched move again: what was under way has ended."""
@@ -234,15 +232,14 @@ class StopRelay:
         signals, signals_theirs = socket.socketpair()
         for each in (control, signals):
             each.setblocking(False)
-        listener_fd = self._listener.fileno() if self._listener is not None else -1
-        descriptors = [theirs.fileno(), signals_theirs.fileno(), listener_fd]
+        http = (self._listener.fileno(),) if self._listener is not None else ()
         try:
-            self._process = _started(descriptors)
+            self._process = start_child(_START, (theirs.fileno(), signals_theirs.fileno(), *http), what=_WHAT)
         finally:
             theirs.close()
             signals_theirs.close()
-        self._control, self._signals, self._lost_reason = control, signals, ""
-        self._reader = MessageReader(FromRelay)
+        self._control, self._signals = control, signals
+        self._outbox, self._reader = Outbox(control), MessageReader(FromRelay)
         loop = asyncio.get_running_loop()
         self._ready = loop.create_future()
         loop.add_reader(control.fileno(), self._read)
@@ -253,7 +250,9 @@ class StopRelay:
             async with asyncio.timeout(_START_S):
                 await self._ready
         except TimeoutError as error:
-            raise CellError(f"the stop relay does not answer within {_START_S:g} s") from error
+            self._forget_control()
+            raise RobotError(f"{_WHAT} does not answer within {_START_S:g} s") from error
+        self._lost_reason = ""
 
     def _read(self) -> None:
         assert self._control is not None
@@ -271,11 +270,11 @@ class StopRelay:
 
     def _take(self, message: object) -> None:
         match message:
-            case Ready():
+            case RelayReady():
                 if self._ready is not None and not self._ready.done():
                     self._ready.set_result(None)
-            case Question():
-                self._send(Answer(number=message.number))
+            case EngineProbe():
+                self._send(ProbeReply(number=message.number))
             case StopOrdered():
                 ordered = self._orders.get(message.request)
                 if ordered is not None and not ordered.done():
@@ -301,47 +300,31 @@ class StopRelay:
     def _lost(self) -> None:
         """Treat the loss of the relay as a stop: every device has found its line cut."""
         self._forget_control()
-        if self._lost_reason:
-            return
-        self._lost_reason = f"the stop relay has ended{_how(self._process)}"
+        reason = f"{_WHAT} has ended{_how(self._process)}"
         if self._ready is not None and not self._ready.done():
-            self._ready.set_exception(CellError(f"{self._lost_reason} before it was ready"))
+            self._ready.set_exception(RobotError(f"{reason} before it was ready"))
             return
+        self._lost_reason = reason
         self._tell_connection()
-        self._take(StopNotice(stop=0, reason=self._lost_reason, source="loss"))
+        self._take(StopNotice(stop=0, reason=reason, source="loss"))
 
     def _tell_connection(self) -> None:
         for tell in self._when_connection_changes:
             tell()
 
     def _configure(self) -> None:
-        self._send(Configure(token=self._token, origins=self._origins))
+        self._send(RelaySettings(token=self._token, origins=self._origins))
 
     def _send(self, message: ToRelay) -> None:
-        self._unsent += encoded(message)
-        self._flush()
-
-    def _flush(self) -> None:
-        control = self._control
-        if control is None:
-            self._unsent.clear()
-            return
-        try:
-            del self._unsent[: control.send(self._unsent)]
-        except BlockingIOError:
-            asyncio.get_running_loop().add_writer(control.fileno(), self._flush)
-            return
-        except OSError:
-            # It has gone; reading its end of the stream tells so.
-            self._unsent.clear()
-        asyncio.get_running_loop().remove_writer(control.fileno())
+        if self._outbox is not None:
+            self._outbox.send(encoded(message))
 
     def _forget_control(self) -> None:
         control, self._control = self._control, None
-        if control is not None:
-            loop = asyncio.get_running_loop()
-            loop.remove_reader(control.fileno())
-            loop.remove_writer(control.fileno())
+        outbox, self._outbox = self._outbox, None
+        if control is not None and outbox is not None:
+            asyncio.get_running_loop().remove_reader(control.fileno())
+            outbox.close()
             control.close()
 
     def _end(self) -> None:
@@ -363,39 +346,10 @@ class StopRelay:
                 process.wait()
 
 
-def _started(descriptors: list[int]) -> subprocess.Popen[bytes]:
-    """Start the relay's process with these descriptors, whose numbers are its arguments (-1 for none)."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([_ROOT, *(path for path in sys.path if path)])}
-    command = [sys.executable, "-P", "-c", _START, *map(str, descriptors)]
-    kept = tuple(descriptor for descriptor in descriptors if descriptor >= 0)
-    try:
-        return subprocess.Popen(command, pass_fds=kept, env=environment, stdin=subprocess.DEVNULL)
-    except OSError as error:
-        raise CellError(f"the stop relay does not start: {error}", where=sys.executable) from error
-
-
-def _bound(host: str, port: int) -> socket.socket:
-    family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    try:
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind((host, port))
-        listener.listen(1024)
-        listener.setblocking(False)
-    except OSError as error:
-        listener.close()
-        raise CellError(
-            f"cannot listen for STOP on {host}:{port}: {error.strerror or error}",
-            where="--stop-port",
-            hint="choose another --stop-port",
-        ) from error
-    return listener
-
-
 def _how(process: subprocess.Popen[bytes] | None) -> str:
+    """Say how the process ended; empty while it lives on with its end of the socket closed."""
     if process is None:
         return ""
     with suppress(subprocess.TimeoutExpired):
-        code = process.wait(timeout=0.2)
-        return f" by {signal.Signals(-code).name}" if code < 0 else f" with exit code {code}"
+        return f" {exit_in_words(process.wait(timeout=_WORDS_S))}"
     return ""

@@ -27,6 +27,8 @@ _NO_WAY_RAD = 1e-9
 # Slower than this a motion would take days.
 _SLOWEST_SHARE = 1e-5
 _NO_SHARE = 1e-12
+# What a loaded joint at its limit is measured beyond it, with margin.
+_LIMIT_TOLERANCE_RAD = 1e-3
 
 
 def plan_joints(
@@ -44,9 +46,10 @@ def plan_joints(
     `jerk_limited` the acceleration is ramped within the joint jerk limits.
 
     Raises:
-        RobotError: the goal has another number of joints, or one beyond its limit; the speed is no share.
+        RobotError: the goal has another number of joints, or one more than 1 mrad beyond its limit; the speed is no
+            share.
     """
-    _check_goal(goal, limits, joint_names)
+    goal = _within_limits(goal, limits, joint_names)
     if not _SLOWEST_SHARE <= speed <= 1.0:
         raise RobotError(f"the speed cannot be {speed:g}", hint=f"give a share from {_SLOWEST_SHARE:g} to 1")
     farthest = float(np.abs(goal - start).max())
@@ -81,12 +84,16 @@ def _standing(start: Array, goal: Array) -> JointTrajectory:
     )
 
 
-def _check_goal(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> None:
+def _within_limits(goal: Array, limits: JointLimits, joint_names: tuple[str, ...]) -> Array:
+    """Return the goal; one that a joint at its limit was measured at, a little beyond it, at the limit."""
     if len(goal) != len(joint_names):
         raise RobotError(f"the goal has {len(goal)} joints", hint=f"this arm has {len(joint_names)}")
-    for name, angle, lower, upper in zip(joint_names, goal.tolist(), limits.lower_rad, limits.upper_rad, strict=True):
-        if not math.isfinite(angle) or not lower <= angle <= upper:
+    clipped = np.clip(goal, limits.lower_rad, limits.upper_rad)
+    for joint, name in enumerate(joint_names):
+        angle, lower, upper = float(goal[joint]), limits.lower_rad[joint], limits.upper_rad[joint]
+        if not math.isfinite(angle) or abs(angle - clipped[joint]) > _LIMIT_TOLERANCE_RAD:
             raise RobotError(f"{name} cannot go to {angle:.4f} rad", hint=f"its range is {lower} to {upper} rad")
+    return clipped
 
 
 def _sampled(profile: Any, start: Array, goal: Array, farthest: float) -> JointTrajectory:

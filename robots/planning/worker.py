@@ -10,10 +10,10 @@ from typing import Protocol, Self
 
 import msgspec
 
+from engine.child_process import how_it_ended, start_child
 from engine.clock import Clock
 from engine.errors import CellError, RobotError
 from engine.skills.planning_scene import CollisionReport
-from robots.child_process import how_it_ended, start_child
 from robots.planning.planner import ScenePlanner
 from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
 from robots.planning.worker_messages import (

@@ -9,10 +9,10 @@ from collections import deque
 
 import msgspec
 
+from engine.child_process import end_with_parent
 from engine.errors import FlexcellError
 from engine.messages import Pose
 from engine.shapes import Box, Obstacle
-from robots.child_process import end_with_parent
 from robots.planning.planner import ScenePlanner
 from robots.planning.request import JointGoal, PlanRequest
 from robots.planning.scene import PlanningScene, SceneArm

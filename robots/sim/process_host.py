@@ -12,8 +12,8 @@ from collections.abc import Callable
 import msgspec
 
 from engine.cell_connection import CONNECT_AGAIN
+from engine.child_process import how_it_ended, start_child
 from engine.errors import CellError, RobotError
-from robots.child_process import how_it_ended, start_child
 from robots.port import Array
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.loop_heartbeat import LoopHeartbeat

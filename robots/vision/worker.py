@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import msgspec
 
+from engine.child_process import how_it_ended, start_child
 from engine.errors import CellError, RobotError
-from robots.child_process import how_it_ended, start_child
 from robots.sim.framing import FrameReader, framed
 from robots.vision.known import Known
 from robots.vision.sight import Look, Seen, Sight

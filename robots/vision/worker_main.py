@@ -9,8 +9,8 @@ import sys
 
 import msgspec
 
+from engine.child_process import end_with_parent
 from engine.errors import FlexcellError
-from robots.child_process import end_with_parent
 from robots.sim.framing import FrameReader, framed
 from robots.vision.eye import Eye
 from robots.vision.worker_messages import Answer, Begin, FromWorker, Opened, Order, Refused, Tell, ToWorker

@@ -102,7 +102,7 @@ def world(monkeypatch: pytest.MonkeyPatch) -> FakeWorld:
     def load(group: str, kind: str) -> Any:
         return make
 
-    def make(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None) -> FakeWorld:
+    def make(cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None, new_stop_line: object) -> FakeWorld:
         return made
 
     monkeypatch.setattr(engine.cell, "load_maker", load)

@@ -98,6 +98,16 @@ def test_a_goal_that_cannot_be_is_refused_with_the_joint(goal: tuple[float, ...]
     assert str(refusal.value).startswith(message)
 
 
+def test_where_a_joint_was_measured_at_its_limit_it_can_go_again() -> None:
+    """A loaded joint stands a little beyond the limit; the motion goes to the limit itself."""
+    goal = home()
+    goal[3] = LIMITS.upper_rad[3] + 5e-4
+    assert plan(home(), goal, speed=0.5).position_rad[-1, 3] == LIMITS.upper_rad[3]
+    goal[3] += 1e-3
+    with pytest.raises(RobotError, match="panda_joint4 cannot go to"):
+        plan(home(), goal, speed=0.5)
+
+
 def test_the_slowest_motion_has_no_more_samples_than_a_long_one() -> None:
     model = panda_model()
     way = plan_joints(home(), home() + 0.3, speed=1e-5, limits=model.limits, joint_names=model.arm_joints)

@@ -2,7 +2,7 @@
 import { lookup } from '../../document/dict'
 import './preview.css'
 import { CloseButton } from '@mantine/core'
-import { useEffect, useLayoutEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
+import { useEffect, useInsertionEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import type { Previewed } from '../../api/preview'
 import { connectTeach, lookAt, lookAway, useTeach } from '../../api/teaching'
 import type { ArmCard } from '../../api/types'
@@ -95,8 +95,8 @@ function useGhost({ kind, name }: Previewed, arm: string): void {
 /** Closing goes back to what opened it. */
 function useReturn(by: string, onClose: () => void): () => void {
   const opener = useRef<Element>(null)
-  // Before a sheet takes the keyboard.
-  useLayoutEffect(() => {
+  // Before a sheet takes the keyboard, in a layout effect of its own, which comes before those around it.
+  useInsertionEffect(() => {
     opener.current = document.activeElement
   }, [by])
   return () => {

@@ -66,6 +66,9 @@ def how_it_ended(process: subprocess.Popen[bytes] | None, *, what: str) -> str:
         code = process.wait(timeout=1.0)
     except subprocess.TimeoutExpired:
         return f"{what} closed its connection"
-    if code < 0:
-        return f"{what} was ended by {signal.Signals(-code).name}"
-    return f"{what} ended with exit code {code}"
+    return f"{what} {'was ended' if code < 0 else 'ended'} {exit_in_words(code)}"
+
+
+def exit_in_words(code: int) -> str:
+    """Return how a process ended, as `by SIGKILL` or `with exit code 1`, from its return code."""
+    return f"by {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"

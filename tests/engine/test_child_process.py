@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 
 CHILD = """
 import socket, sys
-from robots.child_process import end_with_parent
+from engine.child_process import end_with_parent
 connection = socket.socket(fileno=int(sys.argv[1]))
 end_with_parent(connection)
 connection.sendall(b"x")
@@ -22,7 +22,7 @@ while True:
 """
 PARENT = """
 import socket, sys, time
-from robots.child_process import start_child
+from engine.child_process import start_child
 ours, theirs = socket.socketpair()
 child = start_child(sys.argv[1], (theirs.fileno(),), what="a child")
 theirs.close()
