@@ -38,7 +38,7 @@ PROJECT = Path(__file__).resolve().parents[1]
 MAX_BLOCK_MS = 50.0
 MAX_MEMORY_MB = 200.0
 _STOP_AFTER_S = 60.0
-_AT_ONCE = 50
+_AT_ONCE = 8
 
 
 class Take(State, frozen=True, kw_only=True):

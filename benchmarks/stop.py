@@ -1,9 +1,10 @@
-"""How long STOP takes: `python -P -m benchmarks.stop [--trials N] [--paths http cli signal] [--conditions …]`.
+"""How long STOP takes: `python -P -m benchmarks.stop [--trials N] [--paths page http cli signal] [--conditions …]`.
 
-A real `flexcell serve` moves an arm; STOP is given over the relay's HTTP port (as the page does), by `flexcell stop`,
-or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or holding the interpreter),
-200 clients ask all the time, or the engine is suspended or killed. Told are the times until STOP is acknowledged and
-until the world's own process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
+A real `flexcell serve` moves an arm; STOP is given by a click in the page in Chromium, over the relay's HTTP port, by
+`flexcell stop`, or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or holding the
+interpreter) or busy with the costliest expressions, 200 clients ask all the time, or the engine is suspended or
+killed. Told are the times until STOP is acknowledged (in the page: until it says so) and until the world's own
+process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
 """
 
 from __future__ import annotations
@@ -17,23 +18,34 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Generator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import httpx
 import numpy as np
+from playwright.sync_api import Browser, Page, sync_playwright
 
+from benchmarks.login_link import login_link
 from benchmarks.stop_server import Server, server
+from tests.editor_web.browsing import browser_program
 
 _FLEXCELL = Path(sys.executable).with_name("flexcell")
 _BLOCK_S = 1.0
 _INTO_S = 0.03
-CONDITIONS = ("free", "state", "interpreter", "clients", "suspended", "killed")
-PATHS = ("http", "cli", "signal")
+CONDITIONS = ("free", "state", "interpreter", "expression", "clients", "suspended", "killed")
+PATHS = ("page", "http", "cli", "signal")
 # A suspended process gets no signal, and a killed one neither.
 _SENSELESS = {("signal", "suspended"), ("signal", "killed")}
-_HOW = {"state": "sleep", "interpreter": "hold"}
+_HOW = {"state": "sleep", "interpreter": "hold", "expression": "expression"}
+_PRESS = """() => new Promise((said) => {
+  const news = document.querySelector('.stop-news')
+  const look = () => /acknowledged|at rest/.test(news.textContent) && said()
+  new MutationObserver(look).observe(news, { subtree: true, childList: true, characterData: true })
+  document.querySelector('.stop-button').click()
+})"""
+_PUT_AWAY = "Put the words about the stop away"
 
 
 @dataclass(kw_only=True)
@@ -63,22 +75,22 @@ def main() -> None:
 def _measure(path: str, condition: str, trials: int) -> Times:
     times = Times(path=path, condition=condition)
     ends = condition == "killed" or path == "signal"
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, _browser() if path == "page" else nullcontext() as browser:
         if ends:
             for number in range(trials):
-                with server(Path(folder) / str(number)) as running:
-                    _trial(running, times)
+                with server(Path(folder) / str(number)) as running, _presser(path, running, browser) as press:
+                    _trial(running, times, press)
         else:
-            with server(Path(folder) / "one") as running:
+            with server(Path(folder) / "one") as running, _presser(path, running, browser) as press:
                 for _ in range(trials):
-                    _trial(running, times)
+                    _trial(running, times, press)
                     running.signal(signal.SIGCONT)
                     running.wait_until_idle()
     return times
 
 
-def _trial(running: Server, times: Times) -> None:
-    with _clients(running) if times.condition == "clients" else ExitStack():
+def _trial(running: Server, times: Times, press: Callable[[], float]) -> None:
+    with _clients(running) if times.condition == "clients" else nullcontext():
         running.start_run(_HOW.get(times.condition, "none"), _BLOCK_S)
         match times.condition:
             case "suspended":
@@ -89,8 +101,7 @@ def _trial(running: Server, times: Times) -> None:
                 pass
         time.sleep(_INTO_S)
         began_s = time.monotonic()
-        acknowledged = _ACKNOWLEDGED[times.path](running)
-        times.acknowledged_s.append(acknowledged - began_s)
+        times.acknowledged_s.append(press() - began_s)
         times.at_rest_s.append(max(0.0, running.resting_since_s() - began_s))
 
 
@@ -119,6 +130,36 @@ def _by_signal(running: Server) -> float:
     while b"robots" not in log.read_bytes()[before:]:
         time.sleep(0.001)
     return time.monotonic()
+
+
+@contextmanager
+def _browser() -> Generator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=browser_program(), args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def _presser(path: str, running: Server, browser: Browser | None) -> Generator[Callable[[], float]]:
+    """Give what gives STOP in this way, and returns when it was acknowledged."""
+    if browser is None:
+        yield partial(_ACKNOWLEDGED[path], running)
+        return
+    page = browser.new_page(locale="en-US")
+    try:
+        page.goto(login_link(running.record["url"], running.record["token"]))
+        page.get_by_role("button", name="Stop the cell").wait_for()
+        yield partial(_in_page, page)
+    finally:
+        page.close()
+
+
+def _in_page(page: Page) -> float:
+    page.evaluate(_PRESS)
+    said_s = time.monotonic()
+    page.get_by_role("button", name=_PUT_AWAY).click()
+    return said_s
 
 
 _ACKNOWLEDGED: dict[str, Callable[[Server], float]] = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import shutil
@@ -23,6 +24,9 @@ _ROOT = Path(__file__).parents[1]
 _FLEXCELL = Path(sys.executable).with_name("flexcell")
 _MOVING_S = 0.4
 _LOOK_S = 0.002
+_ITEMS = 60
+# 3,600 rounds: as much as one evaluation may cost.
+_HEAVY = "items.all(i, items.all(j, i + j >= 0))"
 
 CELL = """
 flexcell: 1
@@ -39,6 +43,7 @@ parameters:
   how: {type: string, default: none}
   for_s: {type: number, default: 1.0}
   tell: {type: string, default: ""}
+  items: {type: array, default: ITEMS}
 outcomes: [ended]
 success: [ended]
 root:
@@ -59,6 +64,18 @@ root:
       block:
         state: stop_states:Block
         with: {how: "${how}", after_s: AFTER, for_s: "${for_s}", tell: "${tell}"}
+      think:
+        machine:
+          initial: once
+          states:
+            once:
+              state: flow.Wait
+              with: {duration_s: "${how != 'expression' ? 3600.0 : HEAVY ? 0.001 : 0.002}"}
+              transitions: {done: again}
+            again:
+              state: flow.Wait
+              with: {duration_s: "${HEAVY ? 0.001 : 0.002}"}
+              transitions: {done: once}
     conditions:
       - {ended: {arm: ended}}
       - {ended: {block: done}}
@@ -136,9 +153,14 @@ def write_swing(folder: Path) -> None:
     """Write a project with one arm that swings, and a state that blocks."""
     (folder / "behaviors").mkdir(parents=True)
     (folder / "behaviors" / "cell.yaml").write_text(CELL, encoding="utf-8")
-    (folder / "behaviors" / "swing.yaml").write_text(BEHAVIOR.replace("AFTER", str(_MOVING_S)), encoding="utf-8")
+    (folder / "behaviors" / "swing.yaml").write_text(_behavior(), encoding="utf-8")
     (folder / "flexcell.yaml").write_text("flexcell: 1\nstates: [stop_states]\n", encoding="utf-8")
     shutil.copy(Path(__file__).with_name("stop_states.py"), folder / "stop_states.py")
+
+
+def _behavior() -> str:
+    texts = {"AFTER": str(_MOVING_S), "HEAVY": _HEAVY, "ITEMS": json.dumps(list(range(_ITEMS)))}
+    return functools.reduce(lambda text, word: text.replace(word, texts[word]), texts, BEHAVIOR)
 
 
 @contextmanager

@@ -13,8 +13,8 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
-STATE_FOLDER = ".flexcell"
-"""The name of the folder that is ours alone, wherever it lies."""
+from engine.state_names import STATE_FOLDER
+
 _FILE, _FOLDER = 0o600, 0o700
 
 _log = logging.getLogger("flexcell.files")

@@ -14,8 +14,7 @@ from engine.bus.action import GoalEnd, GoalStatus
 from engine.bus.bus import BusEntry
 from engine.errors import BusError
 from engine.event import Cause
-
-SERVER_FILE = "server.json"
+from engine.state_names import SERVER_FILE
 
 
 class ServerRecord(msgspec.Struct, frozen=True, kw_only=True):

@@ -24,6 +24,7 @@ from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_json
 from engine.document.cell import load_cell
 from engine.errors import FlexcellError
+from engine.state_names import STATE_FOLDER
 
 app = typer.Typer(
     help="Look at the skill bus of a running server, or of a cell file with --cell.", no_args_is_help=True
@@ -34,7 +35,7 @@ Cell = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
-_STATE = Path(".flexcell")
+_STATE = Path(STATE_FOLDER)
 
 
 @app.command("list")

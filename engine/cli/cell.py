@@ -12,11 +12,12 @@ import typer
 from engine.bus.remote_cell import connect_remote_cell, remote_cell_connection
 from engine.cell_connection import CellConnection
 from engine.cli.exit_code import ExitCode
+from engine.state_names import STATE_FOLDER
 
 app = typer.Typer(help="The devices of a running server's cell.", no_args_is_help=True)
 
 Folder = Annotated[Path, typer.Option("--server", help="Folder in which `flexcell serve` keeps its state.")]
-_STATE = Path(".flexcell")
+_STATE = Path(STATE_FOLDER)
 
 
 @app.command("status")

@@ -12,6 +12,7 @@ import typer
 
 from engine.bus.remote import ServerRecord, verified
 from engine.errors import BusError
+from engine.state_names import STATE_FOLDER
 
 _LIMIT_S = 10.0
 
@@ -22,7 +23,7 @@ class _Link(msgspec.Struct):
 
 def login(
     viewer: Annotated[bool, typer.Option("--viewer", help="For somebody who may look and change nothing.")] = False,
-    state: Annotated[Path, typer.Option(help="State folder of the running server.")] = Path(".flexcell"),
+    state: Annotated[Path, typer.Option(help="State folder of the running server.")] = Path(STATE_FOLDER),
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Print an address that logs one browser in at the running server; it works once, within an hour."""

@@ -13,8 +13,9 @@ import typer
 
 from engine.cli.commands import Commands
 from engine.cli.exit_code import ExitCode
-from engine.cli.stop import REASON, STATE_FOLDER, stop_cell
+from engine.cli.stop import REASON, stop_cell
 from engine.errors import FlexcellError
+from engine.state_names import STATE_FOLDER
 
 app = typer.Typer(
     cls=Commands,

@@ -28,12 +28,13 @@ from engine.resume import RERUN, NeedsAnswers
 from engine.run import Run
 from engine.skill_port import SkillPort
 from engine.state_catalogue import StateCatalogue
+from engine.state_names import STATE_FOLDER
 from engine.supervision import Supervision
 
 
 def resume(
     run: Annotated[str, typer.Argument(help="The run, as `flexcell runs` names it.", show_default=False)],
-    journal: Annotated[str, typer.Option(help="Directory of the journal of runs.")] = ".flexcell",
+    journal: Annotated[str, typer.Option(help="Directory of the journal of runs.")] = STATE_FOLDER,
     answer: Annotated[
         list[str] | None,
         typer.Option(help="PATH=rerun or PATH=OUTCOME, for a state that was in mid-work; may be repeated."),

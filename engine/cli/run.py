@@ -32,6 +32,7 @@ from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, collect_documents
 from engine.registry import load_states
 from engine.run import Run
 from engine.skill_port import SkillPort
+from engine.state_names import STATE_FOLDER
 from engine.supervision import Supervision
 
 
@@ -67,7 +68,7 @@ def run(
         int | None,
         typer.Option(help="Seed of random choices and of the jitter of parts; parts lie exactly without one.", min=0),
     ] = None,
-    journal: Annotated[str, typer.Option(help="Directory of the journal of runs, or `none`.")] = ".flexcell",
+    journal: Annotated[str, typer.Option(help="Directory of the journal of runs, or `none`.")] = STATE_FOLDER,
     store: Annotated[
         str | None, typer.Option(help="Use this store instead of the cell's: a file, or mongodb://HOST:PORT/DATABASE.")
     ] = None,

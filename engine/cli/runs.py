@@ -31,6 +31,7 @@ from engine.plan import new_plan
 from engine.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
 from engine.resume import read_history
+from engine.state_names import STATE_FOLDER
 
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200
@@ -73,7 +74,7 @@ class RunSummary(RunLine, frozen=True, kw_only=True):
 
 
 @app.callback()
-def runs(context: typer.Context, journal: JournalPlace = ".flexcell", json: AsJson = False) -> None:
+def runs(context: typer.Context, journal: JournalPlace = STATE_FOLDER, json: AsJson = False) -> None:
     """List the runs, oldest first; one whose engine died shows as interrupted."""
     if context.invoked_subcommand is not None:
         return
@@ -100,7 +101,7 @@ def runs(context: typer.Context, journal: JournalPlace = ".flexcell", json: AsJs
 @app.command("show")
 def show(
     run: Annotated[str, typer.Argument(help="The run, as the list names it.", show_default=False)],
-    journal: JournalPlace = ".flexcell",
+    journal: JournalPlace = STATE_FOLDER,
     events: Annotated[bool, typer.Option("--events", help="Print all its events, one JSON object a line.")] = False,
     json: AsJson = False,
 ) -> None:

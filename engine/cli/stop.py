@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-STATE_FOLDER = ".flexcell"
-SERVER_FILE = "server.json"
+from engine.state_names import SERVER_FILE
+
 REASON = "flexcell stop"
 _ANSWER_S = 2.0
 _REST_S = 10.0

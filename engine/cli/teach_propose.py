@@ -19,6 +19,7 @@ from engine.errors import SkillFailed, StoreError
 from engine.nearness import near_names
 from engine.skills.entries import EntryList, ListEntries
 from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, Role, StepKind, TaughtStep, ToolName
+from engine.state_names import STATE_FOLDER
 from engine.teaching.proposing import propose_offline
 
 _KINDS: tuple[str, ...] = get_args(StepKind)
@@ -46,7 +47,9 @@ def propose(
     cell: Annotated[
         Path | None, typer.Option(help="The cell that the behavior is for; its store is read, no server is asked.")
     ] = None,
-    server: Annotated[Path, typer.Option(help="Folder in which `flexcell serve` keeps its state.")] = Path(".flexcell"),
+    server: Annotated[Path, typer.Option(help="Folder in which `flexcell serve` keeps its state.")] = Path(
+        STATE_FOLDER
+    ),
 ) -> None:
     """Propose a behavior from taught entries: approach, grasp, carry, release, taught motions in between.
 

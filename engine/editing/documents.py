@@ -29,6 +29,7 @@ from engine.editing.templates import new_text
 from engine.editing.versions import Version, Versions, write_whole
 from engine.errors import DocumentError, Position
 from engine.library import FindingView, Library
+from engine.state_names import STATE_FOLDER
 
 _ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
 _LATER = re.compile(r"\.breakpoints\.ya?ml$")
@@ -81,7 +82,7 @@ class Documents:
         self.catalogue = catalogue
         self._stored = stored
         self._project = project.resolve()
-        self._versions = Versions(self._project / ".flexcell" / "versions", now_s=now_s)
+        self._versions = Versions(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
         self._desk = Desk()
         self._library = Library(self._project, catalogue)

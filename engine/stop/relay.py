@@ -124,11 +124,6 @@ class StopRelay:
         host, port = self._listener.getsockname()[:2]
         return StopEndpoint(url=f"http://{host_in_url(host)}:{port}/stop", token=self._token)
 
-    @property
-    def pid(self) -> int:
-        """The relay's process id, 0 before it is started."""
-        return self._process.pid if self._process is not None else 0
-
     async def __aenter__(self) -> Self:
         """Start the process; raises FlexcellError when it does not start, or the port is taken."""
         if self._host is not None:

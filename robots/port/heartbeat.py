@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import mmap
 import os
-import tempfile
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from robots.port.shared_file import new_shared_file
 
 ENGINE_SILENCE_S = 0.2
 """Without a pulse of the engine for this long, a control process brings everything to rest."""
@@ -27,12 +28,8 @@ _ENGINE, _CONTROL, _REST_SINCE, _SLOTS = 0, 1, 2, 3
 
 
 def new_heartbeat_file() -> int:
-    """Return the descriptor of an unnamed file for one heartbeat; it vanishes with its last user."""
-    if hasattr(os, "memfd_create"):
-        descriptor = os.memfd_create(_NAME)
-    else:
-        with tempfile.TemporaryFile() as file:
-            descriptor = os.dup(file.fileno())
+    """Return the descriptor of an unnamed file for one heartbeat."""
+    descriptor = new_shared_file(_NAME)
     os.ftruncate(descriptor, 8 * _SLOTS)
     return descriptor
 

@@ -17,11 +17,12 @@ from engine.errors import CellError, RobotError
 from robots.port import Array
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.loop_heartbeat import LoopHeartbeat
+from robots.port.shared_file import new_shared_file
 from robots.sim.commands import AnyCommand, Restore, Shutdown
 from robots.sim.framing import FrameReader, framed
 from robots.sim.host import HostListener
 from robots.sim.scene import Scene
-from robots.sim.shared_state import SharedNumbers, new_shared_file
+from robots.sim.shared_state import SharedNumbers
 from robots.sim.snapshot import CellSummary, Snapshot, SnapshotLayout
 from robots.sim.timing import SIZE, Timing, timing_of
 from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
@@ -109,7 +110,11 @@ class ProcessHost:
     async def open(self, listener: HostListener) -> None:
         """Start the process and wait until its world stands; again when the last one was lost."""
         ours, theirs = socket.socketpair()
-        state_fd, timing_fd, heartbeat_fd = new_shared_file(), new_shared_file(), new_heartbeat_file()
+        state_fd, timing_fd, heartbeat_fd = (
+            new_shared_file("flexcell-state"),
+            new_shared_file("flexcell-timing"),
+            new_heartbeat_file(),
+        )
         stop_line = self._new_stop_line("world") if self._new_stop_line is not None else None
         stop_fds = (stop_line.fileno(),) if stop_line is not None else ()
         descriptors = (theirs.fileno(), state_fd, timing_fd, heartbeat_fd, *stop_fds)

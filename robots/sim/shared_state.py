@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import mmap
 import os
-import tempfile
 
 import numpy as np
 
@@ -18,14 +17,6 @@ from robots.port import Array
 _COUNT_BYTES = 8
 # A reader that is overtaken by two writes while it copies looks again; more often than this it never is.
 _TRIES = 100
-
-
-def new_shared_file() -> int:
-    """Return the descriptor of an unnamed file in memory; it vanishes with its last user."""
-    if hasattr(os, "memfd_create"):
-        return os.memfd_create("flexcell-world")
-    with tempfile.TemporaryFile() as file:
-        return os.dup(file.fileno())
 
 
 class SharedNumbers:
@@ -53,7 +44,7 @@ class SharedNumbers:
             copy = self._copies[count % 2].copy()
             if int(self._count[0]) == count:
                 self._last = copy
-                break
+                return copy.copy()
         return self._last.copy()
 
     def close(self) -> None:

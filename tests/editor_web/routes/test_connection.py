@@ -9,8 +9,9 @@ import msgspec
 import pytest
 from typer.testing import CliRunner
 
-from engine.bus.remote import SERVER_FILE, ServerRecord
+from engine.bus.remote import ServerRecord
 from engine.cli.main import app
+from engine.state_names import SERVER_FILE
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_behaviors import SINGLE

@@ -11,7 +11,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.sim.shared_state import SharedNumbers, new_shared_file
+from robots.port.shared_file import new_shared_file
+from robots.sim.shared_state import SharedNumbers
 
 ROOT = Path(__file__).parents[3]
 
@@ -29,7 +30,7 @@ while True:
 
 
 def test_a_reader_never_sees_half_of_a_write_of_another_process() -> None:
-    descriptor = new_shared_file()
+    descriptor = new_shared_file("numbers")
     reader = SharedNumbers(descriptor, 20000)
     writer = subprocess.Popen([sys.executable, "-c", WRITER, str(descriptor)], pass_fds=(descriptor,), cwd=ROOT)
     os.close(descriptor)
@@ -52,7 +53,7 @@ def test_a_reader_never_sees_half_of_a_write_of_another_process() -> None:
 
 @given(cut=st.integers(0, 3), writes=st.integers(1, 5))
 def test_a_writer_that_stops_anywhere_in_a_write_leaves_the_numbers_before_it(cut: int, writes: int) -> None:
-    descriptor = new_shared_file()
+    descriptor = new_shared_file("numbers")
     shared = SharedNumbers(descriptor, 3)
     for value in range(1, writes + 1):
         shared.write(np.full(3, float(value)))
