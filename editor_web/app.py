@@ -7,14 +7,17 @@ import time
 from collections import OrderedDict
 from collections.abc import AsyncGenerator
 from contextlib import asynccontextmanager
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from fastapi import FastAPI, Request
+from fastapi import APIRouter, FastAPI, Request
 from fastapi.exceptions import RequestValidationError
+from fastapi.openapi.utils import get_openapi
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
+from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
 
 from editor_web.access import Access, AttemptLimit
@@ -54,11 +57,14 @@ from engine.errors import ControlError, FlexcellError
 from engine.resume import NeedsAnswers
 from engine.stop import StopEndpoint
 
+_TITLE = "flexcell"
 STATIC = Path(__file__).parent / "static"
-# Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none.
-_REFUSALS: dict[int | str, dict[str, Any]] = {
-    status: {"model": ErrorBody} for status in (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503)
-}
+_ERROR = {"content": {"application/json": {"schema": {"$ref": f"#/components/schemas/{ErrorBody.__name__}"}}}}
+# Every route may answer so: the gate's refusals, and what `_malformed` says of a request that is none. By reference,
+# as a model would be built for each status of each route.
+_REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
+    (400, 401, 403, 404, 408, 413, 421, 422, 429, 431, 503), _ERROR
+)
 
 
 def new_app(
@@ -119,14 +125,31 @@ def new_app(
 def api() -> FastAPI:
     """Return the application without its parts; enough to describe the HTTP interface."""
     app = FastAPI(
-        title="flexcell",
+        title=_TITLE,
         version=_version(),
         lifespan=_lifespan,
         docs_url=None,
         redoc_url=None,
         openapi_url="/api/v1/openapi.json",
-        responses=_REFUSALS,
+        routes=list(_routes()),
     )
+    app.openapi = openapi
+    app.add_exception_handler(FlexcellError, _refused)
+    app.add_exception_handler(RequestValidationError, _malformed)
+    app.add_exception_handler(HTTPException, _http_error)
+    return app
+
+
+@cache
+def openapi() -> dict[str, Any]:
+    """Return the description of the HTTP interface, to be read only. The first call builds all routes."""
+    return get_openapi(title=_TITLE, version=_version(), routes=_routes())
+
+
+@cache
+def _routes() -> list[BaseRoute]:
+    """Return all routes; what is built of them at their first use is built once in a process."""
+    router = APIRouter(responses=_REFUSALS)
     # `relations` before `documents`, whose ids take any address.
     for module in (
         session,
@@ -150,12 +173,9 @@ def api() -> FastAPI:
         demonstration,
         page,
     ):
-        app.include_router(module.router)
-    app.include_router(control.interrupted_router)
-    app.add_exception_handler(FlexcellError, _refused)
-    app.add_exception_handler(RequestValidationError, _malformed)
-    app.add_exception_handler(HTTPException, _http_error)
-    return app
+        router.include_router(module.router)
+    router.include_router(control.interrupted_router)
+    return router.routes
 
 
 def _version() -> str:
@@ -169,7 +189,7 @@ def _version() -> str:
 async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     services: Services = app.state.services
     # Routes are built at first use, which would hold the event loop for a second while arms move.
-    await asyncio.to_thread(app.openapi)
+    await asyncio.to_thread(openapi)
     services.hub.open()
     await services.hub.robots.open()
     services.hub.documents.open()

@@ -13,7 +13,7 @@ from typing import Any, cast, get_args
 
 import msgspec
 
-from editor_web.app import api
+from editor_web import app
 from editor_web.live_frames import Delta, DocumentsChanged, Hello, Operate, Ping, Pong, Show, Snapshot, Watch
 from editor_web.past import Failure, Moment, Timeline
 from editor_web.teaching_wire import SCHEMAS as TEACHING
@@ -31,8 +31,8 @@ _SERVER_ONLY = {"HTTPValidationError", "ValidationError", "BusRequestBody", "Bus
 
 def openapi() -> str:
     """Return the description of the HTTP interface, version left out as it changes with each release."""
-    document = api().openapi()
-    document["info"]["version"] = "1"
+    described = app.openapi()
+    document = {**described, "info": {**described["info"], "version": "1"}}
     return json.dumps(document, indent=2, sort_keys=True) + "\n"
 
 
@@ -48,7 +48,7 @@ def typescript() -> str:
 
 
 def _http_schemas() -> dict[str, Schema]:
-    schemas = cast(dict[str, Schema], api().openapi()["components"]["schemas"])
+    schemas = cast(dict[str, Schema], app.openapi()["components"]["schemas"])
     return {name: schema for name, schema in schemas.items() if name not in _SERVER_ONLY}
 
 

@@ -55,7 +55,7 @@ def opened_page(
     page.on("console", listen)
     page.on("pageerror", lambda error: said.append(str(error)))
     try:
-        page.goto(login or running.new_login_url())
+        context.request.get(login or running.new_login_url(), max_redirects=0)
         page.goto(running.url.rstrip("/") + path)
         yield page
     finally:

@@ -8,7 +8,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 from editor_web.access import VIEWER
 from engine.document import load_behavior
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit
-from tests.editor_web.editing import LAPTOP, card, drag, pill, port
+from tests.editor_web.editing import LAPTOP, card, drag, idle, pill, port
 from tests.editor_web.workshop import Workshop
 
 MADE = "behaviors/first_steps.yaml"
@@ -108,6 +108,7 @@ def test_the_whole_tour_by_keyboard(browser: Browser, shop: Workshop) -> None:
         keys.type("first_steps")
         keys.press("Enter")
         at_step(page, "Add a first state")
+        idle(page)
         keys.press("a")
         keys.type("wait")
         keys.press("Enter")

@@ -149,8 +149,8 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     group: 'Which outcome',
     detail: way.target === undefined ? 'not connected' : `now leads to ${way.target}`,
     icon: <IconCircleDot size={15} className={isFailure(way.outcome) ? 'is-failure' : ''} aria-hidden />,
-    // The next box opens once this one has closed.
-    run: () => setTimeout(() => askFrom(path, way.outcome)),
+    // In the same update: what is typed on goes to the next box.
+    run: () => askFrom(path, way.outcome),
   }))
   return (
     <ChoiceBox
