@@ -43,7 +43,7 @@ parameters:
   how: {type: string, default: none}
   for_s: {type: number, default: 1.0}
   tell: {type: string, default: ""}
-  items: {type: array, default: ITEMS}
+  items: {type: list, default: ITEMS}
 outcomes: [ended]
 success: [ended]
 root:
