@@ -24,8 +24,9 @@ _ROOT = Path(__file__).parents[1]
 _FLEXCELL = Path(sys.executable).with_name("flexcell")
 _MOVING_S = 0.4
 _LOOK_S = 0.002
-_ITEMS = 60
-# 3,600 rounds: as much as one evaluation may cost.
+_START_S = 20.0
+_ITEMS = 38
+# 1,444 rounds: nearly as much as one evaluation may cost.
 _HEAVY = "items.all(i, items.all(j, i + j >= 0))"
 
 CELL = """
@@ -107,8 +108,11 @@ class Server:
         tell = self.folder / "moving"
         tell.write_bytes(b"")
         parameters = {"how": how, "for_s": for_s, "tell": str(tell)}
-        self.start("behaviors/swing.yaml", parameters)
+        run = self.start("behaviors/swing.yaml", parameters)
+        deadline_s = time.monotonic() + _START_S
         while not tell.read_bytes():
+            if time.monotonic() > deadline_s:
+                raise TimeoutError(f"the arm does not move: {self.run(run)['cause']}")
             time.sleep(_LOOK_S)
 
     def start(self, behavior: str, parameters: Mapping[str, object] | None = None) -> str:
