@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import os
 import shutil
@@ -67,16 +66,12 @@ root:
         with: {how: "${how}", after_s: AFTER, for_s: "${for_s}", tell: "${tell}"}
       think:
         machine:
-          initial: once
+          initial: again
           states:
-            once:
+            again:
               state: flow.Wait
               with: {duration_s: "${how != 'expression' ? 3600.0 : HEAVY ? 0.001 : 0.002}"}
               transitions: {done: again}
-            again:
-              state: flow.Wait
-              with: {duration_s: "${HEAVY ? 0.001 : 0.002}"}
-              transitions: {done: once}
     conditions:
       - {ended: {arm: ended}}
       - {ended: {block: done}}
@@ -157,14 +152,11 @@ def write_swing(folder: Path) -> None:
     """Write a project with one arm that swings, and a state that blocks."""
     (folder / "behaviors").mkdir(parents=True)
     (folder / "behaviors" / "cell.yaml").write_text(CELL, encoding="utf-8")
-    (folder / "behaviors" / "swing.yaml").write_text(_behavior(), encoding="utf-8")
+    items = json.dumps(list(range(_ITEMS)))
+    behavior = BEHAVIOR.replace("AFTER", str(_MOVING_S)).replace("HEAVY", _HEAVY).replace("ITEMS", items)
+    (folder / "behaviors" / "swing.yaml").write_text(behavior, encoding="utf-8")
     (folder / "flexcell.yaml").write_text("flexcell: 1\nstates: [stop_states]\n", encoding="utf-8")
     shutil.copy(Path(__file__).with_name("stop_states.py"), folder / "stop_states.py")
-
-
-def _behavior() -> str:
-    texts = {"AFTER": str(_MOVING_S), "HEAVY": _HEAVY, "ITEMS": json.dumps(list(range(_ITEMS)))}
-    return functools.reduce(lambda text, word: text.replace(word, texts[word]), texts, BEHAVIOR)
 
 
 @contextmanager

@@ -85,7 +85,7 @@ class _Search:
         choices = {name: self._distinct(all_of, named.get(name, set())) for name, all_of in self.outcomes.items()}
         # The children that most conditions name decide most, so they are tried first.
         order = sorted(named, key=lambda name: -sum(name in rule.when for rule in self.rules))
-        for chosen in self._extend({}, order, choices, list(self.rules)):
+        for chosen in self._extend({}, order, choices, [(rule.when, len(rule.when)) for rule in self.rules]):
             yield {name: chosen.get(name, choices[name][0]) for name in self.outcomes}
 
     def _distinct(self, outcomes: tuple[str, ...], named: set[str]) -> tuple[str, ...]:
@@ -97,7 +97,7 @@ class _Search:
         chosen: dict[str, str],
         order: list[str],
         choices: Mapping[str, tuple[str, ...]],
-        open_rules: list[Condition],
+        open_rules: Sequence[tuple[Mapping[str, str], int]],
     ) -> Iterator[dict[str, str]]:
         self.steps += 1
         if self.steps > MAX_STEPS:
@@ -108,8 +108,21 @@ class _Search:
             return
         name, rest = order[0], order[1:]
         for outcome in choices[name]:
-            still_open = [rule for rule in open_rules if rule.when.get(name, outcome) == outcome]
-            extended = {**chosen, name: outcome}
-            if any(all(child in extended for child in rule.when) for rule in still_open):
-                continue
-            yield from self._extend(extended, rest, choices, still_open)
+            still_open = _still_open(open_rules, name, outcome)
+            if still_open is not None:
+                yield from self._extend({**chosen, name: outcome}, rest, choices, still_open)
+
+
+def _still_open(
+    rules: Sequence[tuple[Mapping[str, str], int]], name: str, outcome: str
+) -> list[tuple[Mapping[str, str], int]] | None:
+    """Return the rules that a child's outcome leaves open, with how many children each waits for; None if one holds."""
+    still_open: list[tuple[Mapping[str, str], int]] = []
+    for when, waiting in rules:
+        wanted = when.get(name)
+        if wanted is None or wanted == outcome:
+            waiting -= wanted is not None
+            if waiting == 0:
+                return None
+            still_open.append((when, waiting))
+    return still_open

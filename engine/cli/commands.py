@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, MutableMapping
+from collections.abc import Iterator, Mapping
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -36,36 +37,23 @@ class Commands(TyperGroup):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self.commands = _CommandsOnDemand()
+        self.commands: Any = _CommandsOnDemand()
 
 
-class _CommandsOnDemand(MutableMapping[str, Any]):
+class _CommandsOnDemand(Mapping[str, Any]):
     """The commands by name; a module is imported when its command is looked up."""
 
-    def __init__(self) -> None:
-        self._loaded: dict[str, Any] = {}
-
     def __getitem__(self, name: str) -> Any:
-        if name not in self._loaded:
-            self._loaded[name] = _loaded(name)
-        return self._loaded[name]
-
-    def __setitem__(self, name: str, command: Any) -> None:
-        self._loaded[name] = command
-
-    def __delitem__(self, name: str) -> None:
-        del self._loaded[name]
+        return _loaded(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(dict.fromkeys((*_PLACES, *self._loaded)))
+        return iter(_PLACES)
 
     def __len__(self) -> int:
-        return len(set(_PLACES) | set(self._loaded))
-
-    def __contains__(self, name: object) -> bool:
-        return name in _PLACES or name in self._loaded
+        return len(_PLACES)
 
 
+@cache
 def _loaded(name: str) -> Any:
     module, _, attribute = _PLACES[name].partition(":")
     found = getattr(import_module(module), attribute)

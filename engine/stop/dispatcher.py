@@ -11,8 +11,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-import msgspec
-
 from engine.stop.messages import (
     CloseRelay,
     DeviceStop,
@@ -195,18 +193,12 @@ class StopDispatcher:
         self._loop.add_reader(connection.fileno(), self._read_line, line)
 
     def _read_line(self, line: _Line) -> None:
-        try:
-            data = line.connection.recv(_READ_BYTES)
-            messages = line.reader.feed(data)
-        except BlockingIOError:
-            return
-        except (OSError, msgspec.DecodeError):
-            data, messages = b"", []
+        messages, is_over = line.reader.receive(line.connection)
         for message in messages:
             if isinstance(message, StopAcknowledged):
                 line.acknowledged = max(line.acknowledged, message.stop)
                 line.at_rest = max(line.at_rest, message.stop if message.at_rest else 0)
-        if not data:
+        if is_over:
             self._cut(line)
         self._changed.set()
 

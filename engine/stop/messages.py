@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import socket
 from typing import Literal
 
 import msgspec
 
 LARGEST_MESSAGE = 16_384
+_READ_BYTES = 65536
 MAX_REASON = 500
 
 
@@ -135,6 +137,20 @@ class MessageReader:
             raise msgspec.DecodeError(f"a message is longer than {LARGEST_MESSAGE} bytes")
         self._waiting = bytearray(rest)
         return [self._decoder.decode(line) for line in lines]
+
+    def receive(self, connection: socket.socket) -> tuple[list[object], bool]:
+        """Read what has arrived on a socket that does not block.
+
+        Returns:
+            The messages, and whether the stream is over: closed by the other end, cut, or no stream of messages.
+        """
+        try:
+            data = connection.recv(_READ_BYTES)
+            return self.feed(data), not data
+        except BlockingIOError:
+            return [], False
+        except (OSError, msgspec.DecodeError):
+            return [], True
 
 
 def encoded(message: ToRelay | FromRelay | ToDevice | StopAcknowledged) -> bytes:

@@ -15,8 +15,6 @@ from types import TracebackType
 from typing import Self
 from urllib.parse import urlsplit
 
-import msgspec
-
 from engine.cell_connection import CONNECT_AGAIN
 from engine.child_process import exit_in_words, start_child
 from engine.errors import CellError, FlexcellError, RobotError
@@ -45,7 +43,6 @@ _START_S = 20.0
 _ORDER_S = 0.3
 _END_S = 2.0
 _WORDS_S = 0.2
-_READ_BYTES = 65536
 _log = logging.getLogger("flexcell.stop")
 
 StopCallback = Callable[[StopNotice], Awaitable[None]]
@@ -251,16 +248,10 @@ class StopRelay:
 
     def _read(self) -> None:
         assert self._control is not None
-        try:
-            data = self._control.recv(_READ_BYTES)
-            messages = self._reader.feed(data)
-        except BlockingIOError:
-            return
-        except (OSError, msgspec.DecodeError):
-            data, messages = b"", []
+        messages, is_over = self._reader.receive(self._control)
         for message in messages:
             self._take(message)
-        if not data:
+        if is_over:
             self._lost()
 
     def _take(self, message: object) -> None:

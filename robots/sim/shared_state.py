@@ -44,7 +44,7 @@ class SharedNumbers:
             copy = self._copies[count % 2].copy()
             if int(self._count[0]) == count:
                 self._last = copy
-                return copy.copy()
+                break
         return self._last.copy()
 
     def close(self) -> None:

@@ -628,10 +628,7 @@ def test_many_children_are_covered_without_counting_all_combinations() -> None:
 
 
 def test_a_search_that_would_take_too_long_is_said_to_be_incomplete() -> None:
-    """Nine pigeons in eight holes always share one, which no short search can tell: a warning, not a silence.
-
-    Without a bound it would take minutes.
-    """
+    """Nine pigeons in eight holes always share one, which no short search can tell: a warning, not a silence."""
     pigeons, holes = [f"p{i}" for i in range(9)], Maze.outcomes
     children = "".join(f"      {name}: {{state: maze.Leave}}\n" for name in pigeons)
     rules = "".join(
@@ -643,7 +640,7 @@ def test_a_search_that_would_take_too_long_is_said_to_be_incomplete() -> None:
     start = time.process_time()
     found = [f.code for f in check_behavior(parse_behavior(text, file="x.yaml"), CATALOGUE)]
     assert found == ["unused-outcome", "combinations-not-checked"]
-    assert time.process_time() - start < 8.0
+    assert time.process_time() - start < 2.0
 
 
 def test_ten_thousand_states_are_checked_within_seconds() -> None:
@@ -657,7 +654,7 @@ def test_ten_thousand_states_are_checked_within_seconds() -> None:
     behavior = parse_behavior(text, file="x.yaml")
     start = time.process_time()
     assert check_behavior(behavior, CATALOGUE) == ()
-    assert time.process_time() - start < 8.0
+    assert time.process_time() - start < 3.0
 
 
 def test_a_loaded_behavior_and_its_file_give_the_same_findings(tmp_path: Path) -> None:
