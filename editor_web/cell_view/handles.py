@@ -148,6 +148,7 @@ def _new_control(
         depth_test=False,
         position=pose.xyz,
         wxyz=pose.wxyz,
+        visible=False,
     )
     scene.add_icosphere(f"{_NODE}/ball", radius=_BALL_M, color=_COLOUR, cast_shadow=False)
 
@@ -158,4 +159,6 @@ def _new_control(
         pulled(client, given, Pull(phase=event.phase, pose=Placed(xyz=(x, y, z), xyzw=(a, b, c, w))))
 
     control.on_update(on_update)
+    # Whoever can see it can pull at it: viser sends the node at once, and a press that nobody hears is lost.
+    control.visible = True
     return control

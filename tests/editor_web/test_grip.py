@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 import websockets.asyncio.client
+from viser import TransformControlsHandle
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from editor_web.access import OPERATOR, VIEWER, Role
@@ -50,6 +51,7 @@ class Hand:
         async with asyncio.timeout(GUARD_S):
             while True:
                 news = json.loads(await self.grip.recv())
+                assert kind == "refused" or news["k"] != "refused", news
                 if news["k"] == kind and all(news[name] == value for name, value in fields.items()):
                     return news
 
@@ -133,6 +135,7 @@ def connect(site: TeachSite, path: str, *, role: Role = OPERATOR, **options: Any
 @asynccontextmanager
 async def hand_at(site: TeachSite) -> AsyncGenerator[Hand]:
     """A page that looks at the arm, which stands at home."""
+    await asyncio.to_thread(lambda: site.call(site.let_go()))
     await asyncio.to_thread(lambda: site.call(site.go_home()))
     async with (
         connect(site, f"/cell/{PAGE}/", subprotocols=[VISER]) as socket,
@@ -189,7 +192,9 @@ async def moving(site: TeachSite) -> AsyncGenerator[Hand]:
     """A hand that pulls the tool down by 30 cm, which takes three seconds; it has just begun to move."""
     async with hand_at(site) as hand:
         await hand.take()
-        await hand.drag(below(await hand.grab(), 0.3))
+        began = await hand.grab()
+        await hand.told("gripped", pulled=True)
+        await hand.drag(below(began, 0.3))
         await site.seen(lambda state: fastest(state) > 0.05)
         yield hand
 
@@ -213,6 +218,22 @@ async def test_the_tool_follows_the_handle_and_the_handle_comes_back_to_the_tool
 def _shown(view: ViserPage) -> tuple[float, ...]:
     node = view.node(HANDLE)
     return node.position if node is not None else (math.inf,) * 3
+
+
+async def test_the_handle_is_seen_only_once_somebody_listens_to_it(
+    site: TeachSite, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen_before: list[bool] = []
+    listen: Any = TransformControlsHandle.on_update
+
+    def noted(control: TransformControlsHandle, heard: Any) -> Any:
+        seen_before.append(control.visible)
+        return listen(control, heard)
+
+    monkeypatch.setattr(TransformControlsHandle, "on_update", noted)
+    async with hand_at(site) as hand:
+        await hand.take()
+    assert seen_before == [False]
 
 
 async def test_the_arm_rests_when_the_mouse_is_let_go(site: TeachSite) -> None:
