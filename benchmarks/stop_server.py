@@ -24,6 +24,7 @@ _FLEXCELL = Path(sys.executable).with_name("flexcell")
 _MOVING_S = 0.4
 _LOOK_S = 0.002
 _START_S = 20.0
+_REST_S = 10.0
 _ITEMS = 38
 # 1,444 rounds: nearly as much as one evaluation may cost.
 _HEAVY = "items.all(i, items.all(j, i + j >= 0))"
@@ -81,10 +82,11 @@ root:
 class Server:
     """One server and its processes."""
 
-    def __init__(self, process: subprocess.Popen[bytes], folder: Path) -> None:
+    def __init__(self, process: subprocess.Popen[bytes], folder: Path, *, state: Path) -> None:
         self.process = process
         self.folder = folder
-        self.record: dict[str, Any] = json.loads((folder / "state" / "server.json").read_bytes())
+        self.state = state
+        self.record: dict[str, Any] = json.loads((state / "server.json").read_bytes())
         self.http = httpx.Client(
             base_url=self.record["url"],
             headers={"Authorization": f"Bearer {self.record['token']}"},
@@ -92,11 +94,6 @@ class Server:
             trust_env=False,
         )
         self.look_at_world()
-
-    @property
-    def state(self) -> Path:
-        """Its state folder."""
-        return self.folder / "state"
 
     def start_run(self, how: str, for_s: float) -> None:
         """Start the arm and return when it moves, just before the loop is blocked in this way."""
@@ -133,8 +130,15 @@ class Server:
             time.sleep(0.02)
 
     def resting_since_s(self) -> float:
-        """Wait until the world's own process measures rest and return since when, on the monotonic clock."""
+        """Wait until the world's own process measures rest and return since when, on the monotonic clock.
+
+        Raises:
+            TimeoutError: something still moves.
+        """
+        deadline_s = time.monotonic() + _REST_S
         while not (since_ns := self.heartbeat.at_rest_since_ns):
+            if time.monotonic() > deadline_s:
+                raise TimeoutError(f"not everything is at rest within {_REST_S:g} s")
             time.sleep(_LOOK_S)
         return since_ns / 1e9
 
@@ -160,20 +164,39 @@ def write_swing(folder: Path) -> None:
 
 
 @contextmanager
-def server(folder: Path, *, write_project: Callable[[Path], None] = write_swing) -> Generator[Server]:
-    """Start a server in a new project, whose cell is `behaviors/cell.yaml`, and kill what is left of it at the end."""
+def server(
+    folder: Path,
+    *,
+    write_project: Callable[[Path], None] = write_swing,
+    environment: Mapping[str, str] | None = None,
+    disk: str = "",
+) -> Generator[Server]:
+    """Start a server in a new project, whose cell is `behaviors/cell.yaml`, and kill what is left of it at the end.
+
+    Args:
+        folder: Of the project.
+        write_project: Writes it.
+        environment: Of its processes, beside that of this one.
+        disk: Size of a disk in memory that holds its state folder, as mount takes it; empty for none.
+    """
     write_project(folder)
-    command = [_FLEXCELL, "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state", "--no-record"]
+    (folder / "state").mkdir(mode=0o700)
+    command = [str(_FLEXCELL), "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state"]
+    command.append("--no-record")
+    if disk:
+        script = f'mount -t tmpfs -o size={disk},mode=700 none state && exec "$0" "$@"'
+        command = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", script, *command]
+    around = {**os.environ, "PYTHONPATH": str(_ROOT), **(environment or {})}
     with (folder / "log").open("wb") as log:
-        process = subprocess.Popen(
-            command, cwd=folder, stdout=subprocess.PIPE, stderr=log, env={**os.environ, "PYTHONPATH": str(_ROOT)}
-        )
+        process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, stderr=log, env=around)
     assert process.stdout is not None
+    # What is mounted for a process is seen by others below its own root only.
+    seen_from = Path(f"/proc/{process.pid}/root") if disk else Path("/")
     try:
         for line in process.stdout:
             if line.startswith(b"Dashboard:"):
                 break
-        running = Server(process, folder)
+        running = Server(process, folder, state=seen_from / folder.relative_to("/") / "state")
         try:
             yield running
         finally:

@@ -149,7 +149,8 @@ class WorldLoop:
             self._engine.engine_is_gone()
             self.request_end()
             self._step_on()
-            self._engine.look(time.monotonic())
+        # The last words to whoever reads the heartbeat: since when everything rests.
+        self._engine.look(time.monotonic())
 
     def _step_on(self) -> None:
         step_s = self._simulation.step_s
@@ -166,7 +167,7 @@ class WorldLoop:
         if self._ending_at is None:
             return False
         self._simulation.apply(StopAll())
-        return not self._simulation.busy or time.monotonic() > self._ending_at
+        return self._simulation.at_rest or time.monotonic() > self._ending_at
 
     def _tick(self) -> None:
         for command in self._channel.commands():
