@@ -78,6 +78,7 @@ def new_app(
     stop: StopEndpoint | None = None,
     sessions: LoginSessions | None = None,
     capacity: int = MAX_CONNECTIONS,
+    view_port: int | None = None,
 ) -> ASGIApp:
     """Return the whole server as one ASGI application.
 
@@ -91,6 +92,7 @@ def new_app(
         stop: Where an operator's page sends STOP, beside here.
         sessions: The sessions of browsers; without it, sessions in memory only.
         capacity: Requests and websockets served at once; an operator's commands are served beyond it.
+        view_port: Port of the 3D view's own origin, under the same host names; None without a 3D view.
     """
     if sessions is None:
         sessions = LoginSessions(file=None, tokens=access.fingerprint())
@@ -105,6 +107,7 @@ def new_app(
         cell_view=cell_view,
         static=static,
         port=port,
+        view_port=view_port,
         stop=stop,
     )
     app.state.started = OrderedDict[str, str]()
@@ -119,6 +122,7 @@ def new_app(
         port=port,
         capacity=capacity,
         connect_sources=(stop.origin,) if stop is not None else (),
+        view_hosts=frozenset(f"{name.rpartition(':')[0]}:{view_port}" for name in hosts if view_port is not None),
     )
 
 

@@ -61,17 +61,20 @@ def malformed(scope: Scope) -> Refusal | None:
     return None
 
 
-def foreign(scope: Scope, headers: Mapping[str, str], *, has_token: bool) -> Refusal | None:
+def foreign(scope: Scope, headers: Mapping[str, str], *, has_token: bool, is_framed: bool = False) -> Refusal | None:
     """Refuse what a page of another host or port, or of another site, makes a browser send.
 
-    A page of another port of this machine counts as another site: browsers send it our cookie.
+    A page of another port of this machine counts as another site: browsers send it our cookie. What `is_framed`, the
+    3D view, is opened by the page of another port, ours; who else frames it is told by its policy that it must not.
     """
     origin = headers.get("origin")
     if origin is None and is_unsafe(scope) and not has_token:
         return Refusal(status=403, message="the Origin header is missing")
     if origin is not None and origin.lower() != f"http://{headers.get('host', '').lower()}":
         return Refusal(status=403, message="requests from other pages are refused")
-    if headers.get("sec-fetch-site", "none") not in _OWN_SITES and not _opens_page(scope, headers):
+    if headers.get("sec-fetch-site", "none") not in _OWN_SITES and not (
+        _opens_page(scope, headers) or (is_framed and _opens_frame(scope, headers))
+    ):
         return Refusal(status=403, message="requests from other sites are refused")
     return None
 
@@ -89,3 +92,9 @@ def _opens_page(scope: Scope, headers: Mapping[str, str]) -> bool:
     """Say whether somebody follows a link to the page itself; it holds no data, which it asks for on its own."""
     opens = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
     return opens and not is_unsafe(scope) and not scope["path"].startswith(_DATA_PATHS)
+
+
+def _opens_frame(scope: Scope, headers: Mapping[str, str]) -> bool:
+    """Say whether a page of this machine opens another one inside of it."""
+    is_near = headers.get("sec-fetch-site") == "same-site" and headers.get("sec-fetch-mode") == "navigate"
+    return is_near and headers.get("sec-fetch-dest") == "iframe" and not is_unsafe(scope)

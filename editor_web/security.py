@@ -25,15 +25,16 @@ from editor_web.sessions import LoginSession, LoginSessions
 
 PAGE_POLICY = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; font-src 'self' data:; "
-    "worker-src 'self' blob:; connect-src 'self'{sources}; frame-src 'self'; frame-ancestors 'self'; "
+    "worker-src 'self' blob:; connect-src 'self'{sources}; frame-src 'self'{views}; frame-ancestors 'self'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'"
 )
 # viser's page is one file with inlined scripts and wasm; it gets what it needs, under its own path only.
 CELL_POLICY = (
     "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; style-src 'self' 'unsafe-inline'; "
     "img-src 'self' data: blob:; font-src 'self' data:; worker-src 'self' blob: data:; "
-    "connect-src 'self' data: blob:; frame-ancestors 'self'; object-src 'none'; base-uri 'none'"
+    "connect-src 'self' data: blob:; frame-ancestors 'self'{pages}; object-src 'none'; base-uri 'none'"
 )
+VIEW_PATH = "/cell/"
 OPEN_PATHS = frozenset({"/login", "/favicon.svg"})
 LOG_OUT = "/api/v1/logout"
 
@@ -67,6 +68,8 @@ class Gate:
         port: Our own port, for the cookie's name.
         capacity: Requests and websockets served at once; beyond it only an operator's commands are, such as a stop.
         connect_sources: Further origins that the page may connect to.
+        view_hosts: Values of the Host header under which the 3D view alone is served: its own origin, so that
+            browsers give it a process of its own and it reaches nothing of the page around it.
     """
 
     def __init__(
@@ -80,6 +83,7 @@ class Gate:
         port: int,
         capacity: int = MAX_CONNECTIONS,
         connect_sources: Sequence[str] = (),
+        view_hosts: frozenset[str] = frozenset(),
     ) -> None:
         self._app = app
         self._access = access
@@ -88,6 +92,9 @@ class Gate:
         self._hosts = hosts
         self._cookie = cookie_name(port)
         self._capacity = capacity
+        self._view_hosts = view_hosts
+        self._page_ports = _ports(hosts)
+        self._view_ports = _ports(view_hosts)
         self._connect_sources = tuple(connect_sources)
         self._open = 0
 
@@ -127,18 +134,31 @@ class Gate:
             await _answer(self._headers(scope), send, refusal)
 
     def _headers(self, scope: Scope) -> dict[str, str]:
-        return response_headers(scope["path"], connect_sources=self._connect_sources)
+        host = next((value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"), "")
+        known = host if host in self._hosts | self._view_hosts else ""
+        origins = Origins(
+            pages=_sources(known, self._page_ports),
+            views=_sources(known, self._view_ports),
+            connect_sources=self._connect_sources,
+        )
+        return response_headers(scope["path"], origins)
 
     def _judge(self, scope: Scope) -> Admission | Refusal:
         headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
         bearer = _bearer(headers)
         is_open = scope["path"] in OPEN_PATHS and scope["type"] == "http"
-        if headers.get("host", "").lower() not in self._hosts:
+        host = headers.get("host", "").lower()
+        is_view = host in self._view_hosts
+        if host not in self._hosts and not is_view:
             return Refusal(status=421, message="this server does not answer to that host name")
+        if is_view and not scope["path"].startswith(VIEW_PATH):
+            return Refusal(status=404, message="at this address there is nothing but the 3D view")
         if told_too_large(headers):
             return Refusal(status=413, message=TOO_LARGE)
-        if (not is_open or is_unsafe(scope)) and (refusal := foreign(scope, headers, has_token=bool(bearer))):
-            return refusal
+        if not is_open or is_unsafe(scope):
+            refusal = foreign(scope, headers, has_token=bool(bearer), is_framed=is_view)
+            if refusal is not None:
+                return refusal
         if is_open:
             return Admission(role=None, session=self._session(headers))
         found = self._by_token(scope, bearer) if bearer else self._by_cookie(scope, headers)
@@ -228,12 +248,23 @@ def _not_logged_in() -> Refusal:
     )
 
 
-def response_headers(path: str, *, connect_sources: Sequence[str] = ()) -> dict[str, str]:
-    """Return the headers that every answer under `path` carries; the page may also connect to `connect_sources`."""
+@dataclass(frozen=True, kw_only=True)
+class Origins:
+    """Sources of a content security policy: the page, its 3D view, and what else the page may connect to."""
+
+    pages: Sequence[str] = ()
+    views: Sequence[str] = ()
+    connect_sources: Sequence[str] = ()
+
+
+def response_headers(path: str, origins: Origins | None = None) -> dict[str, str]:
+    """Return the headers that every answer under `path` carries."""
+    of = origins or Origins()
+    is_view = path.startswith(VIEW_PATH)
     policy = (
-        CELL_POLICY
-        if path.startswith("/cell/")
-        else PAGE_POLICY.format(sources="".join(f" {s}" for s in connect_sources))
+        CELL_POLICY.format(pages=_listed(of.pages))
+        if is_view
+        else PAGE_POLICY.format(sources=_listed(of.connect_sources), views=_listed(of.views))
     )
     headers = {
         "content-security-policy": policy,
@@ -243,9 +274,29 @@ def response_headers(path: str, *, connect_sources: Sequence[str] = ()) -> dict[
         "cross-origin-opener-policy": "same-origin",
         "cross-origin-resource-policy": "same-origin",
     }
+    if is_view:
+        # Without it, browsers may run the view in the process of the page around it, as both are of one site.
+        headers["origin-agent-cluster"] = "?1"
     if not path.startswith("/assets/"):
         headers["cache-control"] = "no-store"
     return headers
+
+
+def _ports(hosts: frozenset[str]) -> tuple[str, ...]:
+    return tuple(sorted({host.rpartition(":")[2] for host in hosts}))
+
+
+def _sources(host: str, ports: Sequence[str]) -> tuple[str, ...]:
+    """Return the sources at the same host name as the one that was asked."""
+    name = host.rpartition(":")[0]
+    if not name:
+        return ()
+    # A policy has no form for IPv6 addresses.
+    return tuple(f"http://{'*' if name.startswith('[') else name}:{port}" for port in ports)
+
+
+def _listed(sources: Sequence[str]) -> str:
+    return "".join(f" {source}" for source in sources)
 
 
 def _with_headers(headers: Mapping[str, str], send: Send) -> Send:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
-from collections.abc import AsyncGenerator, Callable, Generator
+from collections.abc import AsyncGenerator, Callable, Generator, Sequence
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -32,11 +32,12 @@ SILENCE_S = 12.0
 
 @dataclass(frozen=True, kw_only=True)
 class Dashboard:
-    """A running server: `url` is the page, `token` the operator's, which commands the cell."""
+    """A running server: `url` is the page, `token` the operator's; `view_port` is the 3D view's, where there is one."""
 
     url: str
     token: str = field(repr=False)
     port: int
+    view_port: int | None
     sessions: LoginSessions = field(repr=False)
 
     def new_login_url(self, role: Role = OPERATOR) -> str:
@@ -47,9 +48,9 @@ class Dashboard:
 class _Server(uvicorn.Server):
     """uvicorn without its signal handlers, as Ctrl-C belongs to whoever runs the cell, and with our own acceptor."""
 
-    def __init__(self, config: uvicorn.Config, listener: socket.socket, *, limit: int) -> None:
+    def __init__(self, config: uvicorn.Config, listeners: Sequence[socket.socket], *, limit: int) -> None:
         super().__init__(config)
-        self._listener = listener
+        self._listeners = listeners
         self._limit = limit
 
     @contextmanager
@@ -63,15 +64,21 @@ class _Server(uvicorn.Server):
         if self.lifespan.should_exit:
             raise FlexcellError("the dashboard ended while it was starting", hint="see the log above")
         waiting = WaitingConnections()
-        acceptor = Acceptor(
-            self._listener,
-            new_protocol=lambda: TimedConnection(self.config, self.server_state, self.lifespan.state, waiting=waiting),
-            limit=self._limit,
-            count=lambda: len(self.server_state.connections),
-            waiting=waiting,
-        )
-        acceptor.open()
-        self.servers = [acceptor]  # pyright: ignore[reportAttributeAccessIssue] # it is closed and waited for like one
+        acceptors = [
+            Acceptor(
+                listener,
+                new_protocol=lambda: TimedConnection(
+                    self.config, self.server_state, self.lifespan.state, waiting=waiting
+                ),
+                limit=self._limit,
+                count=lambda: len(self.server_state.connections),
+                waiting=waiting,
+            )
+            for listener in self._listeners
+        ]
+        for acceptor in acceptors:
+            acceptor.open()
+        self.servers = acceptors  # pyright: ignore[reportAttributeAccessIssue] # closed and waited for like those
         self.started = True
 
 
@@ -82,6 +89,7 @@ async def dashboard(
     token_file: Path,
     host: str = "127.0.0.1",
     port: int = 0,
+    view_port: int = 0,
     cell_view: bool = True,
     shadows: bool = True,
     static: Path = STATIC,
@@ -95,6 +103,7 @@ async def dashboard(
         token_file: Where the log-in tokens are kept; made when missing. Sessions are kept beside it.
         host: A loopback address or name.
         port: TCP port; 0 takes a free one.
+        view_port: TCP port of the 3D view's own origin; 0 takes a free one.
         cell_view: Whether to draw the cell in 3D.
         shadows: Whether the 3D view casts shadows.
         static: Folder of the built page.
@@ -107,8 +116,15 @@ async def dashboard(
     access = load_access(token_file)
     sessions = LoginSessions(file=token_file.with_name("sessions"), tokens=access.fingerprint())
     sessions.load()
-    listener = bound_socket(host, port, option="--port")
-    bound = int(listener.getsockname()[1])
+    listeners = [bound_socket(host, port, option="--port")]
+    if cell_view:
+        try:
+            listeners.append(bound_socket(host, view_port, option="--view-port"))
+        except FlexcellError:
+            listeners[0].close()
+            raise
+    bound, *others = (int(each.getsockname()[1]) for each in listeners)
+    view = others[0] if others else None
     hosts = frozenset(f"{name}:{bound}" for name in (host_in_url(host), "127.0.0.1", "localhost", "[::1]"))
     if relay is not None:
         relay.allow_origins(f"http://{name}" for name in hosts)
@@ -123,6 +139,7 @@ async def dashboard(
         sessions=sessions,
         capacity=limit - COMMAND_RESERVE,
         stop=relay.endpoint if relay is not None else None,
+        view_port=view,
     )
     config = uvicorn.Config(
         app,
@@ -136,18 +153,23 @@ async def dashboard(
         ws_ping_timeout=SILENCE_S - PING_S,
         timeout_graceful_shutdown=STOP_LIMIT_S,
     )
-    server = _Server(config, listener, limit=limit)
+    server = _Server(config, listeners, limit=limit)
     with repeats_left_out():
         serving = asyncio.create_task(server.serve(), name="dashboard")
         try:
             await _started(server, serving)
             yield Dashboard(
-                url=f"http://{host_in_url(host)}:{bound}/", token=access.operator, port=bound, sessions=sessions
+                url=f"http://{host_in_url(host)}:{bound}/",
+                token=access.operator,
+                port=bound,
+                view_port=view,
+                sessions=sessions,
             )
         finally:
             server.should_exit = True
             await serving
-            listener.close()
+            for listener in listeners:
+                listener.close()
             sessions.save()
 
 
@@ -157,12 +179,15 @@ async def serve(
     token_file: Path,
     host: str = "127.0.0.1",
     port: int = 0,
+    view_port: int = 0,
     relay: StopRelay | None = None,
     on_ready: Callable[[Dashboard], None],
 ) -> None:
     """Serve the page until cancelled; `on_ready` is told the address once it answers."""
     raise_descriptor_limit()
-    async with dashboard(backend, token_file=token_file, host=host, port=port, relay=relay) as running:
+    async with dashboard(
+        backend, token_file=token_file, host=host, port=port, view_port=view_port, relay=relay
+    ) as running:
         on_ready(running)
         await asyncio.Event().wait()
 

@@ -143,11 +143,14 @@ class ConnectBody(Wire):
 
 
 class SessionBody(Wire):
-    """Who is logged in, and what this server has; `stop` is for operators."""
+    """Who is logged in, and what this server has; `stop` is for operators.
+
+    The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null where there is none.
+    """
 
     role: str
     cell_name: str
-    has_cell_view: bool
+    cell_view_port: int | None
     epoch: str
     cell: ConnectionBody
     stop: StopEndpointBody | None = None

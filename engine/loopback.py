@@ -23,7 +23,8 @@ def bound_socket(host: str, port: int, *, option: str) -> socket.socket:
         raise FlexcellError(
             "the dashboard listens on this machine only",
             where=host,
-            hint="use 127.0.0.1, and from elsewhere an SSH tunnel: ssh -L 8642:127.0.0.1:8642 <machine>",
+            hint="use 127.0.0.1, and from elsewhere an SSH tunnel for each port (--port, --view-port, --stop-port): "
+            "ssh -L 8642:127.0.0.1:8642 <machine>",
         )
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     bound = socket.socket(family, socket.SOCK_STREAM)

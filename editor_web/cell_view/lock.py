@@ -38,9 +38,10 @@ _log = logging.getLogger("flexcell.cell_view")
 
 
 def page() -> bytes:
-    """Return viser's one-file page with its own panel hidden."""
+    """Return viser's one-file page with its own panel hidden, and with what tells the page around it of the mouse."""
     built = Path(viser.__file__).parent / "client" / "build" / "index.html"
-    return built.read_bytes().replace(b"</head>", _HIDE_PANEL, 1)
+    told = b"<script>" + Path(__file__).with_name("frame_events.js").read_bytes() + b"</script>"
+    return built.read_bytes().replace(b"</head>", told + _HIDE_PANEL, 1)
 
 
 def new_server(key: str) -> viser.ViserServer:

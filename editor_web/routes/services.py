@@ -20,7 +20,7 @@ from engine.stop import StopEndpoint
 
 @dataclass(frozen=True, kw_only=True)
 class Services:
-    """The parts of one server; `cell_view` is None when it is switched off."""
+    """The parts of one server; `cell_view` is None when it is switched off, and `view_port` with it."""
 
     backend: Backend
     hub: LiveHub
@@ -30,6 +30,7 @@ class Services:
     cell_view: CellView | None
     static: Path
     port: int
+    view_port: int | None = None
     stop: StopEndpoint | None = None
 
     @property

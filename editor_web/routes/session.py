@@ -27,7 +27,7 @@ async def get_session(request: Request, services: ServicesOf) -> SessionBody:
     return SessionBody(
         role=role,
         cell_name=services.backend.cell_name,
-        has_cell_view=services.cell_view is not None,
+        cell_view_port=services.view_port,
         epoch=services.hub.epoch,
         cell=ConnectionBody.model_validate(services.backend.cell_connection),
         stop=StopEndpointBody.model_validate(stop) if stop is not None and role == OPERATOR else None,

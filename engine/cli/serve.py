@@ -43,6 +43,14 @@ def serve(
             help="TCP port at which STOP is taken whatever the server does; 0 takes a free one.", min=0, max=65535
         ),
     ] = 0,
+    view_port: Annotated[
+        int,
+        typer.Option(
+            help="TCP port of the page's 3D view, which browsers draw in a process of its own; 0 takes a free one.",
+            min=0,
+            max=65535,
+        ),
+    ] = 0,
     project: Annotated[Path, typer.Option(help="Folder with `behaviors/` in it.")] = Path(),
     state: Annotated[Path, typer.Option(help="Folder for tokens and the journal.")] = Path(".flexcell"),
     seed: Annotated[
@@ -72,6 +80,7 @@ def serve(
                 port=port,
                 host=host,
                 stop_port=stop_port,
+                view_port=view_port,
                 project=project,
                 folder=folder,
                 seed=seed,
@@ -89,6 +98,7 @@ async def _serve(
     port: int,
     host: str,
     stop_port: int,
+    view_port: int,
     project: Path,
     folder: StateFolder,
     seed: int | None,
@@ -123,7 +133,15 @@ async def _serve(
             Session(opened, project=project, catalogue=catalogue, journal=journal, recordings=recordings) as session,
         ):
             serving = asyncio.create_task(
-                new_dashboard(session, token_file=state / "tokens", host=host, port=port, relay=relay, on_ready=ready),
+                new_dashboard(
+                    session,
+                    token_file=state / "tokens",
+                    host=host,
+                    port=port,
+                    view_port=view_port,
+                    relay=relay,
+                    on_ready=ready,
+                ),
                 name="serve",
             )
             _on_signals(asyncio.get_running_loop(), serving.cancel)

@@ -27,4 +27,5 @@ def dashboard_of(process: subprocess.Popen[str], folder: Path) -> Dashboard:
     assert "/login?t=" in line, (line, process.poll())
     record = ServerRecord.read(folder)
     port = int(record.url.rstrip("/").rsplit(":", 1)[1])
-    return ServerProcess(url=record.url, token=record.token, port=port, sessions=LoginSessions(file=None, tokens=""))
+    sessions = LoginSessions(file=None, tokens="")
+    return ServerProcess(url=record.url, token=record.token, port=port, view_port=None, sessions=sessions)

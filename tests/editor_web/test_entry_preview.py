@@ -139,7 +139,7 @@ def seeing(site: TeachSite, name: str) -> Generator[ViserPage]:
 
 def name_of(page: Page) -> str:
     """What the page calls itself."""
-    found = re.fullmatch(r"/cell/(\w+)/.*", page.locator("iframe.cell-frame").get_attribute("src") or "")
+    found = re.fullmatch(r"http://[^/]+/cell/(\w+)/.*", page.locator("iframe.cell-frame").get_attribute("src") or "")
     assert found is not None
     return found[1]
 

@@ -15,7 +15,7 @@ from websockets.exceptions import InvalidStatus
 from editor_web.access import OPERATOR, VIEWER, Access, AttemptLimit, Role, load_access
 from editor_web.app import new_app
 from editor_web.request_rules import MAX_HEADERS
-from editor_web.security import Gate, response_headers
+from editor_web.security import Gate, Origins, response_headers
 from editor_web.sessions import LoginSessions
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend
@@ -44,7 +44,7 @@ def sessions() -> LoginSessions:
 def client(access: Access, sessions: LoginSessions) -> httpx.AsyncClient:
     """A client without any credentials, at the right address."""
     hosts = frozenset({HOST, "localhost:8642"})
-    app = new_app(FakeBackend(), access=access, sessions=sessions, hosts=hosts, port=8642)
+    app = new_app(FakeBackend(), access=access, sessions=sessions, hosts=hosts, port=8642, view_port=8643)
     return httpx.AsyncClient(transport=httpx.ASGITransport(app=app), base_url=ORIGIN)
 
 
@@ -254,6 +254,7 @@ async def test_files_outside_the_page_are_out_of_reach(client: httpx.AsyncClient
         assert (await client.get(path, headers=session(sessions))).status_code == 404, path
 
 
+POLICY = "content-security-policy"
 READS = ("/api/v1/session", "/api/v1/behaviors", "/api/v1/openapi.json", "/cell/")
 
 
@@ -273,6 +274,39 @@ async def test_a_page_of_another_port_reads_nothing(client: httpx.AsyncClient, s
         for headers in ({"Sec-Fetch-Site": "same-origin"}, {"Sec-Fetch-Site": "none"}, {"Origin": ORIGIN}):
             answer = await client.get(path, headers={**cookie(sessions), **headers})
             assert answer.status_code in (200, 404), (path, headers)
+
+
+async def test_the_3d_view_is_framed_by_our_page_under_an_origin_of_its_own(
+    client: httpx.AsyncClient, sessions: LoginSessions
+) -> None:
+    """Where there is nothing else: it runs code of others, which reaches neither the page nor what the page may do."""
+    frame = {"Sec-Fetch-Site": "same-site", "Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "iframe"}
+    view = {**cookie(sessions), "Host": "127.0.0.1:8643"}
+    answer = await client.get("/cell/p1/", headers={**view, **frame})
+    # There is no 3D view behind this server; but it was let through.
+    assert answer.status_code == 404
+    assert answer.headers["origin-agent-cluster"] == "?1"
+    assert "frame-ancestors 'self' http://127.0.0.1:8642;" in answer.headers[POLICY]
+    page = await client.get("/login")
+    assert "frame-src 'self' http://127.0.0.1:8643;" in page.headers[POLICY]
+    assert "origin-agent-cluster" not in page.headers
+    named = await client.get("/login", headers={"Host": "localhost:8642"})
+    assert "frame-src 'self' http://localhost:8643;" in named.headers[POLICY]
+    for changed in ({"Sec-Fetch-Site": "cross-site"}, {"Sec-Fetch-Dest": "document"}, {"Sec-Fetch-Mode": "cors"}):
+        assert (await client.get("/cell/p1/", headers={**view, **frame, **changed})).status_code == 403, changed
+    for path in ("/", "/login", "/api/v1/session"):
+        answer = await client.get(path, headers={**view, "Sec-Fetch-Site": "same-origin"})
+        assert (answer.status_code, "3D view" in answer.text) == (404, True), path
+
+
+async def test_the_3d_view_asks_the_page_s_server_for_nothing(
+    client: httpx.AsyncClient, sessions: LoginSessions
+) -> None:
+    """What its scripts send there counts as that of any other page."""
+    for site in ("same-site", "cross-site"):
+        asks = {**cookie(sessions), "Origin": "http://127.0.0.1:8643", "Sec-Fetch-Site": site}
+        assert (await client.post("/api/v1/cell/stop", headers=asks)).status_code == 403
+        assert (await client.get("/api/v1/session", headers=asks)).status_code == 403
 
 
 async def test_a_link_elsewhere_leads_to_the_page(client: httpx.AsyncClient, sessions: LoginSessions) -> None:
@@ -317,7 +351,7 @@ async def test_control_characters_in_an_address_are_refused(
 
 def test_the_page_may_connect_to_what_it_is_told() -> None:
     """And to nothing else."""
-    policy = response_headers("/", connect_sources=("http://127.0.0.1:9",))["content-security-policy"]
+    policy = response_headers("/", Origins(connect_sources=("http://127.0.0.1:9",)))["content-security-policy"]
     assert "connect-src 'self' http://127.0.0.1:9; " in policy
     assert "connect-src 'self'; " in response_headers("/")["content-security-policy"]
 

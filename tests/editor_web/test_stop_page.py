@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, Frame, Page, Route, expect
 
 import hatch_build
 from editor_web.access import VIEWER
@@ -169,6 +169,54 @@ def test_stop_is_above_a_dialog_and_its_key_works_there(browser: Browser, shop: 
         until(page, lambda: len(stops) == 4)
         expect(dwell).to_have_value("0")
         expect(stop_button(page)).to_be_visible()
+
+
+def test_a_3d_view_that_hangs_holds_up_neither_stop_nor_the_page(
+    browser: Browser, tmp_path: Path, loopback: str
+) -> None:
+    """A picture without a graphics card takes a second; the view has a process of its own."""
+    with (
+        Workshop(host=loopback, project=tmp_path, cell_view=True) as shop,
+        opened_page(browser, shop.running, quiet=False) as page,
+    ):
+        hangs_until_ms: int = view_of(page).evaluate(
+            """() => {
+              const end = Date.now() + 120_000
+              setTimeout(() => { while (Date.now() < end); })
+              return end
+            }"""
+        )
+        stop_button(page).click()
+        expect(stop_news(page)).to_contain_text("All arms at rest")
+        assert page.evaluate("Date.now()") < hangs_until_ms
+
+
+def test_the_key_of_stop_works_in_the_3d_view_and_for_nobody_else(
+    browser: Browser, tmp_path: Path, loopback: str
+) -> None:
+    """Only that frame of the page is believed."""
+    with (
+        Workshop(host=loopback, project=tmp_path, cell_view=True) as shop,
+        opened_page(browser, shop.running, quiet=False) as page,
+    ):
+        stops: list[str] = []
+        page.on("request", lambda request: stops.append(request.url) if request.url.endswith("/cell/stop") else None)
+        page.evaluate("window.postMessage({ cellView: 'stop' }, '*')")
+        page.evaluate("() => new Promise(requestAnimationFrame)")
+        assert stops == []
+        view_of(page).locator("body").press(KEY)
+        expect(stop_news(page)).to_contain_text("All arms at rest")
+        assert len(stops) == 1
+
+
+def view_of(page: Page) -> Frame:
+    """The frame that draws the cell, once it is there."""
+    element = page.wait_for_selector("iframe.cell-frame")
+    assert element is not None
+    frame = element.content_frame()
+    assert frame is not None
+    frame.wait_for_load_state()
+    return frame
 
 
 def test_a_viewer_has_no_stop(browser: Browser, shop: Workshop) -> None:

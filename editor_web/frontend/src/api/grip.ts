@@ -1,6 +1,7 @@
 /** The handle at an arm in the 3D view of this page: over a connection of its own, with which it ends.
  *
- * The arm follows only while the mouse is down in the view and this page says so, every 50 ms.
+ * The arm follows only while the mouse is down in the view and this page passes that on, every 50 ms: neither says so in
+ * the other's name, so an arm rests when either of them hangs.
  */
 import { create } from 'zustand'
 import { PAGE } from './shown'
@@ -34,15 +35,11 @@ interface GripStore {
 const NONE: GripStore = { arm: '', way: 'move', pulled: false, refused: '' }
 export const useGrip = create<GripStore>(() => NONE)
 
-const HELD_MS = 50
-
 let socket: WebSocket | undefined
-let holding: ReturnType<typeof setInterval> | undefined
 
 /** Show a handle at this arm's tool, for operators; empty takes it away. */
 export function takeHandle(arm: string, way: Way = 'move'): void {
   if (!arm) {
-    letGo()
     socket?.close()
     socket = undefined
     useGrip.setState(NONE)
@@ -53,32 +50,9 @@ export function takeHandle(arm: string, way: Way = 'move'): void {
   else open(send)
 }
 
-/** Watch the mouse in the window of the 3D view; returns how to end it. */
-export function watchHolding(view: Window): () => void {
-  const ended = new AbortController()
-  const { signal } = ended
-  view.addEventListener('pointerdown', hold, { signal, capture: true })
-  for (const kind of ['pointerup', 'pointercancel', 'blur', 'pagehide']) {
-    view.addEventListener(kind, letGo, { signal, capture: true })
-  }
-  document.addEventListener('visibilitychange', () => document.hidden && letGo(), { signal })
-  return () => {
-    letGo()
-    ended.abort()
-  }
-}
-
-function hold(): void {
-  if (socket === undefined) return
-  letGo()
-  const say = () => socket?.readyState === WebSocket.OPEN && socket.send('{"k":"held"}')
-  say()
-  holding = setInterval(say, HELD_MS)
-}
-
-function letGo(): void {
-  clearInterval(holding)
-  holding = undefined
+/** The view says that the mouse is down in it; it says so every 50 ms as long as that is so. */
+export function sayHeld(): void {
+  if (socket?.readyState === WebSocket.OPEN) socket.send('{"k":"held"}')
 }
 
 function open(then: () => void): void {
@@ -97,7 +71,6 @@ function open(then: () => void): void {
   }
   opened.onclose = () => {
     if (socket !== opened) return
-    letGo()
     socket = undefined
     useGrip.setState(NONE)
   }

@@ -20,6 +20,11 @@ interface SessionStore {
 
 export const useSession = create<SessionStore>(() => ({ session: undefined, isLoggedOut: false }))
 
+/** Whether the server draws the cell in 3D. */
+export function hasCellView(session: SessionBody | undefined): boolean {
+  return typeof session?.cell_view_port === 'number'
+}
+
 /** The server knows this page. */
 export function keepSession(session: Session): void {
   const before = useSession.getState().session

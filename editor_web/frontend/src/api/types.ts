@@ -1032,11 +1032,11 @@ export interface SavedBody {
   readonly saved_at: number
 }
 
-/** Who is logged in, and what this server has; `stop` is for operators. */
+/** Who is logged in, and what this server has; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null for a server without one. */
 export interface SessionBody {
   readonly role: string
   readonly cell_name: string
-  readonly has_cell_view: boolean
+  readonly cell_view_port: number | null
   readonly epoch: string
   readonly cell: ConnectionBody
   readonly stop: StopEndpointBody | null

@@ -7,6 +7,7 @@ import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
 import { forgive, refuse } from '../api/refusal'
+import { hasCellView } from '../api/session'
 import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
@@ -144,13 +145,13 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       tools={
         <>
           <span className="spacer" />
-          {session?.has_cell_view && <ShowMenu />}
+          {hasCellView(session) && <ShowMenu />}
           {mayOperate && <ResetParts isBusy={active.length > 0} />}
         </>
       }
       foot={<RobotStrip />}
     >
-      <CellFrame isServed={session?.has_cell_view ?? false} />
+      <CellFrame />
     </Panel>
   )
   const parameters = (
@@ -226,7 +227,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
         <RunBar run={run} commands={commands} onSheet={() => setSheetOpen(true)} onShow={show} />
       </ViewBoundary>
       <ViewBoundary name="Timeline">
-        <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
+        <PastLine run={run} hasCellView={hasCellView(session)} />
       </ViewBoundary>
       <RefusalLine />
       <ViewBoundary name="Requests">

@@ -13,7 +13,7 @@ export function EditorPreview({ isNarrow }: { readonly isNarrow: boolean }) {
     <EntryPreview
       shown={shown}
       isSheet={isNarrow}
-      view={<CellFrame isServed />}
+      view={<CellFrame />}
       // A sheet lies over everything, also over the menu.
       tools={isNarrow ? null : <ShowMenu />}
       onClose={() => showPreview(undefined)}

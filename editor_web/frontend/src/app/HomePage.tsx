@@ -29,7 +29,7 @@ export function HomePage({ hasCellView, onOpenRun }: HomePageProps) {
     <div className="home">
       <h1 className="visually-hidden">The cell</h1>
       <Panel title="Cell" className="home-cell" tools={<CellTools hasView={hasCellView} mayOperate={role === 'operator'} />} foot={<CellFoot />}>
-        <CellFrame isServed={hasCellView} />
+        <CellFrame />
       </Panel>
       <Panel title="Latest runs" className="home-runs" tools={<RunTools mayOperate={role === 'operator'} />}>
         {role === 'operator' && <TourInvitation />}

@@ -1,6 +1,7 @@
 /** A past run or a recording, read-only: the same view as of a run under way, from its beginning to its end. */
 import { useEffect, useMemo, useState } from 'react'
 import { openSubject, pastApi, recordingSubject, runSubject, useTimeline } from '../api/timeline'
+import { hasCellView } from '../api/session'
 import type { OpenedPastBody, RunLine, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
@@ -73,7 +74,7 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
   )
   const cell = (
     <Panel title="Cell" className="cell-panel">
-      <CellFrame isServed={session?.has_cell_view ?? false} />
+      <CellFrame />
     </Panel>
   )
   const outline = (
@@ -103,7 +104,7 @@ function Opened({ id, isRecording, session, isNarrow, onAll, opened }: PastPageP
           <span className="command-label">All past runs</span>
         </button>
       </header>
-      <PastLine run={run} hasCellView={session?.has_cell_view ?? false} />
+      <PastLine run={run} hasCellView={hasCellView(session)} />
       {isNarrow ? (
         <OpenedTabs label="Views" className="narrow-tabs" bodies={{ ...dock, Graph: graph, Cell: cell, Outline: outline }} />
       ) : (

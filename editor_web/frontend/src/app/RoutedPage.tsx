@@ -1,7 +1,7 @@
 /** The page that an address means; each but the first is loaded when it is first opened. */
 import { Suspense } from 'react'
 import { useLive } from '../api/live'
-import type { Session } from '../api/session'
+import { hasCellView, type Session } from '../api/session'
 import type { RunLine } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
@@ -46,7 +46,7 @@ export function RoutedPage(props: RoutedPageProps) {
     case 'beside':
       return <BesidePage left={route.left} right={route.right} isNarrow={isNarrow} onOpen={onOpen} />
     case 'home':
-      return <HomePage hasCellView={session?.has_cell_view ?? false} onOpenRun={(id) => onOpen(runHref(id))} />
+      return <HomePage hasCellView={hasCellView(session)} onOpenRun={(id) => onOpen(runHref(id))} />
   }
   if (route.page === 'recording' || (route.page === 'run' && knowsRuns && !shown)) {
     return (
@@ -94,7 +94,7 @@ function Edit({ id, session, isNarrow, onOpen }: RoutedPageProps & { readonly id
       onRun={() => onOpen(behaviorHref(id))}
       onOpen={(other, node) => onOpen(editHref(other, node))}
       onGone={() => onOpen('/')}
-      hasCellView={session?.has_cell_view ?? false}
+      hasCellView={hasCellView(session)}
       preview={preview}
       libraryTools={mayEdit ? <FromDemonstration onMade={(made) => onOpen(editHref(made))} /> : undefined}
     />

@@ -2,6 +2,7 @@
 import { useEffect, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
 import { connectTeach, lookAway, useTeach } from '../api/teaching'
+import { hasCellView } from '../api/session'
 import type { ArmCard, SessionBody } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
@@ -40,14 +41,14 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
       tools={
         <>
           <span className="spacer" />
-          {session?.has_cell_view && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={lookAway} />}
-          {session?.has_cell_view && <ShowMenu />}
-          {session?.has_cell_view && session.role === 'operator' && <HandleMenu />}
+          {hasCellView(session) && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={lookAway} />}
+          {hasCellView(session) && <ShowMenu />}
+          {hasCellView(session) && session?.role === 'operator' && <HandleMenu />}
         </>
       }
       foot={<RobotStrip />}
     >
-      <CellFrame isServed={session?.has_cell_view ?? false} />
+      <CellFrame />
     </Panel>
   )
   return (

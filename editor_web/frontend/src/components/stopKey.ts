@@ -4,15 +4,24 @@ import { useSession } from '../api/session'
 
 export const STOP_KEY = 'Ctrl+Shift+Backspace'
 
+/** It was pressed where this page hears no keys. */
+export function stopByKey(): void {
+  if (mayStop()) stopCell()
+}
+
 /** Listen for it in a window before anything else does; returns how to end it. */
 export function listenForStopKey(on: Window): () => void {
   const listen = (event: KeyboardEvent) => {
     const isMeant = event.key === 'Backspace' && event.ctrlKey && event.shiftKey && !event.altKey
-    if (!isMeant || useSession.getState().session?.role !== 'operator') return
+    if (!isMeant || !mayStop()) return
     event.preventDefault()
     event.stopImmediatePropagation()
     if (!event.repeat) stopCell()
   }
   on.addEventListener('keydown', listen, { capture: true })
   return () => on.removeEventListener('keydown', listen, { capture: true })
+}
+
+function mayStop(): boolean {
+  return useSession.getState().session?.role === 'operator'
 }

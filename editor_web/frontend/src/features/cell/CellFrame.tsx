@@ -1,22 +1,25 @@
-/** The 3D view of the cell, served by ourselves under `/cell/`. */
+/** The 3D view of the cell: ours, but of an origin of its own, so that no picture of it holds up the page and its STOP. */
 import './styles/index.css'
 import { useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { useEffect, useRef } from 'react'
-import { watchHolding } from '../../api/grip'
+import { sayHeld } from '../../api/grip'
 import { useLive } from '../../api/live'
 import { usePast } from '../../api/past'
+import { useSession } from '../../api/session'
 import { PAGE } from '../../api/shown'
-import { listenForStopKey } from '../../components/stopKey'
+import { stopByKey } from '../../components/stopKey'
 import { Empty } from '../../components/Empty'
 import { PastMark } from './PastMark'
 
-export function CellFrame({ isServed }: { isServed: boolean }) {
+export function CellFrame() {
   const scheme = useComputedColorScheme('light')
   const generation = useLive((s) => s.generation)
   const isPast = usePast((s) => s.shown !== null && !s.shown.problem)
-  const { frame, watch } = useHolding()
-  if (!isServed) {
+  const port = useSession((s) => s.session?.cell_view_port)
+  const origin = `http://${location.hostname}:${port}`
+  const frame = useNewsOfView(origin)
+  if (typeof port !== 'number') {
     return (
       <Empty icon={<IconCube size={28} stroke={1.4} aria-hidden />} title="No 3D view">
         This server was started without one.
@@ -32,25 +35,24 @@ export function CellFrame({ isServed }: { isServed: boolean }) {
         ref={frame}
         className="cell-frame"
         title="3D view of the cell"
-        src={`/cell/${PAGE}/${query}`}
-        onLoad={watch}
+        src={`${origin}/cell/${PAGE}/${query}`}
       />
       <PastMark />
     </div>
   )
 }
 
-/** Hears what is pressed in the view: the mouse for its handles, the key of STOP. */
-function useHolding() {
+/** Hears from the view that the mouse is down in it, and of the key of STOP; returns the reference for its frame. */
+function useNewsOfView(origin: string) {
   const frame = useRef<HTMLIFrameElement>(null)
-  const stop = useRef<() => void>(undefined)
-  useEffect(() => () => stop.current?.(), [])
-  const watch = () => {
-    stop.current?.()
-    const view = frame.current?.contentWindow
-    if (!view) return
-    const ends = [watchHolding(view), listenForStopKey(view)]
-    stop.current = () => ends.forEach((end) => end())
-  }
-  return { frame, watch }
+  useEffect(() => {
+    const hear = (event: MessageEvent<{ cellView?: string } | null>) => {
+      if (event.source !== frame.current?.contentWindow || event.origin !== origin) return
+      if (event.data?.cellView === 'held') sayHeld()
+      if (event.data?.cellView === 'stop') stopByKey()
+    }
+    window.addEventListener('message', hear)
+    return () => window.removeEventListener('message', hear)
+  }, [origin])
+  return frame
 }
