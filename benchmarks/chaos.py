@@ -1,4 +1,4 @@
-"""Random losses while two arms move in one cell: `python -P -m benchmarks.chaos [--trials N] [--seed S] [--losses …]`.
+"""Random losses while two arms move in one cell: `python -P -m benchmarks.chaos [--trials N] [--first N] [--losses …]`.
 
 Each trial starts a real `flexcell serve` with two Pandas that plan around each other and a depth camera, waits a random
 time, and then kills or suspends a process of it. It passes when everything came to rest, the cause is named, and the
@@ -25,11 +25,12 @@ def main() -> int:
     """Carry out the trials and print a line for each."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--trials", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0, help="number of the first trial, to go on with an earlier run")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--losses", nargs="+", choices=list(LOSSES), default=list(LOSSES))
     options = parser.parse_args()
     failed = 0
-    for number in range(options.trials):
+    for number in range(options.first, options.first + options.trials):
         chance = random.Random(options.seed * 100_000 + number)
         ended = _trial(options.losses[number % len(options.losses)], chance)
         failed += bool(ended.wrong)

@@ -72,7 +72,7 @@ async def _measure(viewers: int, seconds: float, *, records: bool) -> None:
     with tempfile.TemporaryDirectory() as folder_name:
         folder = Path(folder_name)
         catalogue = load_states()
-        behavior, _ = read_behavior(_copied(folder / "behaviors"), catalogue)
+        behavior, _ = read_behavior(copied_behavior(folder / "behaviors"), catalogue)
         with Journal.open(folder) as journal:
             async with (
                 OpenCell(read_cell(None, behavior), store_path=str(folder / "store.db")) as cell,
@@ -96,8 +96,8 @@ async def _measure(viewers: int, seconds: float, *, records: bool) -> None:
                 await session.wait(run)
 
 
-def _copied(folder: Path) -> Path:
-    """Put the behavior where a project has them, with the cell where it is."""
+def copied_behavior(folder: Path) -> Path:
+    """Put the behavior into the folder where a project has them, with the cell where it is, and return its file."""
     folder.mkdir()
     copy = folder / BEHAVIOR.name
     cells = (_ROOT / "behaviors" / "cells").as_posix()

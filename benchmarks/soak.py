@@ -1,0 +1,162 @@
+"""Runs again and again: `python -P -m benchmarks.soak [--minutes N]`; exit code 1 where something has grown.
+
+The demo cell with journal, recordings and dashboard. Each round a page connects (live stream and 3D view), starts the
+behavior that moves both arms, stops it after a moment, and goes. After each round, at rest, are counted: the memory,
+file descriptors and threads of the server and of all its processes, and the tasks of its event loop. The first quarter
+warms up; the second is compared with the last.
+"""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import os
+import random
+import statistics
+import sys
+import tempfile
+import time
+from contextlib import AsyncExitStack
+from dataclasses import astuple, dataclass, fields
+from pathlib import Path
+
+import httpx
+import viser
+import websockets.asyncio.client
+from websockets.typing import Subprotocol
+
+from benchmarks.process_cpu import descendants
+from benchmarks.viewers import BEHAVIOR, copied_behavior
+from editor_web.server import Dashboard, dashboard
+from engine.cell import OpenCell
+from engine.cli.inputs import read_behavior, read_cell
+from engine.journal import Journal
+from engine.registry import load_states
+from engine.session import Session
+from engine.session_recordings import SessionRecordings
+
+_LONGEST_RUN_S = 6.0
+_RECORDINGS_KEPT = 5
+_REPORT_S = 60.0
+_MB_MORE = 8.0
+"""The journal's page cache and the archive of past runs are bounded, but fill slowly."""
+_COUNTS_MORE = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Count:
+    """What there is at rest after a round; of the server and its processes together, tasks of the server alone."""
+
+    memory_mb: float
+    descriptors: int
+    threads: int
+    tasks: int
+
+
+def main() -> int:
+    """Go on for so long, print a line a minute, and compare."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=30.0)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    counts = asyncio.run(_soak(options.minutes * 60.0, random.Random(options.seed)))
+    return 0 if _is_flat(counts) else 1
+
+
+async def _soak(seconds: float, chance: random.Random) -> list[Count]:
+    counts: list[Count] = []
+    with tempfile.TemporaryDirectory() as folder_name:
+        folder = Path(folder_name)
+        catalogue = load_states()
+        behavior, _ = read_behavior(copied_behavior(folder / "behaviors"), catalogue)
+        recordings = SessionRecordings(folder / "recordings", kept=_RECORDINGS_KEPT)
+        with Journal.open(folder) as journal:
+            async with (
+                OpenCell(read_cell(None, behavior), store_path=str(folder / "store.db")) as cell,
+                Session(cell, project=folder, catalogue=catalogue, journal=journal, recordings=recordings) as session,
+                dashboard(session, token_file=folder / "tokens", shadows=False) as page,
+            ):
+                print(f"{'min':>5}{'rounds':>8}{'MB':>8}{'descriptors':>13}{'threads':>9}{'tasks':>7}", flush=True)
+                began_s = told_s = time.monotonic()
+                while (now_s := time.monotonic()) < began_s + seconds:
+                    await _round(page, session, run_s=chance.uniform(0.0, _LONGEST_RUN_S))
+                    counts.append(_count())
+                    if now_s - told_s >= _REPORT_S:
+                        told_s = now_s
+                        _print((now_s - began_s) / 60.0, len(counts), counts[-1])
+    return counts
+
+
+async def _round(page: Dashboard, session: Session, *, run_s: float) -> None:
+    token = {"Authorization": f"Bearer {page.token}"}
+    socket = page.url.replace("http", "ws", 1)
+    async with (
+        httpx.AsyncClient(base_url=page.url, headers=token, trust_env=False, timeout=60.0) as http,
+        AsyncExitStack() as open_sockets,
+    ):
+        for path, protocols in (("api/v1/live", None), ("cell/soak/", [Subprotocol(f"viser-v{viser.__version__}")])):
+            connection = websockets.asyncio.client.connect(
+                f"{socket}{path}",
+                additional_headers=token,
+                subprotocols=protocols,
+                max_size=None,
+                # A page that is closed says nothing more either.
+                close_timeout=0.1,
+                proxy=None,
+            )
+            await open_sockets.enter_async_context(connection)
+        body: dict[str, object] = {"behavior": f"behaviors/{BEHAVIOR.name}", "parameters": {}, "seed": 1}
+        run = str((await http.post("/api/v1/runs", json=body)).raise_for_status().json()["run"])
+        await asyncio.sleep(run_s)
+        (await http.post("/api/v1/cell/stop", json={"reason": "the round is over"})).raise_for_status()
+        await session.wait(run)
+
+
+def _count() -> Count:
+    gc.collect()
+    processes = descendants(os.getpid())
+    status = [_status_of(pid) for pid in processes]
+    return Count(
+        memory_mb=sum(int(each.get("VmRSS", "0 kB").split()[0]) for each in status) / 1e3,
+        descriptors=sum(len(_entries(Path(f"/proc/{pid}/fd"))) for pid in processes),
+        threads=sum(int(each.get("Threads", "0")) for each in status),
+        tasks=len(asyncio.all_tasks()),
+    )
+
+
+def _status_of(pid: int) -> dict[str, str]:
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
+    except (FileNotFoundError, ProcessLookupError):
+        return {}
+    return {name: value.strip() for name, _, value in (line.partition(":") for line in lines)}
+
+
+def _entries(folder: Path) -> list[Path]:
+    try:
+        return list(folder.iterdir())
+    except FileNotFoundError:
+        return []
+
+
+def _print(minutes: float, rounds: int, count: Count) -> None:
+    memory_mb, descriptors, threads, tasks = astuple(count)
+    print(f"{minutes:5.1f}{rounds:8}{memory_mb:8.1f}{descriptors:13}{threads:9}{tasks:7}", flush=True)
+
+
+def _is_flat(counts: list[Count]) -> bool:
+    quarter = len(counts) // 4
+    before, after = counts[quarter : 2 * quarter], counts[-quarter:]
+    is_flat = bool(before)
+    print(f"{len(counts)} rounds; medians of the second and of the last quarter:")
+    for each in fields(Count):
+        first, last = (statistics.median(getattr(count, each.name) for count in part) for part in (before, after))
+        is_kept = last - first <= (_MB_MORE if each.name == "memory_mb" else _COUNTS_MORE)
+        print(f"  {each.name:12} {first:8.1f} → {last:8.1f}  {'flat' if is_kept else 'GROWS'}")
+        is_flat = is_flat and is_kept
+    return is_flat
+
+
+if __name__ == "__main__":
+    sys.exit(main())
