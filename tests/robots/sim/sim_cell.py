@@ -8,6 +8,7 @@ from contextlib import asynccontextmanager
 
 import msgspec
 import numpy as np
+import pytest
 
 from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
@@ -15,6 +16,13 @@ from robots.model.registry import model_by_name
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
 from robots.sim.world import SimWorld, new_world
+from tests.tiers import nightly
+
+_LOCKSTEP = pytest.param("lockstep", marks=pytest.mark.virtual)
+both_hosts = pytest.mark.parametrize("host", [_LOCKSTEP, "process"])
+"""The same world stepped by a virtual clock, and by a process of its own in real time."""
+both_hosts_nightly = pytest.mark.parametrize("host", [_LOCKSTEP, nightly("process")])
+"""What `both_hosts` has shown to be the same already; in real time it takes its time."""
 
 PANDA = model_by_name("panda")
 HOME = np.array(PANDA.home_rad)

@@ -11,12 +11,10 @@ from msgspec.structs import replace
 from engine.errors import RobotError
 from robots.port import ArmSettings, Contact, ForceRecord, ForceTask, MotionEnd, Tolerance
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import ABOVE_PART, HOME, move, one_arm, opened, smooth, until
+from tests.robots.sim.sim_cell import ABOVE_PART, HOME, both_hosts_nightly, move, one_arm, opened, smooth, until
 
 TOOL = "left/panda_hand_tcp"
 DOWN_TO_THE_TABLE = ABOVE_PART + np.array([0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0])
-
-both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
 def off_rad(world: SimWorld, joints: np.ndarray) -> float:
@@ -24,7 +22,7 @@ def off_rad(world: SimWorld, joints: np.ndarray) -> float:
     return float(np.abs(world.arm("left").sample().position_rad - joints).max())
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_guarded_motion_ends_at_the_table(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
@@ -47,7 +45,7 @@ async def test_a_guarded_motion_that_meets_nothing_ends_at_its_goal() -> None:
         assert off_rad(world, ABOVE_PART) < 0.005
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_force_task_is_followed_and_reports_what_it_felt(host: str) -> None:
     """Nothing presses but a hand for a while: the tool gives way along z, and the record says by how much."""
     async with opened(one_arm()) as world:
@@ -63,7 +61,7 @@ async def test_a_force_task_is_followed_and_reports_what_it_felt(host: str) -> N
         assert 0.005 < record.offsets()[:, 2].max() < 0.03
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_an_arm_goes_where_it_is_streamed_and_ends_when_it_is_finished(host: str) -> None:
     async with opened(one_arm()) as world:
         stream = world.arm("left").stream("joint_position", watchdog_s=0.3)
@@ -82,7 +80,7 @@ async def test_an_arm_goes_where_it_is_streamed_and_ends_when_it_is_finished(hos
         assert (await move(world.arm("left"), HOME, 0.6)).end is MotionEnd.REACHED
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_silent_stream_comes_to_rest_and_goes_on_when_spoken_to(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
@@ -115,7 +113,7 @@ async def test_a_twist_moves_the_tool_along_the_axes_of_the_world() -> None:
         assert moved == pytest.approx([0.0, 0.1, 0.0], abs=0.003)
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_an_arm_is_led_by_hand_and_stays_where_it_is_left(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
@@ -132,7 +130,7 @@ async def test_an_arm_is_led_by_hand_and_stays_where_it_is_left(host: str) -> No
         assert (await move(arm, HOME, 0.8)).end is MotionEnd.REACHED
 
 
-@both_hosts
+@both_hosts_nightly
 @pytest.mark.parametrize("order", ["held, then finished", "finished, then held"])
 async def test_a_stream_that_is_held_and_finished_ends_whichever_came_first(host: str, order: str) -> None:
     """Both callers get their answer; nobody has to resume it."""
@@ -183,7 +181,7 @@ async def test_a_floating_arm_is_pushed_back_before_its_limit() -> None:
         assert highest < 2.8973
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_speed_override_slows_what_runs_and_what_comes(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
@@ -198,7 +196,7 @@ async def test_a_speed_override_slows_what_runs_and_what_comes(host: str) -> Non
         assert world.measured().time_s - start > 1.5
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_settings_are_kept_or_refused_as_a_whole(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")

@@ -10,15 +10,13 @@ import pytest
 from robots.port import MotionEnd, Tolerance
 from robots.sim.motion_board import SimMotion
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import HOME, one_arm, opened, smooth, unhurried, until
+from tests.robots.sim.sim_cell import HOME, both_hosts_nightly, one_arm, opened, smooth, unhurried, until
 
 GOAL = HOME + np.array([0.6, 0.3, -0.3, 0.3, 0.2, -0.2, 0.4])
 DURATION_S = 1.2
 REST_RAD_S = 0.02
 # What the arm is off its set point by while it brakes as hard as it may.
 OFF_PATH_RAD = 0.004
-
-both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
 def start(world: SimWorld, host: str = "lockstep") -> SimMotion:
@@ -62,7 +60,7 @@ async def check_arrived(world: SimWorld, motion: SimMotion) -> None:
     assert speed_rad_s(world) < REST_RAD_S
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_an_arm_is_held_on_its_path_and_goes_on_along_it(host: str) -> None:
     """Thrice, at different speeds."""
     async with opened(one_arm()) as world:
@@ -82,7 +80,7 @@ async def test_an_arm_is_held_on_its_path_and_goes_on_along_it(host: str) -> Non
         assert await watching < OFF_PATH_RAD
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_hold_while_one_is_under_way_or_done_is_confirmed_as_well(host: str) -> None:
     async with opened(one_arm()) as world:
         motion = start(world, host)
@@ -98,7 +96,7 @@ async def test_a_hold_while_one_is_under_way_or_done_is_confirmed_as_well(host: 
         await check_arrived(world, motion)
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_resume_while_the_arm_brakes_lets_it_go_on_at_once_and_answers_the_hold(host: str) -> None:
     async with opened(one_arm()) as world:
         motion = start(world, host)
@@ -114,7 +112,7 @@ async def test_a_resume_while_the_arm_brakes_lets_it_go_on_at_once_and_answers_t
         assert await watching < OFF_PATH_RAD
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_hold_right_after_a_resume_is_confirmed_at_rest_only(host: str) -> None:
     """The answer to the resume, still on its way, is none to the hold."""
     async with opened(one_arm()) as world:
@@ -131,7 +129,7 @@ async def test_a_hold_right_after_a_resume_is_confirmed_at_rest_only(host: str) 
         await check_arrived(world, motion)
 
 
-@both_hosts
+@both_hosts_nightly
 @pytest.mark.parametrize("when", ["while it brakes", "when it is held"])
 async def test_a_cancel_during_a_hold_ends_the_motion_at_rest(host: str, when: str) -> None:
     async with opened(one_arm()) as world:
@@ -179,7 +177,7 @@ async def test_holding_and_resuming_an_ended_motion_does_nothing() -> None:
         await check_arrived(world, motion)
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_fingers_are_held_on_their_way_and_go_on(host: str) -> None:
     async with opened(one_arm()) as world:
         gripper = world.gripper("left")

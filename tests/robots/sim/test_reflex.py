@@ -11,14 +11,12 @@ import pytest
 from engine.errors import RobotError
 from robots.port import ArmPort, ArmSettings, MotionEnd, Tolerance
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import ABOVE_PART, HOME, move, one_arm, opened, smooth, until
+from tests.robots.sim.sim_cell import ABOVE_PART, HOME, both_hosts, move, one_arm, opened, smooth, until
 
 TORQUE = ArmSettings(collision_torque_nm=(15.0,) * 7)
 FORCE = ArmSettings(collision_force_n=20.0)
 TOOL = "left/panda_hand_tcp"
 INTO_THE_TABLE = ABOVE_PART + np.array([0.0, 0.7, 0.0, 0.0, 0.0, 0.0, 0.0])
-
-both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
 async def tripped(world: SimWorld, *, push_s: float = 0.5) -> ArmPort:

@@ -17,6 +17,7 @@ from tests.robots.sim.sim_cell import (
     ABOVE_PART,
     HOME,
     PANDA,
+    both_hosts,
     move,
     one_arm,
     opened,
@@ -25,8 +26,6 @@ from tests.robots.sim.sim_cell import (
     unhurried,
     until,
 )
-
-both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
 
 
 @both_hosts

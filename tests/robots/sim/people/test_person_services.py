@@ -18,9 +18,7 @@ from engine.skills.people import CountContacts, Reach, Withdraw
 from robots.sim.scene import Scene
 from robots.sim.world import SimWorld
 from tests.robots.sim.people.person import ANNA, AT_LEFT_HAND, OVER_TABLE, with_anna
-from tests.robots.sim.sim_cell import TABLE, one_arm, opened, until
-
-both_hosts = pytest.mark.parametrize("host", [pytest.param("lockstep", marks=pytest.mark.virtual), "process"])
+from tests.robots.sim.sim_cell import TABLE, both_hosts_nightly, one_arm, opened, until
 
 
 @asynccontextmanager
@@ -45,7 +43,7 @@ def hand_xyz(bus: SkillBus) -> Vector3:
     return frames.xyz[frames.names.index("anna/hand")]
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_hand_is_there_at_the_time_that_was_promised_and_returns_when_told(host: str) -> None:
     async with with_bus(with_anna(Scene(fixtures=(TABLE,)))) as (world, bus):
         asked_s = world.measured().time_s
@@ -66,7 +64,7 @@ async def test_a_hand_is_there_at_the_time_that_was_promised_and_returns_when_to
         assert (await bus.call(CountContacts(person="anna"), to="cell")).contacts == 0
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_contacts_are_told_by_the_names_of_the_bodies(host: str) -> None:
     async with with_bus(with_anna(one_arm())) as (world, bus):
         await bus.call(Reach(person="anna", hand_m=AT_LEFT_HAND, speed_m_s=1.0), to="cell")
