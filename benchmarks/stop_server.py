@@ -121,8 +121,16 @@ class Server:
         return [pid for pid in descendants(self.process.pid) if what.encode() in _command(pid)]
 
     def look_at_world(self) -> None:
-        """Read the heartbeat of the present world's process from now on."""
-        self.heartbeat = Heartbeat.of_process(self.children("sim.process_main")[0])
+        """Read the heartbeat of the present world's process from now on.
+
+        Raises:
+            ProcessLookupError: there is none; the server's log says why.
+        """
+        worlds = self.children("sim.process_main")
+        if not worlds:
+            told = (self.folder / "log").read_text(encoding="utf-8", errors="replace").splitlines()
+            raise ProcessLookupError(f"the server has no world: {' | '.join(told[-3:])}")
+        self.heartbeat = Heartbeat.of_process(worlds[0])
 
     def wait_until_idle(self) -> None:
         """Wait until no run is under way and the devices take motions again."""
