@@ -156,5 +156,4 @@ def branch_scope(path: str, name: str, outer: Scope, written: Mapping[str, objec
 def merge(branch: Scope, into: Scope, execution: Execution) -> None:
     """Write what a branch has written where the keys live around it."""
     for key, value in branch.own_values().items():
-        written_to = into.write(key, value)
-        execution.record_write(branch.path.removesuffix("*"), written_to, key, value)
+        execution.write(branch.path.removesuffix("*"), into, key, value)

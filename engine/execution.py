@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import random
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Generator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
@@ -14,11 +15,13 @@ from engine.activity import Activity
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.control.gate import Gate
+from engine.document.step_meter import METER
 from engine.event import Abandoned, UserdataWritten
 from engine.point import Point
 from engine.recorder import Recorder
 from engine.skill_port import SkillPort
 from engine.suspension import Suspensions
+from engine.userdata import Scope
 
 N = TypeVar("N")
 
@@ -51,11 +54,23 @@ class Execution:
     """Whether the points are those of this very run, whose events tell how they were reached."""
 
     steps: float = 0.0
-    """Steps of expressions since everybody else on the loop last had a turn; above `MAX_STEPS` they `give_way`."""
+    """Steps of expressions, and of what is done for them, since everybody else on the loop last had a turn.
+
+    Above `MAX_STEPS` they `give_way`.
+    """
     replaced: dict[str, object] = field(default_factory=dict[str, object])
     """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
+
+    @contextmanager
+    def counted(self) -> Generator[None]:
+        """Count the steps of what is done inside, which never waits."""
+        before = METER.worked
+        try:
+            yield
+        finally:
+            self.steps += METER.worked - before
 
     async def give_way(self) -> None:
         """Let everybody else on the loop have a turn; due by count, never by the clock, so that runs repeat."""
@@ -97,6 +112,12 @@ class Execution:
             return node
         found = self.replaced.get(path)
         return found if isinstance(found, type(node)) else node
+
+    def write(self, path: str, scope: Scope, key: str, value: object) -> None:
+        """Write where the key lives as seen from `scope`, and record that."""
+        with self.counted():
+            owner = scope.write(key, value)
+        self.record_write(path, owner, key, value)
 
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
         """Record that the node at `path` wrote `key` into `scope`."""

@@ -130,9 +130,10 @@ class ForEach:
 
     def _collect(self, inner: Scope, scope: Scope, path: str, execution: Execution) -> None:
         for key, target in self.collect.items():
-            value = inner.read(key, reader=self.position)
             empty: list[object] = []
-            gathered = scope.read(target, reader=self.position) if scope.has(target) else empty
+            with execution.counted():
+                value = inner.read(key, reader=self.position)
+                gathered = scope.read(target, reader=self.position) if scope.has(target) else empty
             if not isinstance(gathered, list):
                 kind = type(gathered).__name__
                 raise UserdataError(
@@ -142,4 +143,4 @@ class ForEach:
             if len(together) > MAX_COLLECTED:
                 message = f"`collect` has more than {MAX_COLLECTED:,} values for {target!r}"
                 raise UserdataError(message, where=self.position, hint="keep what is needed in a state")
-            execution.record_write(path, scope.write(target, together), target, together)
+            execution.write(path, scope, target, together)

@@ -146,7 +146,7 @@ class Leaf:
                     hint=f"declare it in `outputs`; {near_names(key, self.signature.outputs)}",
                 )
             target = self.outputs.get(key, key)
-            execution.record_write(path, scope.write(target, value), target, value)
+            execution.write(path, scope, target, value)
 
     def _undeclared_outcome(self, outcome: object) -> StateError:
         said = f"outcome {outcome.name!r}" if isinstance(outcome, Outcome) else f"a {type(outcome).__name__}"

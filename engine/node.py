@@ -16,7 +16,6 @@ import msgspec
 from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
 from engine.document.expression_cost import MAX_STEPS
-from engine.document.step_meter import METER
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
@@ -210,9 +209,8 @@ class Node:
 
     def _open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
         where = self.position or self.path
-        before = METER.spent
-        value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
-        execution.steps += METER.spent - before
+        with execution.counted():
+            value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
         if not isinstance(value, bool):
             raise ExpressionError(f"the guard gave {value!r}, which is no truth value", where=where, hint="compare it")
         return value
@@ -332,13 +330,11 @@ class Node:
 
     def _entered(self, scope: Scope, execution: Execution) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""
-        before = METER.spent
         try:
-            return self.work.enter(scope), None
+            with execution.counted():
+                return self.work.enter(scope), None
         except FlexcellError as error:
             return NOTHING, error
-        finally:
-            execution.steps += METER.spent - before
 
     def _record_exit(
         self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None

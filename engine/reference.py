@@ -93,6 +93,7 @@ class Reference:
         left = await self.target.root.perform(inner, execution)
         name = left.target or left.outcome
         for key, outer in self.outputs.items():
-            value = inner.read(key, reader=self.position)
-            execution.record_write(path, scope.write(outer, value), outer, value)
+            with execution.counted():
+                value = inner.read(key, reader=self.position)
+            execution.write(path, scope, outer, value)
         return Outcome(name, cause=None if name in self.nominal else explain(self.target.root, left))

@@ -9,15 +9,20 @@ behavior reference is a wall: only what `in` and `out` name passes.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sized
+from typing import cast
 
 import msgspec
 
+from engine.document.step_meter import METER
 from engine.errors import UserdataError
 from engine.nearness import near_names
 
 _MISSING = object()
 _IMMUTABLE = (str, int, float, bool, bytes, type(None))
+_COPY = 1.5
+"""Steps for each list, mapping or other object that is copied."""
+_COPY_ITEM = 0.3
 
 
 class Scope:
@@ -90,9 +95,13 @@ class Scope:
 
 
 def detached(value: object) -> object:
-    """Return `value` itself when nobody can change it, else a deep copy."""
+    """Return `value` itself when nobody can change it, else a deep copy, whose size counts as work."""
     if isinstance(value, _IMMUTABLE):
         return value
     if isinstance(value, msgspec.Struct) and value.__struct_config__.frozen:
         return value
-    return copy.deepcopy(value)
+    copies: dict[int, object] = {}
+    made = copy.deepcopy(value, copies)
+    sized = (cast("Sized", each) for each in copies.values() if isinstance(each, list | dict))
+    METER.work(_COPY * len(copies) + _COPY_ITEM * sum(map(len, sized)))
+    return made

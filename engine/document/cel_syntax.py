@@ -1,7 +1,8 @@
 """The syntax tree of an expression, read from the protobuf bytes in which CEL hands out what it has parsed.
 
 Only the messages of `cel/expr/syntax.proto` that make up a tree are read. Macros are comprehensions
-already, so that the tree is what the evaluator runs.
+already, so that the tree is what the evaluator runs. Trees have no cycles, and the cache holds many nodes:
+the garbage collector never passes over them.
 """
 
 from __future__ import annotations
@@ -10,58 +11,53 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import cast
 
+import msgspec
+
 _VARINT, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
 _FIXED = {_FIXED64: 8, _FIXED32: 4}
 
 
-@dataclass(frozen=True, slots=True)
-class Literal:
+class Literal(msgspec.Struct, frozen=True, gc=False, tag=True):
     """A constant; `text` is None where it is neither text nor bytes."""
 
     text: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(msgspec.Struct, frozen=True, gc=False, tag=True):
     """The use of a variable, or of a type."""
 
     name: str
     id: int
 
 
-@dataclass(frozen=True, slots=True)
-class Selection:
+class Selection(msgspec.Struct, frozen=True, gc=False, tag=True):
     """A field of a value, or with `test` whether it has it."""
 
     operand: Syntax
     test: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(msgspec.Struct, frozen=True, gc=False, tag=True):
     """An operator or function; the target of a method is its first argument."""
 
     function: str
     arguments: tuple[Syntax, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class ListLiteral:
+class ListLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
     """`[a, b]`."""
 
     items: tuple[Syntax, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class MappingLiteral:
+class MappingLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
     """`{a: b}`; `message` names the type of a protobuf message."""
 
     message: str
     items: tuple[Syntax, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Comprehension:
+class Comprehension(msgspec.Struct, frozen=True, gc=False, tag=True):
     """What `all`, `exists`, `exists_one`, `map` and `filter` become: a fold over a list or mapping."""
 
     variable: str

@@ -31,6 +31,12 @@ MAX_PER_TEXT = 100
 MAX_PER_VALUE = 1_000
 """Expressions in one value, the lists and mappings inside it included."""
 
+_BEGIN = 30.0
+"""Steps before an evaluation whose cost is counted."""
+_LOOK = 1.5
+"""Steps for each character of an expression whose cost is counted."""
+_MEASURE = 0.4
+"""Steps for each unit of weight that is measured."""
 _Evaluation = Callable[[Variables], object]
 
 _PLAIN = frozenset((bool, int, float, type(None)))
@@ -91,6 +97,7 @@ class _Read:
     names: frozenset[str] = frozenset()
     small_steps: float | None = 0.0
     """The cost with small values; None where that may be too much."""
+    characters: int = 0
 
     def steps(self, variables: Variables) -> float:
         """Return what an evaluation takes at most.
@@ -101,6 +108,7 @@ class _Read:
         if self.small_steps is not None and all(map(_is_small, map(variables.get, self.names))):
             return self.small_steps
         sizes = {name: measure(variables[name], name=name) for name in self.names if name in variables}
+        METER.work(_BEGIN + _LOOK * self.characters + _MEASURE * sum(size.weight for size in sizes.values()))
         steps = 0.0
         for expression in self.computed:
             steps += expression.steps(sizes)
@@ -114,7 +122,8 @@ def _new_read(found: list[_Found]) -> _Read:
     shown = tuple(expression.text for expression, in_text in found if expression.bare and in_text)
     names = frozenset((*shown, *(name for expression in computed for name in expression.names)))
     small = sum(expression.small_steps for expression in computed) + 2 * len(shown)
-    return _Read(computed, shown, names, small if small <= MAX_STEPS else None)
+    characters = sum(len(expression.text) for expression in computed)
+    return _Read(computed, shown, names, small if small <= MAX_STEPS else None, characters)
 
 
 def _is_small(value: object) -> bool:

@@ -37,6 +37,8 @@ _READ = 1.0
 _RESULT = 1.5
 """For each unit of weight that is handed back."""
 _ROUND = 0.4
+_ADD = 5.0
+"""For what `filter` and the like add in a round, the choice included."""
 _COPY = 0.2
 """For each item that is copied when lists are joined; `map` and `filter` join one item at a time."""
 _COMPARE = 0.3
@@ -94,6 +96,17 @@ class _Counting:
             case Comprehension():
                 return self._fold(node, sizes)
 
+    def added(self, node: Comprehension, inside: Sizes) -> Size | None:
+        """Return the size of what a round adds, counting what it costs; each node once, for they are nested."""
+        growth = _growth(node)
+        if growth is None:
+            self.size(node.step, inside)
+            return None
+        if isinstance(node.step, Call) and _is_conditional(node.step):
+            self.size(node.step.arguments[0], inside)
+            self.steps += _ADD
+        return self.size(growth, inside)
+
     def _items(self, items: tuple[Syntax, ...], sizes: Sizes) -> Size:
         weight, item = 1.0, None
         for each in items:
@@ -124,10 +137,7 @@ class _Counting:
         inside = {**sizes, node.variable: values.inside, node.accumulator: SCALAR}
         each = _Counting(_ROUND)
         each.size(node.condition, inside)
-        growth = _growth(node)
-        item = each.size(growth, inside) if growth is not None else None
-        if item is None or _is_conditional(node.step):
-            each.size(node.step, inside)
+        item = each.added(node, inside)
         rounds = values.length
         # `map` joins a list to one item in every round, and so copies all before it.
         copied = _COPY * rounds * (rounds + 1) / 2 if item is not None and item.length else 0.0

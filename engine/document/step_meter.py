@@ -18,6 +18,9 @@ class StepMeter(threading.local):
     """The steps of this thread so far, and how many more it may take."""
 
     spent: float = 0.0
+    """Steps of expressions."""
+    worked: float = 0.0
+    """Those, and what is done for them: values are copied and measured."""
     _limit: float = math.inf
     _subject: str = ""
 
@@ -28,9 +31,14 @@ class StepMeter(threading.local):
             ExpressionError: it is one too many inside `limited`.
         """
         self.spent += steps
+        self.worked += steps
         if self.spent > self._limit:
             message = f"the expressions of {self._subject} take too many steps together"
             raise ExpressionError(message, hint="use fewer or simpler expressions, or a state")
+
+    def work(self, steps: float) -> None:
+        """Count what is done for an expression; it counts for the loop, not against a limit."""
+        self.worked += steps
 
     @contextmanager
     def limited(self, steps: float, subject: str) -> Generator[None]:

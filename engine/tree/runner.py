@@ -164,11 +164,8 @@ class TreeRunner:
         self._leaves.begun.clear()
 
     def _advance(self, steps: Iterator[Behaviour]) -> Behaviour | None:
-        before = METER.spent
-        with self._blackboard:
-            step = next(steps, None)
-        self._execution.steps += METER.spent - before
-        return step
+        with self._execution.counted(), self._blackboard:
+            return next(steps, None)
 
     async def _take_turn(self) -> None:
         check, self._growth.turn.check = self._growth.turn.check, None

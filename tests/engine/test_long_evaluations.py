@@ -10,6 +10,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
+from engine.event import Entered
 from engine.run import Run, RunResult
 from tests.engine.run_document import Told, plan_of, run_document
 
@@ -45,6 +46,47 @@ async def _beside_a_ticker(text: str) -> tuple[float, float]:
         await asyncio.sleep(0)
     assert running.result().outcome == "good"
     return max(longest, METER.spent - last), METER.spent - began
+
+
+@pytest.mark.parametrize(
+    ("userdata", "value"),
+    [
+        (f"xs: {XS}", "${xs}"),
+        ("xs: [1], none: []", "${none.exists(x, (none in xs.map(y, xs.map(z, y))) == none)}"),
+    ],
+)
+def test_what_is_done_for_an_expression_counts_too(userdata: str, value: str) -> None:
+    """Copying and measuring what it reads, going through its syntax: that may take longer than the evaluation."""
+    entered = run_virtual(_most_entered(REPEATED.format(userdata=userdata, value=value)))
+    assert entered <= MOST_ENTRIES
+
+
+MOST_ENTRIES = 200
+"""Where nothing is counted, states give way after 256."""
+REPEATED = """
+    userdata: {{count: 0, {userdata}}}
+    root:
+      machine:
+        initial: write
+        states:
+          write: {{state: test.Write, with: {{value: "{value}"}}, transitions: {{done: count}}}}
+          count: {{state: test.Count, with: {{up_to: 600}}, transitions: {{more: write, full: good}}}}
+"""
+
+
+async def _most_entered(text: str) -> int:
+    """Run a document; return how often a state was entered at most between two turns of another task."""
+    run = Run(plan_of(text), run="r", bus=SkillBus(new_clock()))
+    entered = [0]
+    run.watch(lambda event: entered.append(entered.pop() + isinstance(event, Entered)))
+    longest = 0
+    running: asyncio.Task[RunResult] = asyncio.ensure_future(run.execute())
+    while not running.done():
+        entered[-1] = 0
+        await asyncio.sleep(0)
+        longest = max(longest, entered[-1])
+    assert running.result().outcome == "good"
+    return longest
 
 
 def test_two_runs_count_alike() -> None:

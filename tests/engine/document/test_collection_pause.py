@@ -4,8 +4,16 @@ from __future__ import annotations
 
 import gc
 import threading
+import weakref
 
-from engine.document.collection_pause import collection_paused, without_collection
+from engine.document.collection_pause import FULL_EVERY, collection_paused, without_collection
+
+
+class Cycle:
+    """Needs the collector to go."""
+
+    def __init__(self) -> None:
+        self.itself = self
 
 
 def test_the_collector_goes_on_after_the_last_one() -> None:
@@ -41,3 +49,24 @@ def test_a_function_that_raises_leaves_it_on() -> None:
     else:
         said = ""
     assert (said, gc.isenabled()) == ("enabled: False", True)
+
+
+def test_a_pause_keeps_no_garbage_that_was_there_before() -> None:
+    """What grows old with the document would be looked at only much later."""
+    left = weakref.ref(Cycle())
+    with collection_paused():
+        pass
+    assert left() is None
+
+
+def test_what_becomes_garbage_when_it_is_old_goes_in_the_end() -> None:
+    """Pauses in a row start the counts of the collector anew; 10,000 readings with runs between them kept 250 MB."""
+    held = [Cycle()]
+    left = weakref.ref(held[0])
+    with collection_paused():
+        pass
+    held.clear()
+    for _ in range(FULL_EVERY):
+        with collection_paused():
+            pass
+    assert left() is None

@@ -77,6 +77,7 @@ def test_what_takes_too_long_with_any_values_is_refused_by_the_check(text: str) 
             {"parts": [{"kind": "gear", "width": 1}] * 500, "kind": "x"},
         ),
         ("${rows.map(r, r.map(c, c * 2.0))}", {"rows": [[1.0] * 10] * 10}),
+        ("${" + "[1].map(x, true, " * 14 + "1" + ")" * 14 + "}", {}),
         ("${name.matches('^[a-z]+_[0-9]{1,4}$')}", {"name": "part_12"}),
         ("${name.matches(pattern)}", {"name": "part_12", "pattern": "part_[0-9]+"}),
         ("${text + text}", {"text": "x" * 40_000}),
