@@ -38,7 +38,13 @@ def served_page(
             opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page,
         ):
             tell_of_stop(page, stop)
+            require_live(page)
             yield page, stop, server
+
+
+def require_live(page: Page) -> None:
+    """The page has heard of the engine, and can say since when it has not."""
+    expect(page.locator(".connection")).to_have_text("Live")
 
 
 def test_stop_goes_through_while_the_engine_is_frozen(browser: Browser, tmp_path: Path, loopback: str) -> None:
@@ -73,6 +79,7 @@ def test_the_relay_of_a_frozen_server_answers_its_page(browser: Browser, tmp_pat
         served = dashboard_of(server, tmp_path / ".flexcell")
         with opened_page(browser, served, f"/behaviors/{NAP_ID}", quiet=False) as page:
             expect(stop_button(page)).to_be_visible()
+            require_live(page)
             server.send_signal(signal.SIGSTOP)
             try:
                 stop_button(page).click()

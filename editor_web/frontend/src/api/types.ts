@@ -1032,7 +1032,7 @@ export interface SavedBody {
   readonly saved_at: number
 }
 
-/** Who is logged in, and what this server has; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null for a server without one. */
+/** Who is logged in, and what this server has; `stop` is for operators. The 3D view is at `http://<host>:<cell_view_port>/cell/<page>/`, an origin of its own; null where there is none. */
 export interface SessionBody {
   readonly role: string
   readonly cell_name: string
