@@ -18,7 +18,7 @@ from pathlib import Path
 
 import httpx
 
-from benchmarks.chaos_losses import LOSSES, Ended, Failed, moving_run
+from benchmarks.chaos_losses import LOSSES, Ended, Failed, Loss, moving_run
 
 
 def main() -> int:
@@ -32,24 +32,24 @@ def main() -> int:
     failed = 0
     for number in range(options.first, options.first + options.trials):
         chance = random.Random(options.seed * 100_000 + number)
-        ended = _trial(options.losses[number % len(options.losses)], chance)
+        name = options.losses[number % len(options.losses)]
+        ended = _trial(LOSSES[name], chance)
         failed += bool(ended.wrong)
         rest = "-" if ended.rest_s is None else f"{ended.rest_s:.2f} s"
-        print(f"{number:4} {ended.loss:18} rest {rest:>7}  {ended.after:24} {ended.wrong or ended.cause}", flush=True)
+        print(f"{number:4} {name:18} rest {rest:>7}  {ended.after:24} {ended.wrong or ended.cause}", flush=True)
     print(f"{options.trials - failed} of {options.trials} trials passed")
     return 1 if failed else 0
 
 
-def _trial(name: str, chance: random.Random) -> Ended:
-    loss = LOSSES[name]
+def _trial(loss: Loss, chance: random.Random) -> Ended:
     with tempfile.TemporaryDirectory() as folder:
         try:
             with loss.server(Path(folder) / "cell") as running:
                 run = moving_run(running)
                 time.sleep(chance.uniform(0.0, 2.0))
-                return loss.happens(running, run, name)
+                return loss.happens(running, run, chance)
         except (Failed, httpx.HTTPError, OSError) as error:
-            return Ended(loss=name, rest_s=None, cause="", after="", wrong=f"FAILED: {error}")
+            return Ended(wrong=f"FAILED: {error}")
 
 
 if __name__ == "__main__":

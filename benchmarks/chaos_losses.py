@@ -7,20 +7,19 @@ import os
 import random
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from email.utils import parsedate_to_datetime
+from functools import partial
 from pathlib import Path
 
 import libfaketime
 
 from benchmarks.chaos_cell import BEHAVIOR, write_project
-from benchmarks.stop_server import Server, server
+from benchmarks.stop_server import FLEXCELL, Server, server
 
-_FLEXCELL = Path(sys.executable).with_name("flexcell")
 _REST_S = 5.0
 _END_S = 20.0
 _MOVING_S = 90.0
@@ -37,10 +36,9 @@ _JUMPS_S = (3_600.0, 86_400.0)
 class Ended:
     """How a trial ended; `wrong` is empty where it passed."""
 
-    loss: str
-    rest_s: float | None
-    cause: str
-    after: str
+    rest_s: float | None = None
+    cause: str = ""
+    after: str = ""
     wrong: str = ""
 
 
@@ -48,14 +46,14 @@ class Failed(Exception):
     """Something was not as it must be."""
 
 
-def _engine_killed(running: Server, run: str, loss: str) -> Ended:
+def _engine_killed(running: Server, run: str, _chance: random.Random) -> Ended:
     began_s = time.monotonic()
     world = running.children("sim.process_main")[0]
     running.signal(signal.SIGKILL)
     rest_s = running.resting_since_s() - began_s
     _until(lambda: not _alive(world), _END_S, "the world's process lives on")
     done = subprocess.run(
-        [_FLEXCELL, "resume", run, "--journal", "state", "--timeout", "3", "-q"],
+        [FLEXCELL, "resume", run, "--journal", "state", "--timeout", "3", "-q"],
         cwd=running.folder,
         capture_output=True,
         text=True,
@@ -66,29 +64,28 @@ def _engine_killed(running: Server, run: str, loss: str) -> Ended:
         raise Failed(f"resume ended with {done.returncode}: {done.stderr[-200:]}")
     after = "says why not" if done.returncode == 2 else "resumed"
     cause = done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.stdout.strip()[-120:]
-    return Ended(loss=loss, rest_s=max(0.0, rest_s), cause=cause, after=after)
+    return Ended(rest_s=max(0.0, rest_s), cause=cause, after=after)
 
 
-def _engine_suspended(running: Server, run: str, loss: str) -> Ended:
+def _engine_suspended(running: Server, run: str, _chance: random.Random) -> Ended:
     began_s = time.monotonic()
     running.signal(signal.SIGSTOP)
     rest_s = running.resting_since_s() - began_s
     time.sleep(_SUSPENDED_S)
     running.signal(signal.SIGCONT)
     cause = _cause(running, run, "silent")
-    return Ended(loss=loss, rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _world_lost(running: Server, run: str, loss: str) -> Ended:
-    number = signal.SIGKILL if loss == "world killed" else signal.SIGSTOP
-    os.kill(running.children("sim.process_main")[0], number)
-    cause = _cause(running, run, "SIGKILL" if loss == "world killed" else "not stepped")
+def _world_lost(running: Server, run: str, _chance: random.Random, *, by: signal.Signals, word: str) -> Ended:
+    os.kill(running.children("sim.process_main")[0], by)
+    cause = _cause(running, run, word)
     running.http.post("/api/v1/cell/connect", json={}).raise_for_status()
     running.look_at_world()
-    return Ended(loss=loss, rest_s=None, cause=cause, after=_runs_again(running))
+    return Ended(cause=cause, after=_runs_again(running))
 
 
-def _relay_killed(running: Server, run: str, loss: str) -> Ended:
+def _relay_killed(running: Server, run: str, _chance: random.Random) -> Ended:
     began_s = time.monotonic()
     os.kill(running.children("stop.process")[0], signal.SIGKILL)
     rest_s = running.resting_since_s() - began_s
@@ -96,11 +93,11 @@ def _relay_killed(running: Server, run: str, loss: str) -> Ended:
     _until(lambda: not running.children("sim.process_main"), _END_S, "the world's process lives on")
     running.http.post("/api/v1/cell/connect", json={}).raise_for_status()
     running.look_at_world()
-    return Ended(loss=loss, rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _worker_killed(running: Server, run: str, loss: str) -> Ended:
-    pids = running.children("planning.worker" if loss == "planner killed" else "vision.worker")
+def _worker_killed(running: Server, run: str, _chance: random.Random, *, worker: str) -> Ended:
+    pids = running.children(worker)
     if not pids:
         raise Failed("there is no such process")
     os.kill(pids[0], signal.SIGKILL)
@@ -112,10 +109,10 @@ def _worker_killed(running: Server, run: str, loss: str) -> Ended:
     cause = str(told["cause"]) or "the run goes on"
     if told["status"] == "running":
         _stop(running)
-    return Ended(loss=loss, rest_s=None, cause=cause, after=f"{after}; {_runs_again(running)}")
+    return Ended(cause=cause, after=f"{after}; {_runs_again(running)}")
 
 
-def _disk_full(running: Server, run: str, loss: str) -> Ended:
+def _disk_full(running: Server, run: str, _chance: random.Random) -> Ended:
     began_s = time.monotonic()
     filler = running.state / "filler"
     with filler.open("wb", buffering=0) as file:
@@ -128,12 +125,12 @@ def _disk_full(running: Server, run: str, loss: str) -> Ended:
         cause = _cause(running, run, "the journal cannot be written")
     rest_s = running.resting_since_s() - began_s
     filler.unlink()
-    return Ended(loss=loss, rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _clock_jumps(running: Server, run: str, loss: str) -> Ended:
-    """The run goes on through a jump of the system's clock and one back, and the next one is told as the newer one."""
-    by_s = random.Random(run).uniform(*_JUMPS_S) * (1 if loss == "clock set on" else -1)
+def _clock_jumps(running: Server, run: str, chance: random.Random, *, sign: int) -> Ended:
+    """The run goes on through a jump of the system's clock and one back."""
+    by_s = sign * chance.uniform(*_JUMPS_S)
     _jump(running.folder.parent, by_s)
     _until(lambda: abs(_clock_s(running) - time.time() - by_s) < _CLOCK_NEAR_S, _END_S, "the clock has not jumped")
     _jump(running.folder.parent, 0.0)
@@ -143,7 +140,7 @@ def _clock_jumps(running: Server, run: str, loss: str) -> Ended:
     if told["status"] != "running":
         raise Failed(f"the run is {told['status']}: {told['cause']}")
     _stop(running)
-    return Ended(loss=loss, rest_s=None, cause=f"by {by_s:+.0f} s; the run goes on", after=_runs_again(running))
+    return Ended(cause=f"by {by_s:+.0f} s; the run goes on", after=_runs_again(running))
 
 
 def _clock_s(running: Server) -> float:
@@ -160,9 +157,9 @@ def _jump(folder: Path, by_s: float) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Loss:
-    """Something that is lost: `happens` takes the server, its run, and the name of this; `disk` is as for `server`."""
+    """Something that is lost: `happens` takes server, run, and the trial's chance; `disk` is as for `server`."""
 
-    happens: Callable[[Server, str, str], Ended]
+    happens: Callable[[Server, str, random.Random], Ended]
     disk: str = ""
     sets_clock: bool = False
 
@@ -182,14 +179,14 @@ class Loss:
 LOSSES: dict[str, Loss] = {
     "engine killed": Loss(happens=_engine_killed),
     "engine suspended": Loss(happens=_engine_suspended),
-    "world killed": Loss(happens=_world_lost),
-    "world suspended": Loss(happens=_world_lost),
+    "world killed": Loss(happens=partial(_world_lost, by=signal.SIGKILL, word="SIGKILL")),
+    "world suspended": Loss(happens=partial(_world_lost, by=signal.SIGSTOP, word="not stepped")),
     "relay killed": Loss(happens=_relay_killed),
-    "planner killed": Loss(happens=_worker_killed),
-    "camera killed": Loss(happens=_worker_killed),
+    "planner killed": Loss(happens=partial(_worker_killed, worker="planning.worker")),
+    "camera killed": Loss(happens=partial(_worker_killed, worker="vision.worker")),
     "disk full": Loss(happens=_disk_full, disk=_DISK),
-    "clock set on": Loss(happens=_clock_jumps, sets_clock=True),
-    "clock set back": Loss(happens=_clock_jumps, sets_clock=True),
+    "clock set on": Loss(happens=partial(_clock_jumps, sign=1), sets_clock=True),
+    "clock set back": Loss(happens=partial(_clock_jumps, sign=-1), sets_clock=True),
 }
 
 

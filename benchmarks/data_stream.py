@@ -20,7 +20,7 @@ from typing import Any
 
 import websockets.asyncio.client
 
-from benchmarks.process_cpu import cpu_s
+from benchmarks.process_cpu import cpu_s, memory_mb
 from editor_web.access import load_access
 from editor_web.data_wire import Look
 from editor_web.look import Looking
@@ -113,7 +113,7 @@ async def _print_pages(running: Dashboard, token: str, topics: list[Topic[JointS
         began_s, before_s = time.perf_counter(), cpu_s(os.getpid())
         await asyncio.sleep(seconds)
         share = (cpu_s(os.getpid()) - before_s) / (time.perf_counter() - began_s)
-        print(f"{what:24}  {share:8.1%} CPU (with its reader), {_memory_mb():.0f} MB")
+        print(f"{what:24}  {share:8.1%} CPU (with its reader), {memory_mb(os.getpid()):.0f} MB")
         if watching is not None:
             watching.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -143,11 +143,6 @@ async def _watch(url: str, token: str, look: dict[str, Any]) -> None:
         while is_read:
             await socket.recv()
         await asyncio.Event().wait()
-
-
-def _memory_mb() -> float:
-    status = Path("/proc/self/status").read_text(encoding="ascii")
-    return int(status.split("VmRSS:")[1].split()[0]) / 1000
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 from contextlib import AsyncExitStack
-from dataclasses import astuple, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import httpx
@@ -26,7 +26,7 @@ import viser
 import websockets.asyncio.client
 from websockets.typing import Subprotocol
 
-from benchmarks.process_cpu import descendants
+from benchmarks.process_cpu import descendants, memory_mb, threads
 from benchmarks.viewers import BEHAVIOR, copied_behavior
 from editor_web.server import Dashboard, dashboard
 from engine.cell import OpenCell
@@ -116,21 +116,12 @@ async def _round(page: Dashboard, session: Session, *, run_s: float) -> None:
 def _count() -> Count:
     gc.collect()
     processes = descendants(os.getpid())
-    status = [_status_of(pid) for pid in processes]
     return Count(
-        memory_mb=sum(int(each.get("VmRSS", "0 kB").split()[0]) for each in status) / 1e3,
+        memory_mb=memory_mb(*processes),
         descriptors=sum(len(_entries(Path(f"/proc/{pid}/fd"))) for pid in processes),
-        threads=sum(int(each.get("Threads", "0")) for each in status),
+        threads=threads(*processes),
         tasks=len(asyncio.all_tasks()),
     )
-
-
-def _status_of(pid: int) -> dict[str, str]:
-    try:
-        lines = Path(f"/proc/{pid}/status").read_text(encoding="utf-8").splitlines()
-    except (FileNotFoundError, ProcessLookupError):
-        return {}
-    return {name: value.strip() for name, _, value in (line.partition(":") for line in lines)}
 
 
 def _entries(folder: Path) -> list[Path]:
@@ -141,8 +132,10 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def _print(minutes: float, rounds: int, count: Count) -> None:
-    memory_mb, descriptors, threads, tasks = astuple(count)
-    print(f"{minutes:5.1f}{rounds:8}{memory_mb:8.1f}{descriptors:13}{threads:9}{tasks:7}", flush=True)
+    print(
+        f"{minutes:5.1f}{rounds:8}{count.memory_mb:8.1f}{count.descriptors:13}{count.threads:9}{count.tasks:7}",
+        flush=True,
+    )
 
 
 def _is_flat(counts: list[Count]) -> bool:

@@ -28,10 +28,9 @@ import numpy as np
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from benchmarks.login_link import login_link
-from benchmarks.stop_server import Server, server
+from benchmarks.stop_server import FLEXCELL, Server, server
 from tests.editor_web.browsing import browser_program
 
-_FLEXCELL = Path(sys.executable).with_name("flexcell")
 _BLOCK_S = 1.0
 _INTO_S = 0.03
 CONDITIONS = ("free", "state", "interpreter", "expression", "clients", "suspended", "killed")
@@ -113,7 +112,7 @@ def _over_http(running: Server) -> float:
 
 
 def _by_command(running: Server) -> float:
-    command = [_FLEXCELL, "stop", "--state", running.state]
+    command = [FLEXCELL, "stop", "--state", running.state]
     with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
         line = process.stdout.readline()

@@ -20,7 +20,7 @@ from benchmarks.process_cpu import descendants
 from robots.port.heartbeat import Heartbeat
 
 _ROOT = Path(__file__).parents[1]
-_FLEXCELL = Path(sys.executable).with_name("flexcell")
+FLEXCELL = Path(sys.executable).with_name("flexcell")
 _MOVING_S = 0.4
 _LOOK_S = 0.002
 _START_S = 20.0
@@ -189,7 +189,7 @@ def server(
     """
     write_project(folder)
     (folder / "state").mkdir(mode=0o700)
-    command = [str(_FLEXCELL), "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state"]
+    command = [str(FLEXCELL), "serve", "--cell", "behaviors/cell.yaml", "--port", "0", "--state", "state"]
     command.append("--no-record")
     if disk:
         script = f'mount -t tmpfs -o size={disk},mode=700 none state && exec "$0" "$@"'

@@ -24,7 +24,7 @@ import viser
 import websockets.asyncio.client
 from websockets.typing import Subprotocol
 
-from benchmarks.process_cpu import cpu_s
+from benchmarks.process_cpu import cpu_s, memory_mb
 from benchmarks.realtime import Reactions
 from editor_web.server import dashboard
 from engine.cell import OpenCell
@@ -111,7 +111,7 @@ async def _while_watched(cell: OpenCell, viewers: int, seconds: float, watching:
     began_s, began_cpu_s = time.monotonic(), cpu_s(os.getpid())
     while time.monotonic() < began_s + seconds:
         await asyncio.sleep(_SAMPLE_S)
-        row.memory_mb.append(_memory_mb())
+        row.memory_mb.append(memory_mb(os.getpid()))
     row.cpu = (cpu_s(os.getpid()) - began_cpu_s) / (time.monotonic() - began_s)
     reactions.close()
     row.reactions_s = reactions.latencies_s
@@ -181,13 +181,6 @@ async def _one(
                     await socket.send('{"k":"pong"}')
         finally:
             got["lost"] += socket.close_code is not None
-
-
-def _memory_mb() -> float:
-    for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
-        if line.startswith("VmRSS:"):
-            return int(line.split()[1]) / 1e3
-    return 0.0
 
 
 def _print(row: Watched) -> None:

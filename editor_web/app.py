@@ -122,7 +122,7 @@ def new_app(
         port=port,
         capacity=capacity,
         connect_sources=(stop.origin,) if stop is not None else (),
-        view_hosts=frozenset(f"{name.rpartition(':')[0]}:{view_port}" for name in hosts if view_port is not None),
+        view_port=view_port,
     )
 
 

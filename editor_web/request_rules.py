@@ -28,7 +28,8 @@ _SINGLE = frozenset(
 # Control characters, and what is left of bytes that are no UTF-8: no name of ours has any.
 _ODD = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffd\ud800-\udfff]")
 _OWN_SITES = ("same-origin", "none")
-_DATA_PATHS = ("/api/", "/cell/")
+VIEW_PATH = "/cell/"
+_DATA_PATHS = ("/api/", VIEW_PATH)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,11 +91,14 @@ def unproven(scope: Scope, headers: Mapping[str, str]) -> Refusal | None:
 
 def _opens_page(scope: Scope, headers: Mapping[str, str]) -> bool:
     """Say whether somebody follows a link to the page itself; it holds no data, which it asks for on its own."""
-    opens = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
-    return opens and not is_unsafe(scope) and not scope["path"].startswith(_DATA_PATHS)
+    return _navigates(scope, headers, to="document") and not scope["path"].startswith(_DATA_PATHS)
 
 
 def _opens_frame(scope: Scope, headers: Mapping[str, str]) -> bool:
     """Say whether a page of this machine opens another one inside of it."""
-    is_near = headers.get("sec-fetch-site") == "same-site" and headers.get("sec-fetch-mode") == "navigate"
-    return is_near and headers.get("sec-fetch-dest") == "iframe" and not is_unsafe(scope)
+    return headers.get("sec-fetch-site") == "same-site" and _navigates(scope, headers, to="iframe")
+
+
+def _navigates(scope: Scope, headers: Mapping[str, str], *, to: str) -> bool:
+    is_meant = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == to
+    return is_meant and not is_unsafe(scope)

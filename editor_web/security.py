@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from http.cookies import CookieError, SimpleCookie
+from typing import Self
 
 from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -20,7 +21,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from editor_web.access import OPERATOR, Access, AttemptLimit, Role
 from editor_web.bodies import TOO_LARGE, bounded, told_too_large
 from editor_web.capacity import MAX_CONNECTIONS
-from editor_web.request_rules import Refusal, foreign, is_unsafe, malformed, unproven
+from editor_web.request_rules import VIEW_PATH, Refusal, foreign, is_unsafe, malformed, unproven
 from editor_web.sessions import LoginSession, LoginSessions
 
 PAGE_POLICY = (
@@ -34,7 +35,6 @@ CELL_POLICY = (
     "img-src 'self' data: blob:; font-src 'self' data:; worker-src 'self' blob: data:; "
     "connect-src 'self' data: blob:; frame-ancestors 'self'{pages}; object-src 'none'; base-uri 'none'"
 )
-VIEW_PATH = "/cell/"
 OPEN_PATHS = frozenset({"/login", "/favicon.svg"})
 LOG_OUT = "/api/v1/logout"
 
@@ -68,8 +68,8 @@ class Gate:
         port: Our own port, for the cookie's name.
         capacity: Requests and websockets served at once; beyond it only an operator's commands are, such as a stop.
         connect_sources: Further origins that the page may connect to.
-        view_hosts: Values of the Host header under which the 3D view alone is served: its own origin, so that
-            browsers give it a process of its own and it reaches nothing of the page around it.
+        view_port: Port of the 3D view, which alone is served there: its own origin, so that browsers give it a
+            process of its own and it reaches nothing of the page around it. None without one.
     """
 
     def __init__(
@@ -83,19 +83,17 @@ class Gate:
         port: int,
         capacity: int = MAX_CONNECTIONS,
         connect_sources: Sequence[str] = (),
-        view_hosts: frozenset[str] = frozenset(),
+        view_port: int | None = None,
     ) -> None:
         self._app = app
         self._access = access
         self._sessions = sessions
         self._limit = limit
-        self._hosts = hosts
         self._cookie = cookie_name(port)
         self._capacity = capacity
-        self._view_hosts = view_hosts
-        self._page_ports = _ports(hosts)
-        self._view_ports = _ports(view_hosts)
-        self._connect_sources = tuple(connect_sources)
+        self._page_hosts = {host: Origins.beside(host, view_port, connect_sources) for host in hosts}
+        self._view_hosts = {_at(host, view_port): of for host, of in self._page_hosts.items() if view_port is not None}
+        self._elsewhere = Origins(connect_sources=connect_sources)
         self._open = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -135,12 +133,7 @@ class Gate:
 
     def _headers(self, scope: Scope) -> dict[str, str]:
         host = next((value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"), "")
-        known = host if host in self._hosts | self._view_hosts else ""
-        origins = Origins(
-            pages=_sources(known, self._page_ports),
-            views=_sources(known, self._view_ports),
-            connect_sources=self._connect_sources,
-        )
+        origins = self._page_hosts.get(host) or self._view_hosts.get(host) or self._elsewhere
         return response_headers(scope["path"], origins)
 
     def _judge(self, scope: Scope) -> Admission | Refusal:
@@ -149,7 +142,7 @@ class Gate:
         is_open = scope["path"] in OPEN_PATHS and scope["type"] == "http"
         host = headers.get("host", "").lower()
         is_view = host in self._view_hosts
-        if host not in self._hosts and not is_view:
+        if host not in self._page_hosts and not is_view:
             return Refusal(status=421, message="this server does not answer to that host name")
         if is_view and not scope["path"].startswith(VIEW_PATH):
             return Refusal(status=404, message="at this address there is nothing but the 3D view")
@@ -256,6 +249,14 @@ class Origins:
     views: Sequence[str] = ()
     connect_sources: Sequence[str] = ()
 
+    @classmethod
+    def beside(cls, host: str, view_port: int | None, connect_sources: Sequence[str]) -> Self:
+        """Return those of the page at `host`, given with its port; the 3D view has the same host name."""
+        # A policy has no form for IPv6 addresses.
+        named = f"*:{host.rpartition(':')[2]}" if host.startswith("[") else host
+        views = () if view_port is None else (f"http://{_at(named, view_port)}",)
+        return cls(pages=(f"http://{named}",), views=views, connect_sources=tuple(connect_sources))
+
 
 def response_headers(path: str, origins: Origins | None = None) -> dict[str, str]:
     """Return the headers that every answer under `path` carries."""
@@ -282,17 +283,9 @@ def response_headers(path: str, origins: Origins | None = None) -> dict[str, str
     return headers
 
 
-def _ports(hosts: frozenset[str]) -> tuple[str, ...]:
-    return tuple(sorted({host.rpartition(":")[2] for host in hosts}))
-
-
-def _sources(host: str, ports: Sequence[str]) -> tuple[str, ...]:
-    """Return the sources at the same host name as the one that was asked."""
-    name = host.rpartition(":")[0]
-    if not name:
-        return ()
-    # A policy has no form for IPv6 addresses.
-    return tuple(f"http://{'*' if name.startswith('[') else name}:{port}" for port in ports)
+def _at(host: str, port: int | None) -> str:
+    """Return a host, given with a port, with another one."""
+    return f"{host.rpartition(':')[0]}:{port}"
 
 
 def _listed(sources: Sequence[str]) -> str:

@@ -9,8 +9,8 @@ export function stopByKey(): void {
   if (mayStop()) stopCell()
 }
 
-/** Listen for it in a window before anything else does; returns how to end it. */
-export function listenForStopKey(on: Window): () => void {
+/** Listen for it before anything else of the page does; returns how to end it. */
+export function listenForStopKey(): () => void {
   const listen = (event: KeyboardEvent) => {
     const isMeant = event.key === 'Backspace' && event.ctrlKey && event.shiftKey && !event.altKey
     if (!isMeant || !mayStop()) return
@@ -18,8 +18,8 @@ export function listenForStopKey(on: Window): () => void {
     event.stopImmediatePropagation()
     if (!event.repeat) stopCell()
   }
-  on.addEventListener('keydown', listen, { capture: true })
-  return () => on.removeEventListener('keydown', listen, { capture: true })
+  window.addEventListener('keydown', listen, { capture: true })
+  return () => window.removeEventListener('keydown', listen, { capture: true })
 }
 
 function mayStop(): boolean {

@@ -22,7 +22,7 @@ export function StopCell() {
   const top = useTop()
   // The page asks too; STOP does not depend on it.
   useEffect(() => void api.session().catch(() => undefined), [])
-  useEffect(() => listenForStopKey(window), [])
+  useEffect(() => listenForStopKey(), [])
   useEffect(() => {
     document.body.classList.toggle('has-stop', isShown)
   }, [isShown])
