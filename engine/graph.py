@@ -19,7 +19,7 @@ class GraphTransition(msgspec.Struct, frozen=True, kw_only=True):
     target: str
 
 
-class GraphNode(msgspec.Struct, frozen=True, kw_only=True):
+class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One node with everything inside it; `path` is the one that events carry."""
 
     path: str

@@ -6,8 +6,9 @@ Each kind has a page, `docs/findings/<code>.md`, with what it means and how to m
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
+
+import msgspec
 
 from engine.errors import Position
 
@@ -63,8 +64,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
 """Every code a finding can have: its severity and what it means."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Finding:
+class Finding(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """One finding; `code` is stable, `path` is the node path `root/approach/left`."""
 
     severity: Severity

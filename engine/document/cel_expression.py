@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sized
-from dataclasses import dataclass
 from typing import Any, cast
 
 import msgspec
@@ -68,8 +67,7 @@ def as_text(value: object) -> str:
     return value if isinstance(value, str) else msgspec.json.encode(value).decode()
 
 
-@dataclass(frozen=True)
-class Expression:
+class Expression(msgspec.Struct, frozen=True, gc=False):
     """One compiled expression and the variables it uses."""
 
     text: str

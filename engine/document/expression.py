@@ -9,9 +9,10 @@ the sizes of its variables. So expressions are evaluated where they stand, on th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import cast
+
+import msgspec
 
 from engine.document.cel_expression import (
     MAX_TEXT,
@@ -42,8 +43,7 @@ _Evaluation = Callable[[Variables], object]
 _PLAIN = frozenset((bool, int, float, type(None)))
 
 
-@dataclass(frozen=True)
-class Template:
+class Template(msgspec.Struct, frozen=True, gc=False):
     """A value in which expressions are replaced on `evaluate`."""
 
     value: object
@@ -79,16 +79,20 @@ def compile_template(value: object) -> Template:
     """
     found: list[_Found] = []
     evaluation = _prepare(value, found)
-    names = frozenset(name for expression, _ in found for name in expression.names)
-    return Template(value, names, evaluation, _new_read(found))
+    return Template(value, _names(expression for expression, _ in found), evaluation, _new_read(found))
+
+
+def _names(expressions: Iterable[Expression], *more: str) -> frozenset[str]:
+    """Return the names that they use, in one of their sets where that holds them all."""
+    sets = {frozenset(more), *(expression.names for expression in expressions)} - {frozenset[str]()}
+    return sets.pop() if len(sets) == 1 else frozenset[str]().union(*sets)
 
 
 _Found = tuple["Expression", bool]
 """An expression, and whether its value becomes part of a text."""
 
 
-@dataclass(frozen=True)
-class _Read:
+class _Read(msgspec.Struct, frozen=True, gc=False):
     """What the expressions of a value look into, and so what their evaluation costs."""
 
     computed: tuple[Expression, ...] = ()
@@ -120,7 +124,7 @@ class _Read:
 def _new_read(found: list[_Found]) -> _Read:
     computed = tuple(expression for expression, _ in found if not expression.bare)
     shown = tuple(expression.text for expression, in_text in found if expression.bare and in_text)
-    names = frozenset((*shown, *(name for expression in computed for name in expression.names)))
+    names = _names(computed, *shown)
     small = sum(expression.small_steps for expression in computed) + 2 * len(shown)
     characters = sum(len(expression.text) for expression in computed)
     return _Read(computed, shown, names, small if small <= MAX_STEPS else None, characters)
@@ -155,16 +159,12 @@ def _prepare(value: object, found: list[_Found]) -> _Evaluation | None:
 
 def _prepare_mapping(mapping: dict[str, object], found: list[_Found]) -> _Evaluation | None:
     live = {key: ready for key, item in mapping.items() if (ready := _prepare(item, found)) is not None}
-    if not live:
-        return None
-    return lambda variables: {k: _at(k, live[k], variables) if k in live else item for k, item in mapping.items()}
+    return _Mapping(mapping, live) if live else None
 
 
 def _prepare_list(items: list[object], found: list[_Found]) -> _Evaluation | None:
     live = {index: ready for index, item in enumerate(items) if (ready := _prepare(item, found)) is not None}
-    if not live:
-        return None
-    return lambda variables: [live[i](variables) if i in live else item for i, item in enumerate(items)]
+    return _List(items, live) if live else None
 
 
 def _at(key: str, evaluate: _Evaluation, variables: Variables) -> object:
@@ -182,17 +182,44 @@ def _prepare_text(text: str, found: list[_Found]) -> _Evaluation:
     found += [(piece, not alone) for piece in pieces if isinstance(piece, Expression)]
     if len(found) > MAX_PER_VALUE:
         raise ExpressionError(f"more than {MAX_PER_VALUE} expressions in one value", hint="use a state instead")
-    if alone:
-        only = pieces[0]
-        return only.compute if isinstance(only, Expression) else lambda variables: only
-    return lambda variables: _joined_text(text, pieces, variables)
+    return _Alone(pieces[0]) if alone else _Joined(text, pieces)
 
 
-def _joined_text(text: str, pieces: list[str | Expression], variables: Variables) -> str:
-    joined = "".join(piece if isinstance(piece, str) else piece.text_of(variables) for piece in pieces)
-    if len(joined) > MAX_TEXT:
-        raise ExpressionError(f"`{shortened(text)}`: {too_much_text(len(joined))}", hint="use a state instead")
-    return joined
+class _Mapping(msgspec.Struct, frozen=True, gc=False):
+    written: dict[str, object]
+    live: dict[str, _Evaluation]
+
+    def __call__(self, variables: Variables) -> object:
+        live = self.live
+        return {k: _at(k, live[k], variables) if k in live else item for k, item in self.written.items()}
+
+
+class _List(msgspec.Struct, frozen=True, gc=False):
+    written: Sequence[object]
+    live: dict[int, _Evaluation]
+
+    def __call__(self, variables: Variables) -> object:
+        live = self.live
+        return [live[i](variables) if i in live else item for i, item in enumerate(self.written)]
+
+
+class _Alone(msgspec.Struct, frozen=True, gc=False):
+    piece: str | Expression
+
+    def __call__(self, variables: Variables) -> object:
+        return self.piece if isinstance(self.piece, str) else self.piece.compute(variables)
+
+
+class _Joined(msgspec.Struct, frozen=True, gc=False):
+    text: str
+    pieces: list[str | Expression]
+
+    def __call__(self, variables: Variables) -> object:
+        shown = (piece if isinstance(piece, str) else piece.text_of(variables) for piece in self.pieces)
+        joined = "".join(shown)
+        if len(joined) > MAX_TEXT:
+            raise ExpressionError(f"`{shortened(self.text)}`: {too_much_text(len(joined))}", hint="use a state instead")
+        return joined
 
 
 def split_text(text: str) -> list[str | Expression]:

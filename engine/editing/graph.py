@@ -24,7 +24,7 @@ class Rule(msgspec.Struct, frozen=True, kw_only=True):
     when: dict[str, str]
 
 
-class DocumentNode(GraphNode, frozen=True, kw_only=True):
+class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     """One node as written: values raw, `${…}` not evaluated; lines and columns count from 1.
 
     `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the

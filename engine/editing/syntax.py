@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol, cast
 
+import msgspec
 import yaml
 
 from engine.document.yaml_source import SURROGATE_PAIR, StrictReading
@@ -21,8 +22,7 @@ _LOST = 2
 """By so much two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
 
 
-@dataclass(slots=True, eq=False)
-class Scalar:
+class Scalar(msgspec.Struct, eq=False, gc=False):
     """One value that is no collection; `style` is its quote, `|`, `>` or empty for plain text."""
 
     start: int
@@ -31,8 +31,7 @@ class Scalar:
     style: str
 
 
-@dataclass(slots=True, eq=False)
-class Member:
+class Member(msgspec.Struct, eq=False, gc=False):
     """One entry of a mapping or item of a list, with the lines and comments that belong to it.
 
     In a block collection `start` is where its own lines begin (blank lines and comments above it included) and `stop`
@@ -47,17 +46,16 @@ class Member:
     stop: int
 
 
-@dataclass(slots=True, eq=False, weakref_slot=True)
-class Collection:
+class Collection(msgspec.Struct, eq=False, gc=False):
     """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
 
-    origin: Origin = field(repr=False)
+    origin: Origin
     start: int
     end: int
     flow: bool
     column: int
     data: dict[str, object] | list[object]
-    members: list[Member] = field(default_factory=list["Member"])
+    members: list[Member] = []
 
     @property
     def bare(self) -> bool:
@@ -68,7 +66,7 @@ class Collection:
 Syntax = Scalar | Collection
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(slots=True, eq=False, weakref_slot=True)
 class Origin:
     """A text that was read. It knows nothing of what stands in it, so that a tree goes as soon as nobody needs it."""
 

@@ -14,10 +14,10 @@ TEXT = "flexcell: 1\nname: x\noutcomes: [a]\nroot: {state: flow.Wait, with: {dur
 
 
 def test_a_draft_has_no_cycles() -> None:
-    """Without the collector nothing of it is left."""
+    """Without the collector nothing of it is left: each collection in it holds the origin."""
     with collection_paused():
         draft = Draft(f"{TEXT}x}}\n", file="x.yaml")
-        left = [weakref.ref(draft), *(weakref.ref(found) for found in draft.collections())]
+        left = [weakref.ref(draft), *(weakref.ref(found.origin) for found in draft.collections())]
         del draft
         assert [each() for each in left] == [None] * len(left)
 
