@@ -126,7 +126,7 @@ def _by_signal(running: Server) -> float:
     log = running.folder / "log"
     before = log.stat().st_size
     running.signal(signal.SIGINT)
-    while b"robots" not in log.read_bytes()[before:]:
+    while b"STOP acknowledged" not in log.read_bytes()[before:]:
         time.sleep(0.001)
     return time.monotonic()
 

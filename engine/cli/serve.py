@@ -8,7 +8,8 @@ import signal
 import sys
 import webbrowser
 from collections.abc import Callable, Coroutine
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any
@@ -144,12 +145,15 @@ async def _serve(
                 ),
                 name="serve",
             )
-            _on_signals(asyncio.get_running_loop(), serving.cancel)
-            try:
-                with relay.watched_signals():
-                    await serving
-            except asyncio.CancelledError:
-                sys.stderr.write("stopping: bringing the robots to rest\n")
+            _on_signals(asyncio.get_running_loop(), partial(_end, serving))
+            with suppress(asyncio.CancelledError), relay.watched_signals(at_once=True):
+                await serving
+
+
+def _end(serving: asyncio.Task[None]) -> None:
+    """End the server, whose robots the relay has told to stop already."""
+    sys.stderr.write("stopping: bringing the robots to rest\n")
+    serving.cancel()
 
 
 def _on_signals(loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:

@@ -44,6 +44,7 @@ ACKNOWLEDGE_S = 0.2
 LINGER_S = 5.0
 """How long STOP is still answered after the engine has died."""
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_Source = Literal["http", "engine", "signal", "loss"]
 
 
 @dataclass(kw_only=True)
@@ -82,6 +83,8 @@ class StopDispatcher:
         self._asked_for_stop = 0
         self._changed = asyncio.Event()
         self._engine_ended = False
+        self._stops_at_signals = False
+        self._stopping: set[asyncio.Task[None]] = set()
         self.token = ""
         self.origins: frozenset[str] = frozenset()
         self.over: asyncio.Future[None] = self._loop.create_future()
@@ -93,7 +96,7 @@ class StopDispatcher:
             self._loop.add_reader(source.fileno(), read)
         self._tell_engine(RelayReady())
 
-    def stop(self, reason: str, source: Literal["http", "engine", "signal", "loss"]) -> int:
+    def stop(self, reason: str, source: _Source) -> int:
         """Tell every line and the engine to stop, and return the stop's number."""
         self._since_s = self._loop.time()
         notice = self._newest = StopNotice(stop=self._newest.stop + 1, reason=reason, source=source)
@@ -104,9 +107,9 @@ class StopDispatcher:
         self._asked_for_stop = self._ask_engine()
         return notice.stop
 
-    async def stopped(self, reason: str) -> StopStatus:
+    async def stopped(self, reason: str, source: _Source = "http") -> StopStatus:
         """Stop, and return the status once all have acknowledged and the engine was heard, or is late."""
-        number = self.stop(reason, "http")
+        number = self.stop(reason, source)
         await self._until(lambda: self._engine_informed, self._since_s + NOTE_S)
         await self._until(
             lambda: self.status().acknowledged or self._newest.stop != number, self._since_s + ACKNOWLEDGE_S
@@ -167,6 +170,7 @@ class StopDispatcher:
         match message:
             case RelaySettings():
                 self.token, self.origins = message.token, frozenset(message.origins)
+                self._stops_at_signals = message.stops_at_signals
             case NewLine():
                 self._add_line(message.device, socket.socket(fileno=self._descriptors.popleft()))
             case StopOrder():
@@ -217,11 +221,27 @@ class StopDispatcher:
             self._loop.remove_reader(self._signals.fileno())
         for number in numbers:
             if number in _SIGNALS:
-                self._loop.call_later(GRACE_S, self._stop_unless_answered, self._ask_engine(), number)
+                self._take_signal(f"interrupted by {signal.Signals(number).name}")
 
-    def _stop_unless_answered(self, question: int, number: int) -> None:
+    def _take_signal(self, reason: str) -> None:
+        if self._stops_at_signals:
+            stopping = asyncio.create_task(self._stop_and_say(reason))
+            self._stopping.add(stopping)
+            stopping.add_done_callback(self._stopping.discard)
+        else:
+            self._loop.call_later(GRACE_S, self._stop_unless_answered, self._ask_engine(), reason)
+
+    async def _stop_and_say(self, reason: str) -> None:
+        status = await self.stopped(reason, "signal")
+        silent = [device.name for device in status.devices if not device.acknowledged]
+        if silent:
+            _say(f"STOP is not acknowledged by {', '.join(silent)}")
+        elif status.devices:
+            _say(f"STOP acknowledged after {1e3 * status.after_s:.0f} ms")
+
+    def _stop_unless_answered(self, question: int, reason: str) -> None:
         if self._answered < question and not self._engine_ended:
-            self.stop(f"interrupted by {signal.Signals(number).name}; the engine does not answer", "signal")
+            self.stop(f"{reason}; the engine does not answer", "signal")
             _say("the engine does not answer: its robots were told to come to rest without it")
 
     def _engine_lost(self) -> None:

@@ -42,10 +42,11 @@ class StopAcknowledged(_Message, frozen=True, kw_only=True, tag="acknowledged"):
 
 
 class RelaySettings(_Message, frozen=True, kw_only=True, tag="settings"):
-    """Engine to relay: who may stop over HTTP, and the origins of pages that may read the answer."""
+    """Engine to relay: who may stop over HTTP, the origins of pages that may read the answer, what signals mean."""
 
     token: str
     origins: tuple[str, ...]
+    stops_at_signals: bool = False
 
 
 class NewLine(_Message, frozen=True, kw_only=True, tag="new_line"):

@@ -89,6 +89,7 @@ class StopRelay:
         self._carried_out: set[asyncio.Task[None]] = set()
         self._origins: tuple[str, ...] = ()
         self._watches_signals = False
+        self._stops_at_signals = False
         self._when_connection_changes: list[Callable[[], None]] = []
         self._lost_reason = ""
 
@@ -204,19 +205,21 @@ class StopRelay:
         self._send(StopRelease(stop=stop))
 
     @contextmanager
-    def watched_signals(self) -> Generator[None]:
+    def watched_signals(self, *, at_once: bool = False) -> Generator[None]:
         """Have the relay see SIGINT and SIGTERM while the block runs, also while this interpreter is held.
 
-        The relay acts on them when the event loop does not answer. Main thread only. The signals need handlers
-        set by `signal.signal`: an event loop's own would take the descriptor that this needs.
+        The relay stops the devices `at_once`, or when the event loop does not answer. Main thread only. The signals
+        need handlers set by `signal.signal`: an event loop's own would take the descriptor that this needs.
         """
         assert self._signals is not None
+        self._stops_at_signals = at_once
+        self._configure()
         before = signal.set_wakeup_fd(self._signals.fileno(), warn_on_full_buffer=False)
         self._watches_signals = True
         try:
             yield
         finally:
-            self._watches_signals = False
+            self._watches_signals = self._stops_at_signals = False
             signal.set_wakeup_fd(before)
 
     async def _start(self) -> None:
@@ -299,7 +302,8 @@ class StopRelay:
             tell()
 
     def _configure(self) -> None:
-        self._send(RelaySettings(token=self._token, origins=self._origins))
+        settings = RelaySettings(token=self._token, origins=self._origins, stops_at_signals=self._stops_at_signals)
+        self._send(settings)
 
     def _send(self, message: ToRelay) -> None:
         if self._outbox is not None:

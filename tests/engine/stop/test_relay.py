@@ -144,7 +144,7 @@ async def main():
         socket.send_fds(socket.socket(fileno=int(sys.argv[1])), [b"x"], [line.fileno()])
         line.close()
         signal.signal(signal.SIGINT, lambda *_: None)
-        with relay.watched_signals():
+        with relay.watched_signals(at_once=sys.argv[2] == "serves"):
             print(relay.endpoint.url, relay.endpoint.token, flush=True)
             if sys.argv[2] == "blocks":
                 time.sleep(600)
@@ -204,6 +204,13 @@ async def test_a_signal_that_a_blocked_engine_cannot_handle_stops_the_devices() 
     with engine_in_a_process("blocks") as engine:
         engine.process.send_signal(signal.SIGINT)
         assert await engine.stops_device() == "interrupted by SIGINT; the engine does not answer"
+
+
+async def test_a_signal_that_means_stop_waits_for_no_engine() -> None:
+    """The loop of a server may turn, and yet be busy for long before it comes to its robots."""
+    with engine_in_a_process("serves") as engine:
+        engine.process.send_signal(signal.SIGINT)
+        assert await engine.stops_device() == "interrupted by SIGINT"
 
 
 async def test_a_frozen_engine_is_stopped_over_http() -> None:
