@@ -210,7 +210,7 @@ def _small_steps(made: Expression) -> float:
         return math.inf  # it depends on the value: a pattern, say
 
 
-_COMPILED: TextCache[Expression] = TextCache(max_characters=200_000)
+_COMPILED: TextCache[Expression] = TextCache(max_characters=150_000)
 _TYPES: TextCache[ValueType] = TextCache(max_characters=500_000)
 
 

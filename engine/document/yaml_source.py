@@ -112,13 +112,14 @@ def parse_source(content: bytes | str, *, file: str) -> Source:
 class StrictReading:
     """The reading of a text event by event, for who looks at it more closely than its data: iterate, then `source`.
 
-    `said` is the value that the last event was or began. While iterating raises what `parse_source` does.
+    `said` is the value that the last event was or began. While iterating raises what `parse_source` does. Without
+    `places` the source has none of the items of lists, which take as much memory as their values.
     """
 
-    def __init__(self, content: bytes | str, *, file: str) -> None:
+    def __init__(self, content: bytes | str, *, file: str, places: bool = True) -> None:
         self._text = _acceptable(content, file)
         self._file = file
-        self._builder = _Builder(file)
+        self._builder = _Builder(file, places=places)
 
     @property
     def said(self) -> object:
@@ -240,8 +241,9 @@ def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int
 class _Builder:
     """Puts data and places together from parser events, with a stack instead of recursion."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, *, places: bool) -> None:
         self._file = file
+        self._places = places
         self._documents = 0
         self._nodes = 0
         self._expressions = 0
@@ -359,7 +361,9 @@ class _Builder:
             container[key] = value
             place = children[key] = Place(key_line, key_column, line, column)
         else:
-            place = children[len(children)] = Place(line, column, line, column)
+            place = Place(line, column, line, column)
+            if self._places:
+                children[len(children)] = place
             cast("list[object]", container).append(value)
         return place
 

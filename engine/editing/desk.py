@@ -59,12 +59,7 @@ class Desk:
     ) -> tuple[Edited, Examination]:
         """Make edits in a text, all or none, and draw what comes of it."""
         with collection_paused():
-            draft = self._taken(file, text)
-            done = (
-                apply_to(draft, edits, knowledge=knowledge)
-                if draft is not None
-                else apply_edits(text, edits, file=str(file), knowledge=knowledge)
-            )
+            done = self._edited(text, edits, file, knowledge)
             if done.draft is not None:
                 return done, self._put(done.draft, file, knowledge)
         return done, self.draw(text, file=file, knowledge=knowledge)
@@ -82,6 +77,12 @@ class Desk:
         drawn = sheet.drawn if sheet is not None else self.draw(text, file=file, knowledge=knowledge)
         with collection_paused():
             return checked(drawn, text, file=file, knowledge=knowledge).findings
+
+    def _edited(self, text: str, edits: Sequence[AnyEdit], file: Path, knowledge: Knowledge) -> Edited:
+        draft = self._taken(file, text)
+        if draft is not None:
+            return apply_to(draft, edits, knowledge=knowledge)
+        return apply_edits(text, edits, file=str(file), knowledge=knowledge)
 
     def _taken(self, file: Path, text: str) -> Draft | None:
         """Return the draft of a text, once: who takes it may change it."""

@@ -116,7 +116,7 @@ def read_syntax(text: str, *, file: str) -> SyntaxTree:
         DocumentError: the strict reader refuses it, or it is no mapping; `where` is the position.
     """
     origin = Origin(text, file.endswith(".json"))
-    reading = StrictReading(text, file=file)
+    reading = StrictReading(text, file=file, places=False)
     found = _Reader(origin, reading).read()
     if not isinstance(reading.source().data, dict) or found is None:
         where = Position(file=file, line=1, column=1)
