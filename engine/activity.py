@@ -6,6 +6,8 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any, TypeVar
 
+from engine.preemption import is_preempted
+
 T = TypeVar("T")
 
 
@@ -33,6 +35,11 @@ class Activity:
             if within and (found is None or len(key) > len(found)):
                 found = key
         return self._branches[found] if found is not None else None
+
+    def is_preempted(self, path: str) -> bool:
+        """Tell whether the task in which the node at `path` is performed has been asked to end."""
+        task = self.task_of(path)
+        return task is not None and is_preempted(task)
 
     def branch_of(self, path: str) -> str:
         """Return the path of that branch, empty for the whole run."""

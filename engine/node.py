@@ -21,7 +21,7 @@ from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
 from engine.measure import Guard, Retry, Timeout
 from engine.point import Point
-from engine.preemption import Overdue, being_cancelled, preempt
+from engine.preemption import Overdue, being_cancelled, goes_on, preempt
 from engine.settle import settle
 from engine.state import Outcome, State
 from engine.userdata import Scope
@@ -179,11 +179,12 @@ class Node:
 
     def _ordered(self, execution: Execution) -> Order | None:
         """Return what the operator ordered if that, and nothing else, is why this node was preempted."""
-        task = asyncio.current_task()
-        if not execution.gate.has_order(self.path) or task is None:
+        gate = execution.gate
+        if not gate.has_order(self.path):
             return None
-        order = execution.gate.taken_order(self.path)
-        return order if task.uncancel() == 0 else None
+        order = gate.taken_order(self.path)
+        # An order of a node around this one preempts both with one clean-up.
+        return order if not gate.has_order_around(self.path) and goes_on() else None
 
     def _forced(self, outcome: str, execution: Execution) -> Left:
         self._record_diverted(execution, "operator", outcome, None)
@@ -385,7 +386,12 @@ def overdue(execution: Execution, path: str) -> Overdue:
 
     # The innermost gives up first, or every level around it would be given up with it.
     grace_s = 0.1 * max(0, 20 - path.count("/"))
-    return Overdue(tell=tell, abandon=abandon, abandon_after_s=execution.abandon_after_s + grace_s)
+    return Overdue(
+        tell=tell,
+        abandon=abandon,
+        abandon_after_s=execution.abandon_after_s + grace_s,
+        stands_still=execution.suspensions.held,
+    )
 
 
 def explain(child: Node, left: Left) -> Cause:

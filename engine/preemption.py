@@ -1,4 +1,8 @@
-"""Preempting tasks: asked once, in order, and waited for until their clean-up is done."""
+"""Preempting tasks: asked once, in order, and waited for until their clean-up is done.
+
+A task hears of it once: whoever asks while it cleans up waits for the same clean-up. A task that an order of the
+operator preempts goes on after it, unless somebody else has asked meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +20,70 @@ OVERDUE_S = 5.0
 
 @dataclass(frozen=True, kw_only=True)
 class Overdue:
-    """What becomes of tasks that take their time: `tell` names them, `abandon` says that they are given up."""
+    """What becomes of tasks that take their time: `tell` names them, `abandon` says that they are given up.
+
+    Time in which a task `stands_still`, as in a pause, is not counted.
+    """
 
     tell: Callable[[str, float], None]
     abandon: Callable[[asyncio.Task[Any], float], None] = lambda task, waited_s: None
     abandon_after_s: float = math.inf
+    stands_still: Callable[[str], bool] = lambda task: False
+
+
+_ASKED: set[asyncio.Task[Any]] = set()
+"""The tasks that were asked to end and have not; what a state does with its own count of cancels does not matter."""
+_FOR_ORDERS: set[asyncio.Task[Any]] = set()
+"""Those of them that clean up for an order, and are to go on."""
 
 
 def being_cancelled() -> bool:
     """Tell whether the running branch has been asked to stop."""
     task = asyncio.current_task()
-    return task is not None and task.cancelling() > 0
+    return task is not None and (task.cancelling() > 0 or task in _ASKED)
+
+
+def is_preempted(task: asyncio.Task[Any]) -> bool:
+    """Tell whether a task was asked to end and has not."""
+    return task in _ASKED
+
+
+def preempt_for_order(task: asyncio.Task[Any]) -> None:
+    """Ask a task to clean up for an order, unless it does already; `goes_on` says whether it may go on then."""
+    if _ask(task):
+        _FOR_ORDERS.add(task)
+
+
+def preempt_for_good(task: asyncio.Task[Any]) -> None:
+    """Ask a task to clean up and end; a clean-up for an order is the one that it ends with."""
+    _ask(task)
+    _FOR_ORDERS.discard(task)
+
+
+def goes_on() -> bool:
+    """Tell, once and after its clean-up, whether the running branch was preempted by an order and by nothing else."""
+    task = asyncio.current_task()
+    if task is None or task not in _FOR_ORDERS:
+        return False
+    _forget(task)
+    while task.cancelling():
+        task.uncancel()
+    return True
+
+
+def _ask(task: asyncio.Task[Any]) -> bool:
+    if task.done() or task in _ASKED:
+        return False
+    _ASKED.add(task)
+    task.add_done_callback(_forget)
+    task.cancel()
+    return True
+
+
+def _forget(task: asyncio.Task[Any]) -> None:
+    task.remove_done_callback(_forget)
+    _ASKED.discard(task)
+    _FOR_ORDERS.discard(task)
 
 
 async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
@@ -43,7 +100,7 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
     asked = tuple(tasks)
     unfinished = {task for task in asked if not task.done()}
     for task in asked:
-        task.cancel()
+        preempt_for_good(task)
     cancelled: asyncio.CancelledError | None = None
     waited_s = 0.0
     while unfinished and waited_s < overdue.abandon_after_s:
@@ -52,6 +109,8 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
             _, unfinished = await asyncio.wait(unfinished, timeout=patience_s)
         except asyncio.CancelledError as error:
             cancelled = error
+            continue
+        if any(overdue.stands_still(task.get_name()) for task in unfinished):
             continue
         waited_s += patience_s
         if waited_s < overdue.abandon_after_s:

@@ -49,8 +49,12 @@ class Priority:
         return NOTHING
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Hold the others, run the machine, let them go on; a nested one holds more."""
+        """Hold the others, run the machine, let them go on; a nested one holds more.
+
+        Of several that are entered at one instant the first holds the others, which hold theirs when it has ended.
+        """
         reason = f"priority of {path}"
+        await execution.suspensions.until_free(path)
         execution.suspensions.hold(reason, lambda other: not inside(path, other) and not inside(other, path))
         execution.gate.arm()
         try:

@@ -20,6 +20,7 @@ from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
 from engine.node import Left, Node, explain, log
 from engine.plan import Plan
+from engine.preemption import preempt_for_good
 from engine.recorder import Recorder, Watcher
 from engine.run_log import RunLog
 from engine.skill_port import AttendingPort, BusPort, SkillPort
@@ -111,6 +112,7 @@ class Run:
             abandon_after_s=self._supervision.abandon_after_s,
             world=world,
         )
+        suspensions.is_preempted = self._execution.activity.is_preempted
         if checkpoint is not None:
             self._execution.points = dict(checkpoint.points)
             self._execution.goes_on = self._goes_on
@@ -170,7 +172,9 @@ class Run:
         if self._task is not None:
             self._log.stop_requested(reason)
             if first:
-                self._task.cancel()
+                # What a pause holds would never clean up.
+                self._execution.suspensions.let_clean_up(self.plan.root.path)
+                preempt_for_good(self._task)
                 # A little longer than any container inside waits for its children.
                 patience_s = self._supervision.abandon_after_s + 2.5
                 self._patience = self._task.get_loop().call_later(patience_s, self._give_up)

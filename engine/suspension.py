@@ -42,8 +42,9 @@ class Holdable(Protocol):
 class _Member:
     """One piece of work, led towards being held or not by one task at a time."""
 
-    def __init__(self, work: Holdable, settled: Callable[[], None]) -> None:
+    def __init__(self, work: Holdable, settled: Callable[[], None], *, of_clean_up: bool) -> None:
         self.work = work
+        self.of_clean_up = of_clean_up
         self.wanted = False
         self.held = False
         self.cannot = ""
@@ -74,8 +75,11 @@ class Suspensions:
         self._reasons: dict[str, Covers] = {}
         self._members: dict[int, _Member] = {}
         self._timers: dict[int, Timer] = {}
+        self._cleaning_up: set[str] = set()
         self._waiters: list[asyncio.Future[None]] = []
         self.on_settled: Callable[[], None] = lambda: None
+        self.is_preempted: Callable[[str], bool] = lambda path: False
+        """Whether what is at a path has been asked to end, and cleans up."""
 
     @property
     def active(self) -> bool:
@@ -84,7 +88,7 @@ class Suspensions:
 
     def held(self, path: str) -> bool:
         """Tell whether the branch of `path` has to stand still."""
-        return any(covers(path) for covers in self._reasons.values())
+        return any(covers(path) for covers in self._reasons.values()) and not self._cleans_up(path)
 
     def reasons(self, path: str) -> tuple[str, ...]:
         """Return why it has to."""
@@ -100,9 +104,24 @@ class Suspensions:
         if self._reasons.pop(reason, None) is not None:
             self._apply()
 
+    def let_clean_up(self, path: str) -> None:
+        """Hold no clean-up inside `path` any more; what is about to be preempted stays held until it is."""
+        self._cleaning_up.add(path)
+        for timer in self._timers.values():
+            if not self.held(timer.path):
+                timer.resume()
+        for member in self._members.values():
+            if member.of_clean_up and not self.held(member.work.path):
+                member.want(False)
+        self.wake()
+
+    def has_cleaned_up(self, path: str) -> None:
+        """Hold what is inside `path` again."""
+        self._cleaning_up.discard(path)
+
     def attach(self, work: Holdable) -> None:
         """Hold and resume `work` along with its branch, from now on until `detach`."""
-        member = _Member(work, self._tell_settled)
+        member = _Member(work, self._tell_settled, of_clean_up=self.is_preempted(work.path))
         self._members[id(work)] = member
         if self._reasons and self.held(work.path):
             member.want(True)
@@ -160,8 +179,13 @@ class Suspensions:
             else:
                 timer.resume()
         for member in self._members.values():
-            member.want(self.held(member.work.path))
+            if not self._cleans_up(member.work.path):
+                member.want(self.held(member.work.path))
         self.wake()
+
+    def _cleans_up(self, path: str) -> bool:
+        let = any(path == around or path.startswith(f"{around}/") for around in self._cleaning_up)
+        return let and self.is_preempted(path)
 
     def _tell_settled(self) -> None:
         if self.settled():

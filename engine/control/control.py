@@ -16,6 +16,7 @@ from engine.control.step import Step, StepMode, inside
 from engine.errors import ControlError
 from engine.event import Commanded, Logged, OperatorChanged, PauseConfirmed
 from engine.nearness import near_names
+from engine.preemption import preempt_for_order
 from engine.recorder import Recorder
 from engine.suspension import Suspensions
 
@@ -259,7 +260,8 @@ class Control:
         self._gate.order(path, order)
         task = self._activity.task_of(path)
         if not waiting and task is not None:
-            task.cancel()
+            self._suspensions.let_clean_up(path)
+            preempt_for_order(task)
 
     def _require_node(self, path: str) -> Sequence[str]:
         known = self.structure.outcomes(path)

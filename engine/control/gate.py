@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from engine.cause import cause_of, describe
 from engine.control.autonomy import AutonomyLevel, passes
 from engine.control.breakpoint import Breakpoint, GatePoint
-from engine.control.step import Step
+from engine.control.step import Step, inside
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError
@@ -118,8 +118,13 @@ class Gate:
         return path in self._orders
 
     def taken_order(self, path: str) -> Order | None:
-        """Return what was ordered of a node, once."""
+        """Return what was ordered of a node, once; what it cleaned up for that is done."""
+        self._suspensions.has_cleaned_up(path)
         return self._orders.pop(path, None)
+
+    def has_order_around(self, path: str) -> bool:
+        """Tell whether something was ordered of a node that this one is in."""
+        return any(other != path and inside(other, path) for other in self._orders)
 
     def answer(self, path: str) -> None:
         """Let the requested outcome of a node pass."""

@@ -82,3 +82,30 @@ root:
         transitions: {fine: good}
 """
     assert run_document(text).result.duration_s == pytest.approx(7.0)
+
+
+@pytest.mark.parametrize("timed", [("left", "right"), ("left",), ("right",)])
+@pytest.mark.parametrize("retried", [False, True])
+def test_priorities_with_timeouts_entered_at_one_instant_take_turns(timed: tuple[str, ...], retried: bool) -> None:
+    """They held each other for ever; the time of the one that waits stands still."""
+    branch = """
+      {name}:
+        machine:
+          initial: first
+          states:
+            first:
+              priority:
+                initial: one
+                states:
+                  one: {{state: test.Give, with: {{after_s: 3}}, transitions: {{a: out, b: out, c: out}}}}
+              {timeout}
+              {retry}
+              transitions: {{out: out}}
+"""
+    text = "root:\n  concurrency:\n    states:"
+    for name in ("left", "right"):
+        timeout = "timeout: {after: 4, to: late}" if name in timed else ""
+        retry = "retry: {times: 2}" if retried else ""
+        text += branch.format(name=name, timeout=timeout, retry=retry)
+    told = run_document(text + "    conditions: [{good: {left: out, right: out}}]\n    otherwise: bad\n")
+    assert (told.result.outcome, told.result.duration_s) == ("good", pytest.approx(6.0))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -20,26 +21,51 @@ from engine.event import (
     GateReached,
     GoalFinished,
     GoalSent,
+    Logged,
     OutcomeRequested,
     OutcomeWithdrawn,
     RunEnded,
+    StopRequested,
 )
 from engine.run import Run
+from engine.state import Context, Outcome, State
 from engine.supervision import Supervision
 from tests.engine.control.operate import Act, operate
 from tests.engine.control.turntable import Turntable
 
 TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
 MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
+CLEANUP_S = 0.375
+BEGUN, DONE = "cleaning up", "cleaned up"
 Node = dict[str, Any]
+
+
+class Tidy(State, frozen=True, kw_only=True):
+    """Wait; take a time, and a line in the log, to clean up."""
+
+    state_name: ClassVar[str] = "test.Tidy"
+    outcomes: ClassVar[tuple[str, ...]] = ("a", "b", "c")
+    after_s: float = 1.0
+
+    async def run(self, ctx: Context) -> Outcome:
+        try:
+            await ctx.clock.sleep(self.after_s)
+        except asyncio.CancelledError:
+            ctx.log(BEGUN)
+            await ctx.clock.sleep(CLEANUP_S)
+            ctx.log(DONE)
+            raise
+        return Outcome("a")
 
 
 def _leaf(after_s: float, outcome: str) -> Node:
     return {"state": "test.Give", "with": {"after_s": after_s, "outcome": outcome}}
 
 
-LEAVES = st.builds(_leaf, TIMES, st.sampled_from("abc")) | st.just(
-    {"state": "test.TurnTable", "with": {"for_s": 0.5}, "on_error": "c"}
+LEAVES = (
+    st.builds(_leaf, TIMES, st.sampled_from("abc"))
+    | st.just({"state": "test.TurnTable", "with": {"for_s": 0.5}, "on_error": "c"})
+    | TIMES.map(lambda after_s: {"state": "test.Tidy", "with": {"after_s": after_s}})
 )
 
 
@@ -51,6 +77,8 @@ def _machine(children: list[Node], *, kind: str) -> Node:
         outs = ("a", "b", "c", "turned", "failed", "exhausted", "broken")
         transitions = {out: following for out in outs if out in _outs(child)}
         divert = {"on_error": following} if "on_error" in child else {}
+        if "timeout" in child:
+            divert["timeout"] = {**child["timeout"], "to": following}
         states[f"s{index}"] = {**child, "transitions": transitions, **divert}
     return {kind: {"initial": "s0", "states": states}}
 
@@ -63,6 +91,12 @@ def _concurrency(children: list[Node]) -> Node:
 
 def _foreach(child: Node) -> Node:
     return {"foreach": {"times": 2, "child": child, "next": [*_outs(child)]}}
+
+
+def _measured(child: Node, timeout_s: float, times: int) -> Node:
+    """Give a node a timeout, which only a machine can lead on, and a retry."""
+    measures: Node = {"timeout": {"after": timeout_s}, **({"retry": {"times": times}} if times else {})}
+    return _machine([{**child, **measures}], kind="machine")
 
 
 def _outs(node: Node) -> tuple[str, ...]:
@@ -80,6 +114,7 @@ TREES = st.recursive(
         | st.lists(inner, min_size=1, max_size=2).map(partial(_machine, kind="priority"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
         | inner.map(_foreach)
+        | st.builds(_measured, inner, st.sampled_from([0.25, 1.0, 2.5]), st.integers(0, 2))
     ),
     max_leaves=6,
 )
@@ -155,12 +190,15 @@ def test_any_commands_at_any_instants(root: Node, orders: list[tuple[float, int]
         for moment in range(300, 400):
             acts[float(moment)] = lambda run: run.control.set_autonomy("full")
         acts[401.0] = lambda run: run.stop("it demands an operator and has none")
-    told = operate(text, acts, supervision=at, prepare=Turntable)
+    told = operate(text, acts, supervision=at, prepare=Turntable, states={"test.Tidy": Tidy})
     assert told.result.status in {"finished", "stopped", "errored"}
     entered = Counter((e.path, e.visit) for e in told.events if isinstance(e, Entered))
     exited = Counter((e.path, e.visit) for e in told.events if isinstance(e, Exited))
     assert entered == exited
     assert set(entered.values()) <= {1}
+    assert told.result.status != "stopped" or _count(told.events, StopRequested)
+    said = Counter(e.message for e in told.events if isinstance(e, Logged))
+    assert said[BEGUN] == said[DONE]
     sent = Counter(e.goal for e in told.events if isinstance(e, GoalSent))
     assert sent == Counter(e.goal for e in told.events if isinstance(e, GoalFinished))
     assert _count(told.events, GateReached) >= _count(told.events, GatePassed)
