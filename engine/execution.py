@@ -9,8 +9,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-import msgspec
-
 from engine.activity import Activity
 from engine.bus import SkillBus
 from engine.clock import Clock
@@ -22,6 +20,7 @@ from engine.recorder import Recorder
 from engine.skill_port import SkillPort
 from engine.suspension import Suspensions
 from engine.userdata import Scope
+from engine.userdata_value import plain_value
 
 N = TypeVar("N")
 
@@ -114,13 +113,18 @@ class Execution:
         return found if isinstance(found, type(node)) else node
 
     def write(self, path: str, scope: Scope, key: str, value: object) -> None:
-        """Write where the key lives as seen from `scope`, and record that."""
+        """Write where the key lives as seen from `scope`, and record that.
+
+        Raises:
+            UserdataError: the value could not be kept as it is.
+        """
+        plain = plain_value(value, key=key, where=path)
         with self.counted():
             owner = scope.write(key, value)
-        self.record_write(path, owner, key, value)
+        self.record_write(path, owner, key, plain)
 
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
-        """Record that the node at `path` wrote `key` into `scope`."""
+        """Record that the node at `path` wrote a plain value to `key` of `scope`."""
         recorder = self.recorder
         recorder.record(
             UserdataWritten(
@@ -129,7 +133,7 @@ class Execution:
                 path=path,
                 scope=scope,
                 key=key,
-                value=msgspec.to_builtins(value),
+                value=value,
             )
         )
 

@@ -95,10 +95,10 @@ class Leaf:
             execution.suspensions.attach(pausing)
         try:
             outcome: Any = await state.run(context, **entry.inputs)
-        except (FlexcellError, asyncio.CancelledError):
+        except (FlexcellError, asyncio.CancelledError, GeneratorExit):
             raise
-        except Exception as error:
-            # A custom state may raise anything; what travels on names the state and its place.
+        except BaseException as error:
+            # A custom state may raise anything, SystemExit too; what travels on names the state and its place.
             raise StateError(
                 f"{self.signature.name} raised {type(error).__name__}: {error}", where=self.position
             ) from error

@@ -24,6 +24,7 @@ from engine.reference import Reference
 from engine.state import State
 from engine.state_catalogue import Catalogue, find_state
 from engine.tree import new_tree
+from engine.userdata_value import plain_value
 
 __all__ = ["Catalogue", "Plan", "new_plan"]
 
@@ -74,12 +75,14 @@ class Plan:
 
         Raises:
             DocumentError: the behavior does not declare such a key.
+            UserdataError: a value could not be kept as it is.
         """
         for key in given:
             if key not in self.userdata:
                 raise DocumentError(
                     f"there is no userdata key {key!r}", where=self.name, hint=near_names(key, self.userdata)
                 )
+            plain_value(given[key], key=key, where=self.name)
         return dict(given)
 
 

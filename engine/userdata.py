@@ -12,14 +12,12 @@ import copy
 from collections.abc import Iterator, Mapping, Sized
 from typing import cast
 
-import msgspec
-
 from engine.document.step_meter import METER
 from engine.errors import UserdataError
 from engine.nearness import near_names
+from engine.userdata_value import unchangeable
 
 _MISSING = object()
-_IMMUTABLE = (str, int, float, bool, bytes, type(None))
 _COPY = 1.5
 """Steps for each list, mapping or other object that is copied."""
 _COPY_ITEM = 0.3
@@ -96,9 +94,7 @@ class Scope:
 
 def detached(value: object) -> object:
     """Return `value` itself when nobody can change it, else a deep copy, whose size counts as work."""
-    if isinstance(value, _IMMUTABLE):
-        return value
-    if isinstance(value, msgspec.Struct) and value.__struct_config__.frozen:
+    if unchangeable(value):
         return value
     copies: dict[int, object] = {}
     made = copy.deepcopy(value, copies)

@@ -23,6 +23,7 @@ from engine.tree.leaf import Turn
 from engine.tree.leaves import Leaves
 from engine.tree.part import ForeignPlan, Part
 from engine.tree.place import Place
+from engine.userdata_value import plain_value
 
 T = TypeVar("T")
 
@@ -145,7 +146,8 @@ class Foreign:
         for key, target in self._plan.outputs.items():
             if not Blackboard.exists(f"/{key}"):
                 continue
-            value = self._contain("output", partial(msgspec.to_builtins, Blackboard.get(f"/{key}")))
+            given: object = Blackboard.get(f"/{key}")
+            value = self._contain("output", partial(plain_value, given, key=target, where=self._part.position))
             written_to = self._place.scope.write(target, value)
             self._execution.record_write(self._part.path, written_to, target, value)
 
