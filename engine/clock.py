@@ -111,6 +111,9 @@ class _JumpingSelector(selectors.BaseSelector):
         return self._real.select(self.pass_time(timeout))
 
 
+_GRID_S = 1e-9
+
+
 class _Instant(float):
     """A time on the grid of nanoseconds; of two equal ones the one asked for first comes first.
 
@@ -209,6 +212,8 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         for simulation in self._stepped if not math.isinf(target_s) else busy:
             target_s = min(target_s, simulation.advance(target_s))
         self._now_s = max(self._now_s, target_s)
+        # What is added to the time to find what is due must change it, also after months.
+        self._clock_resolution = max(_GRID_S, math.ulp(self._now_s))
         return 0
 
     def _nothing_can_wake(self) -> None:

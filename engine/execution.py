@@ -13,7 +13,9 @@ from engine.activity import Activity
 from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.control.gate import Gate
+from engine.document.duration import LONGEST_S
 from engine.document.step_meter import METER
+from engine.errors import StateError
 from engine.event import Abandoned, UserdataWritten
 from engine.point import Point
 from engine.recorder import Recorder
@@ -138,7 +140,13 @@ class Execution:
         )
 
     async def sleep(self, path: str, duration_s: float) -> None:
-        """Let `duration_s` pass in which the branch of `path` is not held."""
+        """Let `duration_s` pass in which the branch of `path` is not held.
+
+        Raises:
+            StateError: it is no time that could pass.
+        """
+        if not duration_s <= LONGEST_S:
+            raise StateError(f"this would wait for {duration_s:g} s", where=path, hint=f"{LONGEST_S:g} s are the most")
         if duration_s <= 0:
             await self.clock.sleep(0)
             return

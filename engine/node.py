@@ -15,6 +15,7 @@ import msgspec
 
 from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
+from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
@@ -261,7 +262,7 @@ class Node:
                 again = cause_of(error)
             point = None
             attempt += 1
-            wait_s = retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED)
+            wait_s = min(retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED), LONGEST_S)
             recorder = execution.recorder
             recorder.record(
                 Retried(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import Annotated
 
@@ -10,12 +9,15 @@ from msgspec import Meta
 
 from engine.errors import DocumentError
 
+LONGEST_S = 1e9
+"""Thirty years: longer waits are mistakes, and times beyond it lose their microseconds."""
 _PATTERN = r"^[0-9]+(\.[0-9]+)? ?(ms|s|min|h)$"
 _SECONDS = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
 _MEANING = "A duration: a number of seconds, or text such as `500 ms`, `30 s`, `2 min`, `1 h`"
 
 Duration = (
-    Annotated[float, Meta(ge=0.0, description=_MEANING)] | Annotated[str, Meta(pattern=_PATTERN, description=_MEANING)]
+    Annotated[float, Meta(ge=0.0, le=LONGEST_S, description=_MEANING)]
+    | Annotated[str, Meta(pattern=_PATTERN, description=_MEANING)]
 )
 
 
@@ -23,13 +25,15 @@ def seconds(duration: float | str) -> float:
     """Return a duration in seconds.
 
     Raises:
-        DocumentError: it is negative, not finite, or has no unit that is known.
+        DocumentError: it is negative, longer than `LONGEST_S`, or has no unit that is known.
     """
     if isinstance(duration, str):
         if not re.fullmatch(_PATTERN, duration):
             raise DocumentError(f"{duration!r} is not a duration", hint="write `30 s`, `500 ms`, `2 min` or `1 h`")
         amount = duration.rstrip("mshin ")
-        return float(amount) * _SECONDS[duration[len(amount) :].strip()]
-    if not math.isfinite(duration) or duration < 0:
-        raise DocumentError(f"{duration!r} is not a duration", hint="a number of seconds, 0 or more")
-    return float(duration)
+        amount_s = float(amount) * _SECONDS[duration[len(amount) :].strip()]
+    else:
+        amount_s = float(duration)
+    if not 0.0 <= amount_s <= LONGEST_S:
+        raise DocumentError(f"{duration!r} is not a duration", hint=f"a number of seconds, from 0 to {LONGEST_S:g}")
+    return amount_s
