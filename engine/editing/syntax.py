@@ -22,7 +22,7 @@ _LOST = 2
 """By so much two `\\uXXXX` of JSON are longer than the `\\UXXXXXXXX` of YAML."""
 
 
-class Scalar(msgspec.Struct, eq=False, gc=False):
+class Scalar(msgspec.Struct, eq=False, gc=False, tag=True):
     """One value that is no collection; `style` is its quote, `|`, `>` or empty for plain text."""
 
     start: int
@@ -46,7 +46,7 @@ class Member(msgspec.Struct, eq=False, gc=False):
     stop: int
 
 
-class Collection(msgspec.Struct, eq=False, gc=False):
+class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
     """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
 
     origin: Origin
