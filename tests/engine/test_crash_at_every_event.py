@@ -13,6 +13,7 @@ import msgspec
 import pytest
 
 from benchmarks.crash_trial import Trial
+from tests.tiers import nightly
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,32 +27,38 @@ def trials(folder: Path, subject: str, *options: str) -> list[Trial]:
     return msgspec.json.decode(file.read_bytes(), type=dict[str, list[Trial]])[subject]
 
 
-def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path) -> None:
+@pytest.mark.parametrize("every_th", [4, nightly(1)])
+def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path, every_th: int) -> None:
     """Nothing is left out; what was in mid-work, in two branches at most, may have happened twice."""
-    made = trials(tmp_path, "press")
-    assert len(made) > 100
+    made = trials(tmp_path, "press", "--every", str(every_th))
+    assert len(made) > 100 // every_th
     every = {"left one", "left two", "right a", "right b", "right c", "note 1", "note 2", "note 3", "close", "seal"}
     assert all(set(trial.effects) == every for trial in made)
     assert max(len(trial.effects) for trial in made) <= len(every) + 2
 
 
-def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(tmp_path: Path) -> None:
+@pytest.mark.parametrize("every_th", [3, nightly(1)])
+def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(tmp_path: Path, every_th: int) -> None:
     """States that ask have their effect exactly once; those that take an outcome at most once."""
-    made = trials(tmp_path, "glue")
-    assert len(made) > 50
+    made = trials(tmp_path, "glue", "--every", str(every_th))
+    assert len(made) > 50 // every_th
     for trial in made:
         assert sorted(set(trial.effects)) == sorted(trial.effects)
         assert {"left bead", "right bead", "seal"} <= set(trial.effects)
 
 
+@pytest.mark.parametrize("every_th", [20, nightly(7)])
 @pytest.mark.parametrize("subject", ["press", "glue"])
-def test_crashes_in_a_row_while_it_is_resumed_change_nothing(tmp_path: Path, subject: str) -> None:
+def test_crashes_in_a_row_while_it_is_resumed_change_nothing(tmp_path: Path, subject: str, every_th: int) -> None:
     """The next engine dies at its first event, then one at its fourth, then one at its ninth."""
-    made = trials(tmp_path, subject, "--every", "7", "--again", "1", "4", "9")
+    made = trials(tmp_path, subject, "--every", str(every_th), "--again", "1", "4", "9")
     assert max(trial.engines for trial in made) == 5
 
 
-def test_the_two_arm_transfer_in_physics_is_resumed_with_its_parts_in_the_grippers(tmp_path: Path) -> None:
+@pytest.mark.parametrize("every_th", [150, nightly(61)])
+def test_the_two_arm_transfer_in_physics_is_resumed_with_its_parts_in_the_grippers(
+    tmp_path: Path, every_th: int
+) -> None:
     """The arms stand where they were, the parts are where they were, and both trays are swapped in the end."""
-    made = trials(tmp_path, "transfer", "--every", "61")
-    assert len({trial.durable for trial in made}) >= 4
+    made = trials(tmp_path, "transfer", "--every", str(every_th))
+    assert len({trial.durable for trial in made}) >= 300 // every_th
