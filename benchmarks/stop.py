@@ -96,7 +96,7 @@ def _started(folders: Sequence[Path]) -> Generator[Server]:
     """Start servers side by side, which takes most of a trial's time, and give them one after the other."""
     with ExitStack() as stack:
         with ThreadPoolExecutor() as threads:
-            started = list(threads.map(stack.enter_context, map(server, folders)))
+            started = list(threads.map(lambda folder: stack.enter_context(server(folder)), folders))
         yield from started
 
 

@@ -76,7 +76,7 @@ def _machine(children: list[Node], *, kind: str) -> Node:
         following = f"s{index + 1}" if index + 1 < len(children) else "a"
         outs = ("a", "b", "c", "turned", "failed", "exhausted", "broken")
         transitions = {out: following for out in outs if out in _outs(child)}
-        divert = {"on_error": following} if "on_error" in child else {}
+        divert: Node = {"on_error": following} if "on_error" in child else {}
         if "timeout" in child:
             divert["timeout"] = {**child["timeout"], "to": following}
         states[f"s{index}"] = {**child, "transitions": transitions, **divert}
