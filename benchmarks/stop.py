@@ -95,8 +95,12 @@ def _measure(path: str, condition: str, trials: int) -> Times:
 def _started(folders: Sequence[Path]) -> Generator[Server]:
     """Start servers side by side, which takes most of a trial's time, and give them one after the other."""
     with ExitStack() as stack:
+
+        def start(folder: Path) -> Server:
+            return stack.enter_context(server(folder))
+
         with ThreadPoolExecutor() as threads:
-            started = list(threads.map(lambda folder: stack.enter_context(server(folder)), folders))
+            started = list(threads.map(start, folders))
         yield from started
 
 
