@@ -92,7 +92,8 @@ class Gate:
         self._cookie = cookie_name(port)
         self._capacity = capacity
         self._page_hosts = {host: Origins.beside(host, view_port, connect_sources) for host in hosts}
-        self._view_hosts = {_at(host, view_port): of for host, of in self._page_hosts.items() if view_port is not None}
+        at_view = () if view_port is None else ((_at(host, view_port), of) for host, of in self._page_hosts.items())
+        self._view_hosts = dict(at_view)
         self._elsewhere = Origins(connect_sources=connect_sources)
         self._open = 0
 
@@ -283,7 +284,7 @@ def response_headers(path: str, origins: Origins | None = None) -> dict[str, str
     return headers
 
 
-def _at(host: str, port: int | None) -> str:
+def _at(host: str, port: int) -> str:
     """Return a host, given with a port, with another one."""
     return f"{host.rpartition(':')[0]}:{port}"
 

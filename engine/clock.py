@@ -52,6 +52,7 @@ class Lockstep(Protocol):
 
 
 _LEAP_S = 0.25
+_GRID_S = 1e-9
 """How far a simulation is stepped at a time before the loop looks outside again."""
 
 
@@ -109,9 +110,6 @@ class _JumpingSelector(selectors.BaseSelector):
         if ready:
             return ready
         return self._real.select(self.pass_time(timeout))
-
-
-_GRID_S = 1e-9
 
 
 class _Instant(float):

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from engine.control.step import inside
 from engine.execution import Execution
 from engine.machine import Machine
 from engine.node import NOTHING, Entry, Node
+from engine.node_path import inside
 from engine.state import Outcome
 from engine.userdata import Scope
 

@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from engine.checkpoint import Checkpoint
-from engine.control.step import inside
 from engine.errors import ControlError, DocumentError
 from engine.event import Cause, Entered, Event, RunResumed
 from engine.history import History
 from engine.leaf import Leaf
 from engine.nearness import near_names
 from engine.node import Node
+from engine.node_path import inside
 from engine.plan import Plan
 from engine.point import Point
 

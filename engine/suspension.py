@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from engine.errors import FlexcellError
+from engine.node_path import inside
 from engine.timer import Timer
 
 Covers = Callable[[str], bool]
@@ -184,7 +185,7 @@ class Suspensions:
         self.wake()
 
     def _cleans_up(self, path: str) -> bool:
-        let = any(path == around or path.startswith(f"{around}/") for around in self._cleaning_up)
+        let = any(inside(around, path) for around in self._cleaning_up)
         return let and self.is_preempted(path)
 
     def _tell_settled(self) -> None:

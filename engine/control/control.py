@@ -12,10 +12,11 @@ from engine.activity import Activity
 from engine.control.autonomy import AutonomyLevel
 from engine.control.breakpoint import Breakpoint
 from engine.control.gate import Gate, Order, Waiting
-from engine.control.step import Step, StepMode, inside
+from engine.control.step import Step, StepMode
 from engine.errors import ControlError
 from engine.event import Commanded, Logged, OperatorChanged, PauseConfirmed
 from engine.nearness import near_names
+from engine.node_path import inside
 from engine.preemption import preempt_for_order
 from engine.recorder import Recorder
 from engine.suspension import Suspensions

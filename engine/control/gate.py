@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 from engine.cause import cause_of, describe
 from engine.control.autonomy import AutonomyLevel, passes
 from engine.control.breakpoint import Breakpoint, GatePoint
-from engine.control.step import Step, inside
+from engine.control.step import Step
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError
 from engine.event import GatePassed, GateReached, Logged, OutcomeRequested, OutcomeWithdrawn
+from engine.node_path import inside
 from engine.recorder import Recorder
 from engine.suspension import Suspensions
 from engine.userdata import Scope

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.control.breakpoint import GatePoint
+from engine.node_path import inside
 
 StepMode = Literal["into", "over", "out"]
 
@@ -37,8 +38,3 @@ class Step:
         if point == "after":
             return False
         return self.mode == "into" or not self.origin or path == self.origin or not inside(self.origin, path)
-
-
-def inside(outer: str, path: str) -> bool:
-    """Tell whether `path` is `outer` or lies in it."""
-    return path == outer or path.startswith(f"{outer}/")

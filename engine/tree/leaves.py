@@ -12,10 +12,10 @@ import asyncio
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from engine.control.step import inside
 from engine.event import Answered, Called, Event
 from engine.execution import Execution
 from engine.node import Left, overdue
+from engine.node_path import inside
 from engine.preemption import preempt
 from engine.settle import settle
 from engine.tree.part import LeafPlan

@@ -10,13 +10,13 @@ from typing import Any, ClassVar
 import msgspec
 import pytest
 from hypothesis import given
-from hypothesis import strategies as st
 
 from engine.errors import UserdataError
 from engine.state import Context, Outcome, State
 from engine.userdata import Scope
 from engine.userdata_value import plain_value
 from tests.engine.control.operate import operate
+from tests.engine.json_values import JSON
 
 
 class Part(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,18 +52,6 @@ def test_what_a_journal_would_change_is_refused_where_it_is_written(name: str) -
         plain_value(value, key="k", where="root/here")
     assert said in refused.value.message
     assert refused.value.where == "root/here"
-
-
-TEXT = st.text(st.characters(exclude_categories=["Cs"]))
-JSON = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.integers(-(2**63), 2**63 - 1)
-    | st.floats(allow_nan=False, allow_infinity=False)
-    | TEXT,
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner),
-    max_leaves=12,
-)
 
 
 @given(value=JSON)

@@ -21,6 +21,16 @@ from tests.engine.run_document import HEAD, Told
 Act = Callable[[Run], object]
 
 
+def pause(run: Run) -> None:
+    """Hold the run."""
+    run.control.pause()
+
+
+def resume(run: Run) -> None:
+    """Let it go on."""
+    run.control.resume()
+
+
 def operate(
     text: str,
     acts: Mapping[float, Act],

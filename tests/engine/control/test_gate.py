@@ -12,7 +12,7 @@ from engine.errors import ControlError
 from engine.event import Commanded, Event, GateReached, OutcomeRequested, OutcomeWithdrawn
 from engine.run import Run
 from engine.supervision import Supervision
-from tests.engine.control.operate import Act, operate
+from tests.engine.control.operate import Act, operate, resume
 
 NESTED = """
 root:
@@ -37,10 +37,6 @@ def step(mode: StepMode) -> Act:
 
 def stops(events: Sequence[Event]) -> list[str]:
     return [f"{e.point} {e.path}" for e in events if isinstance(e, GateReached)]
-
-
-def resume(run: Run) -> None:
-    run.control.resume()
 
 
 INTO: tuple[StepMode, ...] = ("into", "into", "into", "into", "into")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from collections.abc import Callable
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pytest
 
 from engine.run import Run
 from engine.state import Context, Outcome, State
-from tests.engine.control.operate import Act, operate
+from tests.engine.control.operate import Act, operate, pause, resume
 from tests.engine.control.turntable import BRAKING_S, Turn, Turntable
 from tests.engine.run_document import Told
 
@@ -48,14 +48,6 @@ root:
 """
 
 
-def pause(run: Run) -> None:
-    run.control.pause()
-
-
-def resume(run: Run) -> None:
-    run.control.resume()
-
-
 def stop(run: Run) -> None:
     run.stop("enough")
 
@@ -68,6 +60,11 @@ def repeat(path: str) -> Act:
     return lambda run: run.control.repeat(path)
 
 
+def one(kind: type[State]) -> str:
+    """`ONE` with another state in the place of the one that hangs."""
+    return ONE.replace("test.Hang, with: {cleanup_s: 2}", kind.state_name)
+
+
 def cleaned(told: Told) -> list[str]:
     """The clean-ups that came to their end."""
     return [line for line in told.story if line.endswith("cleaned up")]
@@ -78,7 +75,6 @@ class ParkTable(State, frozen=True, kw_only=True):
 
     state_name: ClassVar[str] = "test.ParkTable"
     outcomes: ClassVar[tuple[str, ...]] = ("never",)
-    inputs: ClassVar[dict[str, Any]] = {}
 
     def resources(self) -> tuple[str, ...]:
         return ("table",)
@@ -90,9 +86,6 @@ class ParkTable(State, frozen=True, kw_only=True):
             await ctx.perform(Turn(for_s=1.0), to="table")
             ctx.log("cleaned up")
         return Outcome("never")
-
-
-PARK = ONE.replace("test.Hang, with: {cleanup_s: 2}", "test.ParkTable")
 
 
 @pytest.mark.parametrize("act", [stop, force("root/one"), repeat("root/one")])
@@ -109,7 +102,7 @@ def test_a_stop_ends_a_paused_run_as_soon_as_it_has_cleaned_up() -> None:
 
 
 def test_a_paused_clean_up_may_command_devices() -> None:
-    told = operate(PARK, {0.5: pause, 2.0: stop}, prepare=Turntable, states={"test.ParkTable": ParkTable})
+    told = operate(one(ParkTable), {0.5: pause, 2.0: stop}, prepare=Turntable, states={"test.ParkTable": ParkTable})
     assert (told.result.status, len(cleaned(told))) == ("stopped", 1)
     assert told.result.duration_s == pytest.approx(3.0, abs=2 * BRAKING_S)
 
@@ -187,8 +180,7 @@ class Defiant(State, frozen=True, kw_only=True):
 
 
 def test_a_state_that_takes_its_cancel_back_is_stopped_all_the_same() -> None:
-    text = ONE.replace("test.Hang, with: {cleanup_s: 2}", "test.Defiant")
-    told = operate(text, {1.0: stop}, states={"test.Defiant": Defiant})
+    told = operate(one(Defiant), {1.0: stop}, states={"test.Defiant": Defiant})
     assert (told.result.status, told.result.duration_s) == ("stopped", 1.0)
 
 
@@ -207,6 +199,5 @@ class Patient(State, frozen=True, kw_only=True):
 
 
 def test_a_stop_at_the_instant_of_a_time_out_inside_a_state_is_heard() -> None:
-    text = ONE.replace("test.Hang, with: {cleanup_s: 2}", "test.Patient")
-    told = operate(text, {1.0: stop}, states={"test.Patient": Patient})
+    told = operate(one(Patient), {1.0: stop}, states={"test.Patient": Patient})
     assert (told.result.status, told.result.duration_s) == ("stopped", 1.0)

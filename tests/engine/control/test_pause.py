@@ -6,7 +6,7 @@ import pytest
 
 from engine.event import GateReached, GoalHeld, GoalResumed, PauseConfirmed
 from engine.run import Run
-from tests.engine.control.operate import operate
+from tests.engine.control.operate import operate, pause, resume
 from tests.engine.control.turntable import Turntable
 
 LONG = """
@@ -24,14 +24,6 @@ root:
     states:
       turn: {state: test.TurnTable, with: {for_s: 4}, transitions: {turned: good, failed: bad}}
 """
-
-
-def pause(run: Run) -> None:
-    run.control.pause()
-
-
-def resume(run: Run) -> None:
-    run.control.resume()
 
 
 def test_a_paused_wait_stands_still_and_goes_on() -> None:

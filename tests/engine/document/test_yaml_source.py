@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from engine.document.yaml_source import MAX_BYTES, load_source, parse_source, plain_scalar
 from engine.errors import DocumentError, Position
+from tests.engine.json_values import json_values
 
 HOSTILE: dict[str, tuple[bytes, int, int, str]] = {
     "empty file": (b"", 1, 1, "the document is empty"),
@@ -106,15 +107,7 @@ JSON_TEXT = st.text(
 )
 # YAML allows a key at most 1024 characters as written, escapes included.
 JSON_KEY = JSON_TEXT.map(lambda text: text[:80])
-JSON_VALUES = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.integers(-(2**63), 2**63 - 1)
-    | st.floats(allow_nan=False, allow_infinity=False)
-    | JSON_TEXT,
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(JSON_KEY, inner, max_size=4),
-    max_leaves=15,
-)
+JSON_VALUES = json_values(JSON_TEXT, JSON_KEY)
 
 
 @given(value=JSON_VALUES, escape=st.booleans(), indent=st.sampled_from([None, 1, 4, "\t"]), compact=st.booleans())

@@ -10,17 +10,8 @@ from engine.errors import JournalError
 from engine.event import AnyEvent, Cause, Entered, Exited, GoalSent, Logged, RunEnded, UserdataWritten
 from engine.journal import decode_event, encode_event, encode_event_log
 from engine.messages import Pose
+from tests.engine.json_values import JSON, TEXT
 
-TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
-JSON = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.integers(-(2**63), 2**63 - 1)
-    | st.floats(allow_nan=False, allow_infinity=False)
-    | TEXT,
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner, max_size=4),
-    max_leaves=12,
-)
 CAUSES = st.recursive(
     st.builds(Cause, message=TEXT, where=TEXT, kind=TEXT),
     lambda inner: st.builds(Cause, message=TEXT, because=inner),

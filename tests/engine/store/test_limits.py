@@ -11,17 +11,7 @@ from hypothesis import strategies as st
 
 from engine.errors import StoreError
 from engine.store.limits import MAX_BYTES, MAX_DEPTH, decode_value, encode_value
-
-TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=10)
-JSON = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.integers(-(2**63), 2**63 - 1)
-    | st.floats(allow_nan=False, allow_infinity=False)
-    | TEXT,
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(TEXT, inner, max_size=4),
-    max_leaves=15,
-)
+from tests.engine.json_values import JSON, TEXT
 
 
 def nested(levels: int) -> dict[str, object]:
