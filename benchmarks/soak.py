@@ -1,9 +1,9 @@
 """Runs again and again: `python -P -m benchmarks.soak [--minutes N]`; exit code 1 where something has grown.
 
 The demo cell with journal, recordings and dashboard. Each round a page connects (live stream and 3D view), starts the
-behavior that moves both arms, stops it after a moment, and goes. After each round, at rest, are counted: the memory,
-file descriptors and threads of the server and of all its processes, and the tasks of its event loop. The first quarter
-warms up; the second is compared with the last.
+behavior that moves both arms, stops it after a moment, and goes. After each round, when its recording is finished too (which takes a process of its
+own), are counted: the memory, file descriptors and threads of the server and of all its processes, and the tasks of its
+event loop. The first quarter warms up; the second is compared with the last.
 """
 
 from __future__ import annotations
@@ -81,6 +81,7 @@ async def _soak(seconds: float, chance: random.Random) -> list[Count]:
                 began_s = told_s = time.monotonic()
                 while (now_s := time.monotonic()) < began_s + seconds:
                     await _round(page, session, run_s=chance.uniform(0.0, _LONGEST_RUN_S))
+                    await recordings.finished()
                     counts.append(_count())
                     if now_s - told_s >= _REPORT_S:
                         told_s = now_s

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from editor_web.cell_view.canvas import Canvas
 from editor_web.cell_view.geometry import Rgb, Shown
@@ -69,6 +68,9 @@ def hull(points_m: tuple[Vector3, ...]) -> tuple[NDArray[np.float32], NDArray[np
     Raises:
         ValueError: the points lie in one plane.
     """
+    # scipy takes most of a second to import, and most cells have no hulls.
+    from scipy.spatial import ConvexHull, QhullError
+
     vertices = np.asarray(points_m, dtype=np.float64).reshape(-1, 3)
     try:
         faces: Any = ConvexHull(vertices).simplices

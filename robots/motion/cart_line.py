@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from engine.errors import RobotError
 from robots.model.kinematics import ArmKinematics
@@ -87,6 +86,9 @@ def plan_line(kinematics: ArmKinematics, start: Array, end: Rigid, *, duration_s
 
 def splined(knots: Array, *, duration_s: float) -> JointTrajectory:
     """Return the trajectory through `knots` (radians, (knots, n)), evenly over `duration_s`, at rest at both ends."""
+    # scipy takes most of a second to import, and most programs move along no line.
+    from scipy.interpolate import CubicSpline
+
     times = np.linspace(0.0, duration_s, len(knots))
     velocity = np.asarray(CubicSpline(times, knots, bc_type="clamped")(times, 1), dtype=np.float64)
     velocity[0], velocity[-1] = 0.0, 0.0

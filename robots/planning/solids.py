@@ -14,9 +14,6 @@ from robots.model.rigid import Rigid
 from robots.planning.problem import BOX, CAPSULE, CYLINDER, HULL, SPHERE
 from robots.port import Array
 
-# scipy's stubs know no qhull.
-_spatial: Any = import_module("scipy.spatial")
-
 
 @dataclass(frozen=True, kw_only=True)
 class ConvexSolid:
@@ -95,7 +92,7 @@ def convex_solid(shape: Shape) -> ConvexSolid:
         case Capsule(radius_m=radius, length_m=length):
             return _solid(CAPSULE, np.array([radius, length / 2.0, 0.0]), radius_m=radius + length / 2.0)
         case Hull(points_m=points):
-            hull = _spatial.ConvexHull(np.array(points, dtype=np.float64))
+            hull = _convex_hull(np.array(points, dtype=np.float64))
             corners = np.array(hull.points[hull.vertices])
             # Triangles of one face share its plane.
             planes = np.unique(np.array(hull.equations).round(9), axis=0)
@@ -163,8 +160,13 @@ def _sphere_surface(radius: float, spacing_m: float) -> Array:
     return radius * np.column_stack((side * np.cos(turn), side * np.sin(turn), z))
 
 
+def _convex_hull(points: Array) -> Any:
+    # scipy's stubs know no qhull; it takes most of a second to import, and most cells have no hulls.
+    return import_module("scipy.spatial").ConvexHull(points)
+
+
 def _hull_surface(corners: Array, spacing_m: float) -> Array:
-    hull = _spatial.ConvexHull(corners)
+    hull = _convex_hull(corners)
     points: list[Array] = [corners]
     for a, b, c in corners[np.array(hull.simplices)]:
         longest = max(float(np.linalg.norm(b - a)), float(np.linalg.norm(c - a)), float(np.linalg.norm(c - b)))

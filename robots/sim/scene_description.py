@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from scipy.spatial.transform import Rotation
-
-from engine.messages import Pose, SceneDescription, Vector3, VisualGeometry
+from engine.messages import Pose, SceneDescription, VisualGeometry
+from engine.pose_algebra import composed
 from robots.model.visual_mesh import LinkVisual, link_visuals
 from robots.sim.cell_model import tray_boxes
 from robots.sim.people.person_drawing import person_geometries
@@ -65,7 +64,7 @@ def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
             kind="box",
             size_m=size,
             rgba=fixture.rgba,
-            xyz=_placed(pose, centre),
+            xyz=composed(pose, Pose(xyz=centre)).xyz,
             xyzw=pose.xyzw,
         )
         for index, (centre, size) in enumerate(tray_boxes(fixture))
@@ -75,12 +74,6 @@ def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
 def _part(part: PartBody) -> VisualGeometry:
     kind, size = _shape(part.shape, part.size_m)
     return VisualGeometry(name=part.name, frame=part.name, kind=kind, size_m=size, rgba=part.rgba)
-
-
-def _placed(pose: Pose, point: Vector3) -> Vector3:
-    """Return `point`, given in the frame of `pose`, in the frame that `pose` is given in."""
-    x, y, z = (float(v) for v in pose.xyz + Rotation.from_quat(pose.xyzw).apply(point))
-    return x, y, z
 
 
 def _shape(shape: str, size_m: tuple[float, ...]) -> tuple[str, tuple[float, ...]]:

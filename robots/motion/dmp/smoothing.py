@@ -11,9 +11,6 @@ import numpy as np
 from engine.errors import RobotError
 from robots.port import Array
 
-# scipy has no stubs: it stays behind this file.
-interpolate: Any = import_module("scipy.interpolate")
-
 _DEGREE = 5
 # Fewer samples than this between two knots would let the spline follow the noise, or leave it undetermined.
 _SAMPLES_PER_KNOT = 3
@@ -60,16 +57,18 @@ def smooth(shares: Array, values: Array, *, intervals: int, rests: Rests) -> Smo
         raise RobotError(
             f"the recording has {len(shares)} samples of the motion", hint=f"record at least {FEWEST_SAMPLES} of them"
         )
+    # scipy has no stubs, and takes most of a second to import: it stays in here.
+    splines: Any = import_module("scipy.interpolate")
     pieces = max(1, min(intervals, (len(shares) - _DEGREE - 1) // _SAMPLES_PER_KNOT))
     # Inner knots lie at quantiles of the samples, so that a gap in the recording takes no knots.
     inner = np.interp(np.linspace(0.0, 1.0, pieces + 1)[1:-1], np.linspace(0.0, 1.0, len(shares)), shares)
     knots = np.concatenate((np.zeros(_DEGREE + 1), inner, np.ones(_DEGREE + 1)))
-    design = interpolate.BSpline.design_matrix(shares, knots, _DEGREE)
+    design = splines.BSpline.design_matrix(shares, knots, _DEGREE)
     ties = _ties(pieces + _DEGREE, rests)
     normal: Array = np.asarray(ties.T @ (design.T @ design) @ ties, dtype=np.float64)
     right: Array = np.asarray(ties.T @ (design.T @ values), dtype=np.float64)
     free = np.linalg.solve(normal + 1e-12 * len(shares) / pieces * np.eye(len(normal)), right)
-    return Smooth(spline=interpolate.BSpline(knots, ties @ free, _DEGREE), pieces=pieces)
+    return Smooth(spline=splines.BSpline(knots, ties @ free, _DEGREE), pieces=pieces)
 
 
 def _ties(coefficients: int, rests: Rests) -> Array:

@@ -1,0 +1,19 @@
+"""Importing robots loads no compiler and no scipy: each takes most of a second that few programs need."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+PROGRAM = "import sys, {module}; print([name for name in ('numba', 'eaik', 'scipy') if name in sys.modules])"
+
+
+@pytest.mark.parametrize(
+    "module", ["robots.model.inverse_kinematics", "robots.arm", "robots.sim.simulated_cell", "editor_web.server"]
+)
+def test_importing_loads_only_what_every_program_needs(module: str) -> None:
+    """Only a request does."""
+    command = [sys.executable, "-P", "-c", PROGRAM.format(module=module)]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "[]\n"
