@@ -48,6 +48,9 @@ def _trial(loss: Loss, chance: random.Random) -> Ended:
                 run = moving_run(running)
                 time.sleep(chance.uniform(0.0, 2.0))
                 return loss.happens(running, run, chance)
+        except httpx.HTTPStatusError as error:
+            answer = error.response
+            return Ended(wrong=f"FAILED: {error.request.url.path} answers {answer.status_code}: {answer.text}")
         except (Failed, httpx.HTTPError, OSError) as error:
             return Ended(wrong=f"FAILED: {error}")
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import logging
+from collections.abc import Coroutine
+from typing import TypeVar
 
 from engine.errors import FlexcellError
 from engine.skills.planning import Adaptation, MotionPhase
+from robots.arm.asking import Overtaken, answer, dropped
 from robots.arm.lookout import Lookout, Trouble
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.tally import Shown, Tally
@@ -18,6 +21,7 @@ from robots.port import Motion, MotionEnd, MotionReport
 from robots.workspace.workspace import Workspace
 
 _HELD = "held"
+T = TypeVar("T")
 
 _log = logging.getLogger("flexcell.arm")
 
@@ -59,7 +63,8 @@ class AdaptingMotion:
         self._clock = runner.clock
         self._woken = asyncio.Event()
         self._phase_waiters: list[asyncio.Future[None]] = []
-        self._held = self._halted = self._cancelled = self._looking = False
+        self._held = self._halted = self._looking = False
+        self._cancelling: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._attempts = 0
         self._too_near = self._in_vain = ""
         self.tally = Tally()
@@ -111,7 +116,8 @@ class AdaptingMotion:
 
     def cancel(self) -> None:
         """Ask to decelerate on the way; `report` then returns CANCELED once at rest."""
-        self._cancelled = True
+        if not self._cancelled:
+            self._cancelling.set_result(None)
         self._woken.set()
         if self._inner is not None:
             self._inner.cancel()
@@ -168,7 +174,10 @@ class AdaptingMotion:
                 return _HELD
             if not self._adaptation.watch:
                 continue
-            trouble = await self._lookout.ahead(leg, from_s=self._passed_s)
+            try:
+                trouble = await self._answer(self._lookout.ahead(leg, from_s=self._passed_s))
+            except Overtaken:
+                continue
             if trouble is not None and not end.done():
                 await self._brake(inner, trouble)
                 return self.reason
@@ -205,7 +214,10 @@ class AdaptingMotion:
                 self._woken.clear()
                 continue
             self._woken.clear()
-            why = await self._go_on(reused=stopped_here)
+            try:
+                why = await self._go_on(reused=stopped_here)
+            except Overtaken:
+                continue
             if not why:
                 self._waiting.end()
                 return None
@@ -264,11 +276,11 @@ class AdaptingMotion:
             # Two processes work at once: while one looks, the other one searches in case that is needed.
             search = self._begin_search() if waiting.may_search and self.phase != "waiting" else None
             try:
-                if beside := await lookout.beside():
+                if beside := await self._answer(lookout.beside()):
                     return beside
                 blocked = "there is no way yet"
                 if self._inner is not None and self._leg is not None:
-                    blocked = await lookout.rest_of(self._leg, from_s=self._passed_s)
+                    blocked = await self._answer(lookout.rest_of(self._leg, from_s=self._passed_s))
                 if not blocked:
                     return await self._resume(reused=reused)
                 if waiting.may_search:
@@ -279,7 +291,7 @@ class AdaptingMotion:
                     waiting.searched(took_s=self._clock.now_s() - began_s)
                 return blocked + self._too_near + self._in_vain
             finally:
-                await _dropped(search)
+                await dropped(search)
         except FlexcellError as error:
             waiting.searched(took_s=0.0)
             return error.message
@@ -293,14 +305,11 @@ class AdaptingMotion:
         """Go another way from here when it is found; return what came of that where it came to nothing."""
         if self.phase != "waiting":
             self._enter("planning", blocked + self._too_near)
-        try:
-            found = await search
-        finally:
-            await _dropped(search)
+        found = await self._answer(search)
         if isinstance(found, Refusal):
             return f"; {found.message}"
         # What has changed since the search began is seen by this look only.
-        trouble = await self._lookout.along(found)
+        trouble = await self._answer(self._lookout.along(found))
         if trouble is not None:
             return f"; on another way {trouble.reason}"
         if self._held or self._cancelled:
@@ -329,6 +338,11 @@ class AdaptingMotion:
             _log.info("%s goes on along its way", self._runner.name)
         return ""
 
+    async def _answer(self, question: Coroutine[object, object, T] | asyncio.Future[T]) -> T:
+        """Wait for an answer of the planner; raises Overtaken once the motion is cancelled, or has ended by itself."""
+        ends = () if self._end is None else (self._end,)
+        return await answer(question, unless=(self._cancelling, *ends))
+
     def _follow(self, leg: Leg) -> None:
         """Start along a way; raises RobotError where the arm does not take it."""
         runner = self._runner
@@ -338,6 +352,10 @@ class AdaptingMotion:
         self._too_near = self._in_vain = ""
         self._claim.renew(leg.trajectory)
         self._shown.follows(leg)
+
+    @property
+    def _cancelled(self) -> bool:
+        return self._cancelling.done()
 
     @property
     def _passed_s(self) -> float:
@@ -365,16 +383,6 @@ class AdaptingMotion:
         for waiter in waiters:
             if not waiter.done():
                 waiter.set_result(None)
-
-
-async def _dropped(search: asyncio.Future[Leg | Refusal] | None) -> None:
-    """End a search that is no longer wanted; what went wrong in it is nobody's concern any more."""
-    if search is None:
-        return
-    search.cancel()
-    await asyncio.wait((search,))
-    if not search.cancelled():
-        search.exception()
 
 
 def _nothing() -> None:

@@ -329,6 +329,28 @@ async def test_a_stop_by_somebody_else_ends_a_waiting_goal() -> None:
 
 
 @pytest.mark.virtual
+@pytest.mark.parametrize("after_s", [0.0, 0.05, 0.15, 0.29, 0.31, 1.0, 5.0])
+@pytest.mark.parametrize("how", ["stop", "cancel"])
+async def test_no_stop_waits_for_a_planner_that_says_nothing(how: str, after_s: float) -> None:
+    """As while its process, which was killed, starts again."""
+    async with fake_cell() as cell:
+        await go(cell, THERE)
+        handle = await cell.begun(free(ACROSS))
+        cell.planner.silent_s = 60.0
+        cell.cameras.see(HAND)
+        await cell.bus.clock.sleep(after_s)
+        asked_s = cell.bus.clock.now_s()
+        if how == "stop":
+            await cell.arm.stop()
+        else:
+            handle.cancel()
+        end = await handle.result()
+        assert end.status is (GoalStatus.ABORTED if how == "stop" else GoalStatus.CANCELED)
+        assert cell.bus.clock.now_s() - asked_s < 0.5
+        assert (cell.moves(), cell.cameras.required) == (False, 0)
+
+
+@pytest.mark.virtual
 async def test_a_contact_that_becomes_allowed_lets_a_waiting_arm_go_on() -> None:
     async with fake_cell() as cell:
         await go(cell, THERE)
