@@ -92,6 +92,8 @@ class Server:
             headers={"Authorization": f"Bearer {self.record['token']}"},
             timeout=60.0,
             trust_env=False,
+            # The server closes what was idle for some seconds; an order that is sent at that very moment would be lost.
+            limits=httpx.Limits(max_keepalive_connections=0),
         )
         self.look_at_world()
 

@@ -54,7 +54,10 @@ def end_with_parent(connection: socket.socket) -> None:
     _libc.prctl(_PR_SET_PDEATHSIG, int(signal.SIGKILL), 0, 0, 0)
     # The parent may have ended before that: then its socket has.
     readable, _, _ = select.select([connection], [], [], 0.0)
-    if readable and not connection.recv(1, socket.MSG_PEEK):
+    try:
+        if readable and not connection.recv(1, socket.MSG_PEEK):
+            sys.exit(0)
+    except ConnectionError:
         sys.exit(0)
 
 

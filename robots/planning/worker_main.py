@@ -29,14 +29,8 @@ from robots.planning.worker_messages import (
     ToWorker,
     Withdraw,
 )
-from robots.sim.framing import FrameReader, framed
+from robots.sim.framed_socket import FramedSocket, PeerGone
 from robots.sim.scene import ArmPlacement
-
-_READ_BYTES = 65536
-
-
-class _ClientGone(Exception):
-    """The other end of the socket was closed."""
 
 
 class _Mailbox:
@@ -44,7 +38,7 @@ class _Mailbox:
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
-        self._reader = FrameReader()
+        self._messages = FramedSocket(connection)
         self._decode = msgspec.msgpack.Decoder(ToWorker).decode
         self._waiting: deque[Ask] = deque()
         self._open: set[int] = set()
@@ -71,10 +65,7 @@ class _Mailbox:
 
     def send(self, message: FromWorker) -> None:
         """Send a message."""
-        try:
-            self._connection.sendall(framed(msgspec.msgpack.encode(message)))
-        except (BrokenPipeError, ConnectionResetError) as error:
-            raise _ClientGone from error
+        self._messages.send(msgspec.msgpack.encode(message))
 
     def done(self, number: int) -> None:
         """Forget about a request that was answered."""
@@ -82,10 +73,7 @@ class _Mailbox:
         self._withdrawn.discard(number)
 
     def _read(self) -> None:
-        data = self._connection.recv(_READ_BYTES)
-        if not data:
-            raise _ClientGone
-        for frame in self._reader.feed(data):
+        for frame in self._messages.receive():
             message = self._decode(frame)
             if not isinstance(message, Withdraw):
                 self._waiting.append(message)
@@ -105,7 +93,7 @@ def main() -> None:
         mailbox.send(Ready())
         while True:
             _serve(planner, mailbox, mailbox.next())
-    except _ClientGone:
+    except PeerGone:
         connection.close()
 
 

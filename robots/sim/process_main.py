@@ -20,7 +20,7 @@ from robots.port.heartbeat import Heartbeat
 from robots.port.stop_monitor import StopMonitor
 from robots.sim.cell_model import build_cell
 from robots.sim.commands import AnyCommand, Restore, Shutdown, StopAll
-from robots.sim.framing import FrameReader, framed
+from robots.sim.framed_socket import FramedSocket, PeerGone
 from robots.sim.scene import Scene
 from robots.sim.shared_state import SharedNumbers
 from robots.sim.simulation import Simulation
@@ -29,7 +29,6 @@ from robots.sim.world_log import log_without_waiting
 from robots.sim.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
 
 _FIFO_PRIORITY = 20
-_READ_BYTES = 65536
 _SNAPSHOT_EVERY = 2
 _TIMING_EVERY = 50
 # A loop this far behind gives the lost time up instead of racing after it.
@@ -37,56 +36,33 @@ _LONGEST_LAG_S = 0.05
 _SHUTDOWN_S = 4.0
 
 
-class ParentGone(Exception):
-    """The other end of the socket was closed."""
-
-
 class CommandChannel:
-    """The child's end of the socket, never waiting."""
+    """The child's end of the socket, never waiting but for the scene; raises PeerGone once the parent is gone."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
-        self._reader = FrameReader()
-        self._unsent = bytearray()
+        self._messages = FramedSocket(connection)
         self._decode = msgspec.msgpack.Decoder(AnyCommand).decode
         self._encode = msgspec.msgpack.Encoder().encode
 
     def receive_scene(self) -> Scene:
         """Wait for the first message, the scene."""
         while True:
-            data = self._connection.recv(_READ_BYTES)
-            if not data:
-                raise ParentGone
-            for message in self._reader.feed(data):
+            for message in self._messages.receive():
                 self._connection.setblocking(False)
                 return msgspec.msgpack.decode(message, type=Scene)
 
     def commands(self) -> list[AnyCommand]:
         """Return the commands that have arrived."""
-        try:
-            data = self._connection.recv(_READ_BYTES)
-        except BlockingIOError:
-            return []
-        if not data:
-            raise ParentGone
-        return [self._decode(message) for message in self._reader.feed(data)]
+        return [self._decode(message) for message in self._messages.receive()]
 
     def report(self, message: AnyReport) -> None:
         """Send a message, or keep it until the socket takes it."""
-        self._unsent += framed(self._encode(message))
-        self.flush()
+        self._messages.post(self._encode(message))
 
     def flush(self) -> None:
         """Send what waits, as far as the socket takes it."""
-        if not self._unsent:
-            return
-        try:
-            sent = self._connection.send(self._unsent)
-        except BlockingIOError:
-            return
-        except (BrokenPipeError, ConnectionResetError) as error:
-            raise ParentGone from error
-        del self._unsent[:sent]
+        self._messages.flush()
 
 
 class ClosedChannel:
@@ -141,16 +117,24 @@ class WorldLoop:
         self._shared.write(self._values)
 
     def run(self) -> None:
-        """Step until told to end, or until the parent is gone, and everything is at rest."""
+        """Step until told to end, or until the parent is gone or talks nonsense, and everything is at rest."""
         try:
             self._step_on()
-        except ParentGone:
-            self._channel = ClosedChannel()
-            self._engine.engine_is_gone()
-            self.request_end()
-            self._step_on()
-        # The last words to whoever reads the heartbeat: since when everything rests.
-        self._engine.look(time.monotonic())
+        except PeerGone:
+            self._come_to_rest()
+        except Exception:
+            # Whatever it is: nobody else brings to rest what this process controls.
+            self._come_to_rest()
+            raise
+        finally:
+            # The last words to whoever reads the heartbeat: since when everything rests.
+            self._engine.look(time.monotonic())
+
+    def _come_to_rest(self) -> None:
+        self._channel = ClosedChannel()
+        self._engine.engine_is_gone()
+        self.request_end()
+        self._step_on()
 
     def _step_on(self) -> None:
         step_s = self._simulation.step_s
@@ -251,5 +235,5 @@ def main() -> None:
         gc.disable()
         channel.report(WorldReady(summary=simulation.summary, fifo=fifo))
         loop.run()
-    except ParentGone:
+    except PeerGone:
         return

@@ -11,24 +11,18 @@ import msgspec
 
 from engine.child_process import end_with_parent
 from engine.errors import FlexcellError
-from robots.sim.framing import FrameReader, framed
+from robots.sim.framed_socket import FramedSocket, PeerGone
 from robots.vision.eye import Eye
 from robots.vision.worker_messages import Answer, Begin, FromWorker, Opened, Order, Refused, Tell, ToWorker
 
-_READ_BYTES = 1 << 20
 _NICE = 5
-
-
-class _ClientGone(Exception):
-    """The other end of the socket was closed."""
 
 
 class _Mailbox:
     """The worker's end of the socket."""
 
     def __init__(self, connection: socket.socket) -> None:
-        self._connection = connection
-        self._reader = FrameReader()
+        self._messages = FramedSocket(connection)
         self._decode = msgspec.msgpack.Decoder(ToWorker).decode
         self._encode = msgspec.msgpack.Encoder().encode
         self._waiting: list[bytes] = []
@@ -36,18 +30,12 @@ class _Mailbox:
     def next(self) -> ToWorker:
         """Return the next message, once there is one."""
         while not self._waiting:
-            data = self._connection.recv(_READ_BYTES)
-            if not data:
-                raise _ClientGone
-            self._waiting = self._reader.feed(data)
+            self._waiting = self._messages.receive()
         return self._decode(self._waiting.pop(0))
 
     def send(self, message: FromWorker) -> None:
         """Send a message."""
-        try:
-            self._connection.sendall(framed(self._encode(message)))
-        except (BrokenPipeError, ConnectionResetError) as error:
-            raise _ClientGone from error
+        self._messages.send(self._encode(message))
 
 
 def main() -> None:
@@ -58,7 +46,7 @@ def main() -> None:
     end_with_parent(connection)
     try:
         _serve(_Mailbox(connection))
-    except (_ClientGone, ConnectionResetError):
+    except PeerGone:
         connection.close()
 
 

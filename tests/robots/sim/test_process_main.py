@@ -13,9 +13,10 @@ import pytest
 from robots.control.motion_event import MotionFinished
 from robots.port import MotionEnd, Tolerance
 from robots.sim.commands import Cancel, StopAll
+from robots.sim.framed_socket import PeerGone
 from robots.sim.framing import FrameReader, framed
 from robots.sim.process_host import ProcessHost
-from robots.sim.process_main import CommandChannel, ParentGone
+from robots.sim.process_main import CommandChannel
 from robots.sim.world import SimWorld
 from robots.sim.world_report import AnyReport
 from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until, watched
@@ -56,7 +57,7 @@ def test_commands_that_came_in_pieces_are_taken_once_they_are_whole_and_their_en
             taken.append(channel.commands())
         assert taken == [[], [], [Cancel(motion=7)], [StopAll()]]
         ours.close()
-        with pytest.raises(ParentGone):
+        with pytest.raises(PeerGone):
             channel.commands()
 
 
