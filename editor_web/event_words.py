@@ -38,6 +38,7 @@ from engine.event import (
     StatusChanged,
     StopRequested,
     Transitioned,
+    UserdataAppended,
     UserdataWritten,
 )
 
@@ -98,6 +99,8 @@ def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
             return event.path, level, f"{how} after {_seconds(duration_s)}", event.cause
         case UserdataWritten():
             return event.path, "debug", f"{event.key} = {_short(event.value)}", None
+        case UserdataAppended():
+            return event.path, "debug", f"{event.key} += {_short(event.value)}", None
         case Transitioned():
             return event.path, "info", f"{event.source} \u2014{event.outcome}\u2192 {event.target}", None
         case Diverted():

@@ -16,8 +16,9 @@ def cause_of(error: BaseException) -> Cause:
         hint = f" ({error.hint})" if error.hint else ""
         where = str(error.where) if error.where is not None else ""
         kind = type(error).__name__
-        return Cause(message=error.message + hint, where=where, kind=kind, because=because, nodes=error.nodes)
-    text = str(error) or type(error).__name__
+        message = whole_text(error.message + hint)
+        return Cause(message=message, where=whole_text(where), kind=kind, because=because, nodes=error.nodes)
+    text = whole_text(str(error)) or type(error).__name__
     return Cause(message=text, where=_raised_at(error), kind=type(error).__name__, because=because)
 
 
@@ -29,6 +30,24 @@ def describe(cause: Cause) -> str:
 def under(message: str, because: Cause | None, *, where: str = "", kind: str = "") -> Cause:
     """Put a new outermost link on top of a chain."""
     return Cause(message=message, where=where, kind=kind, because=because)
+
+
+def kept(cause: Cause | None) -> Cause | None:
+    """Return a chain that a state has made, as events can keep it."""
+    if cause is None:
+        return None
+    message, where, kind = whole_text(cause.message), whole_text(cause.where), whole_text(cause.kind)
+    nodes = tuple(map(whole_text, cause.nodes))
+    return Cause(message=message, where=where, kind=kind, because=kept(cause.because), nodes=nodes)
+
+
+def whole_text(text: str) -> str:
+    """Return text in which halves of characters (lone surrogates, which no UTF-8 holds) are written out."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return text.encode(errors="backslashreplace").decode()
+    return text
 
 
 def _link(cause: Cause) -> str:

@@ -78,6 +78,15 @@ class UserdataWritten(Event, frozen=True, kw_only=True, tag="userdata"):
     value: object
 
 
+class UserdataAppended(Event, frozen=True, kw_only=True, tag="userdata_appended"):
+    """A node appended `value` to the list at `key` in the scope of the container `scope`."""
+
+    path: str
+    scope: str
+    key: str
+    value: object
+
+
 class Transitioned(Event, frozen=True, kw_only=True, tag="transition"):
     """Machine `path` follows the outcome of `source` to `target`, a child or an own outcome."""
 
@@ -293,6 +302,7 @@ AnyEvent = (
     | RunResumed
     | Entered
     | Exited
+    | UserdataAppended
     | UserdataWritten
     | Transitioned
     | Diverted

@@ -16,13 +16,14 @@ from engine.control.gate import Gate
 from engine.document.duration import LONGEST_S
 from engine.document.step_meter import METER
 from engine.errors import StateError
-from engine.event import Abandoned, UserdataWritten
+from engine.event import Abandoned, UserdataAppended, UserdataWritten
 from engine.point import Point
 from engine.recorder import Recorder
 from engine.skill_port import SkillPort
 from engine.suspension import Suspensions
 from engine.userdata import Scope
 from engine.userdata_value import plain_value
+from engine.waits import Waits
 
 N = TypeVar("N")
 
@@ -44,8 +45,7 @@ class Execution:
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
     abandon_after_s: float = 30.0
     """How long a node may take to confirm that it stopped before the run goes on without it."""
-    waits: int = 0
-    """How often a state has waited for something; unchanged means that no time passed."""
+    waits: Waits = field(default_factory=Waits)
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, Point] = field(default_factory=dict[str, Point])
     """Where nodes stood that are gone on with; each is taken once."""
@@ -125,6 +125,29 @@ class Execution:
             owner = scope.write(key, value)
         self.record_write(path, owner, key, plain)
 
+    def append(self, path: str, scope: Scope, key: str, value: object) -> int:
+        """Append a value, which must be nobody else's, to a list as seen from `scope`, and record that.
+
+        Returns:
+            How many values the list has now.
+
+        Raises:
+            UserdataError: the value could not be kept as it is, or `key` is no list.
+        """
+        plain = plain_value(value, key=key, where=path)
+        with self.counted():
+            owner, grown, is_new = scope.append(key, value, writer=path)
+        if is_new:
+            self.record_write(path, owner, key, plain_value(grown, key=key, where=path))
+        else:
+            recorder = self.recorder
+            recorder.record(
+                UserdataAppended(
+                    seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, scope=owner, key=key, value=plain
+                )
+            )
+        return len(grown)
+
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
         """Record that the node at `path` wrote a plain value to `key` of `scope`."""
         recorder = self.recorder
@@ -150,7 +173,7 @@ class Execution:
         if duration_s <= 0:
             await self.clock.sleep(0)
             return
-        self.waits += 1
+        self.waits.add_timed(path, duration_s)
         timer = self.suspensions.timer(path, duration_s)
         try:
             await timer.future

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
+from engine.document.count import whole_number
 from engine.document.expression import Template
 from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import StateError, UserdataError
@@ -18,9 +19,11 @@ from engine.state import Outcome
 from engine.userdata import Scope
 
 _ITEMS = "items"
+_TIMES = "times"
 _FAIRNESS = 256
-MAX_ROUNDS = 100_000
-MAX_COLLECTED = 10_000
+MAX_TIMES = 1_000_000_000
+MAX_ITEMS = 100_000
+MAX_COLLECTED = 100_000
 EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 
 
@@ -66,29 +69,37 @@ class ForEach:
         """Evaluate the items once, for all rounds."""
         value = self.items.evaluate({name: scope.read(name, reader=self.position) for name in self.items.names})
         if self.counted:
-            if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+            times = whole_number(value)
+            if times is None:
                 raise StateError(
                     f"`times` gave {value!r}", where=self.position, hint="it must be a whole number, 0 or more"
                 )
-            self._require_few(value)
-            items: list[object] = list(range(value))
+            self._require_few(times, MAX_TIMES)
+            shown: dict[str, object] = {_TIMES: times}
         elif isinstance(value, list | tuple):
             items = list(cast("list[object]", value))
-            self._require_few(len(items))
+            self._require_few(len(items), MAX_ITEMS)
+            shown = {_ITEMS: items}
         else:
             kind = type(value).__name__
             raise StateError(f"`items` gave a {kind}", where=self.position, hint="it must be a list")
-        return Entry(None, {_ITEMS: items}, {_ITEMS: items})
+        return Entry(None, shown, shown)
 
-    def _require_few(self, rounds: int) -> None:
-        if rounds > MAX_ROUNDS:
-            message = f"{rounds:,} rounds, and at most {MAX_ROUNDS:,} are allowed"
+    def _require_few(self, rounds: int, most: int) -> None:
+        if rounds > most:
+            message = f"{rounds:,} rounds, and at most {most:,} are allowed"
             raise StateError(message, where=self.position, hint="nest two, or lead a machine back to its begin")
+
+    @staticmethod
+    def items_of(inputs: Mapping[str, object]) -> Sequence[object]:
+        """Return the item of each round of a loop that was entered with these inputs."""
+        times = inputs.get(_TIMES)
+        return range(times) if isinstance(times, int) else cast("list[object]", inputs.get(_ITEMS, []))
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Run the child in round after round, each in a scope of its own."""
         point = entry.point
-        items = cast("list[object]", entry.inputs[_ITEMS])
+        items = self.items_of(entry.inputs)
         first = point.round if point is not None else 0
         if point is not None and point.current in FOREACH_OUTCOMES:
             return Outcome(point.current, cause=point.cause)
@@ -130,17 +141,8 @@ class ForEach:
 
     def _collect(self, inner: Scope, scope: Scope, path: str, execution: Execution) -> None:
         for key, target in self.collect.items():
-            empty: list[object] = []
             with execution.counted():
                 value = inner.read(key, reader=self.position)
-                gathered = scope.read(target, reader=self.position) if scope.has(target) else empty
-            if not isinstance(gathered, list):
-                kind = type(gathered).__name__
-                raise UserdataError(
-                    f"`collect` appends to {target!r}, which is a {kind}", where=self.position, hint="begin with []"
-                )
-            together = [*cast("list[object]", gathered), value]
-            if len(together) > MAX_COLLECTED:
+            if execution.append(path, scope, target, value) > MAX_COLLECTED:
                 message = f"`collect` has more than {MAX_COLLECTED:,} values for {target!r}"
                 raise UserdataError(message, where=self.position, hint="keep what is needed in a state")
-            execution.write(path, scope, target, together)

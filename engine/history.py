@@ -28,9 +28,11 @@ from engine.event import (
     RunStarted,
     StatusChanged,
     Transitioned,
+    UserdataAppended,
     UserdataWritten,
 )
 from engine.foreach import ForEach
+from engine.grown_lists import GrownLists
 from engine.machine import Machine
 from engine.nearness import near_names
 from engine.node import Node, Work
@@ -93,7 +95,8 @@ class History:
         self._open: dict[str, _Open] = {}
         self._left: dict[str, _Left] = {}
         self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
-        self._pending: dict[str, list[UserdataWritten]] = {}
+        self._pending: dict[str, list[UserdataWritten | UserdataAppended]] = {}
+        self._lists = GrownLists()
 
     def read(self, events: Iterable[Event], *, until_seq: int | None = None) -> History:
         """Take events in order, up to and with `until_seq`; returns itself."""
@@ -101,6 +104,7 @@ class History:
             if until_seq is not None and event.seq > until_seq:
                 break
             self.take(event)
+        self._lists.give_away()
         return self
 
     def take(self, event: Event) -> None:
@@ -121,7 +125,7 @@ class History:
                 self._retry(event)
             case Transitioned():
                 self._transition(event)
-            case UserdataWritten():
+            case UserdataWritten() | UserdataAppended():
                 self._write(event)
             case StatusChanged() if event.status != "running":
                 # A parallel has merged its branches, or was halted.
@@ -255,21 +259,29 @@ class History:
             self._scopes[path] = dict(work.initial_values(event.inputs)) if work is not None else {}
 
     def _begin_round(self, path: str, work: ForEach, inputs: Mapping[str, object], number: int) -> None:
-        items = cast("list[object]", inputs.get("items", []))
+        items = work.items_of(inputs)
         self._scopes.pop(f"{path}#{number - 1}", None)
         if number < len(items):
             self._scopes[f"{path}#{number}"] = work.round_values(number, items[number])
 
-    def _write(self, event: UserdataWritten) -> None:
+    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
         """What a node writes counts from its end on: one that is entered again writes again."""
         if event.path in self._open and event.path != event.scope:
             self._pending.setdefault(event.path, []).append(event)
         else:
-            self._scopes.setdefault(event.scope, {})[event.key] = event.value
+            self._keep(event)
 
     def _commit_writes(self, path: str) -> None:
         for event in self._pending.pop(path, ()):
-            self._scopes.setdefault(event.scope, {})[event.key] = event.value
+            self._keep(event)
+
+    def _keep(self, event: UserdataWritten | UserdataAppended) -> None:
+        values = self._scopes.setdefault(event.scope, {})
+        value = event.value
+        if isinstance(event, UserdataAppended):
+            before = cast("list[object]", values.get(event.key, []))
+            value = self._lists.appended((event.scope, event.key), before, value)
+        values[event.key] = value
 
     def _exit(self, event: Exited) -> None:
         path = event.path

@@ -11,6 +11,8 @@ from typing import Any
 import msgspec
 
 from engine.bus import Holder
+from engine.cause import kept
+from engine.contained import contained
 from engine.context import RunningContext
 from engine.document.expression import Template
 from engine.document.signature import StateSignature
@@ -85,7 +87,7 @@ class Leaf:
         state = entry.state
         if state is None:
             raise StateError("entered without a state", where=path)
-        resources = state.resources()
+        resources = self._resources(state) if self.commands_hardware else ()
         holder = Holder(execution.run, path)
         if resources:
             execution.bus.leases.acquire(resources, holder)
@@ -110,19 +112,24 @@ class Leaf:
         if not isinstance(outcome, Outcome) or outcome.name not in self.state.outcomes:
             raise self._undeclared_outcome(outcome)
         self._write(outcome, path, scope, execution)
-        return outcome
+        return outcome if outcome.cause is None else Outcome(outcome.name, outcome.outputs, kept(outcome.cause))
+
+    def _resources(self, state: State) -> tuple[str, ...]:
+        with contained(f"{self.signature.name}.resources", where=self.position):
+            return state.resources()
 
     @cached_property
     def _pauses(self) -> bool:
         return self.state.on_pause is not State.on_pause or self.state.on_resume is not State.on_resume
 
     def _instance(self, given: object) -> State:
-        try:
-            return msgspec.convert(given, self.state)
-        except msgspec.ValidationError as error:
-            raise StateError(
-                f"the parameters of {self.signature.name} do not fit: {error}", where=self.position
-            ) from error
+        with contained(f"making {self.signature.name}", where=self.position):
+            try:
+                return msgspec.convert(given, self.state)
+            except msgspec.ValidationError as error:
+                raise StateError(
+                    f"the parameters of {self.signature.name} do not fit: {error}", where=self.position
+                ) from error
 
     def _inputs(self, scope: Scope) -> Iterator[tuple[str, object]]:
         for key, declared in self.signature.inputs.items():
@@ -175,13 +182,9 @@ class PausingState:
         await self._told(self._state.on_resume)
 
     async def _told(self, hook: Callable[[Context], Awaitable[None]]) -> None:
-        try:
+        # The pause of the others goes on, whatever this one raises.
+        with contained(hook.__qualname__, where=self.path):
             await hook(self._context)
-        except FlexcellError:
-            raise
-        except Exception as error:
-            # A custom state may raise anything; the pause of the others goes on.
-            raise StateError(f"{hook.__qualname__} raised {type(error).__name__}: {error}", where=self.path) from error
 
 
 def _mapping(given: object) -> dict[str, object]:

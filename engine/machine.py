@@ -14,8 +14,7 @@ from engine.nearness import near_names
 from engine.node import NOTHING, Entry, Left, Node, explain
 from engine.state import Outcome
 from engine.userdata import Scope
-
-_FAIRNESS = 256
+from engine.waits import Laps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,8 +65,7 @@ class Machine:
         went_wrong: Cause | None = point.cause if point is not None else None
         if name not in self.children:
             return Outcome(name, cause=None if name in self.nominal else went_wrong)
-        instants = 0
-        waits = execution.waits
+        laps = Laps(path, execution.waits, execution.clock)
         machine = self
         while True:
             left = await machine.children[name].perform(inner, execution)
@@ -80,12 +78,10 @@ class Machine:
             self._record(execution, path, name, left.outcome, target)
             if target not in machine.children:
                 return Outcome(target, cause=None if target in machine.nominal else went_wrong)
-            instants = instants + 1 if execution.waits == waits else 0
-            waits = execution.waits
-            if instants and instants % _FAIRNESS == 0:
+            if laps.step(most=execution.instant_limit):
                 await asyncio.sleep(0)
-                if instants >= execution.instant_limit:
-                    raise machine._endless(path, target, instants)
+                if laps.count >= execution.instant_limit:
+                    raise machine._endless(path, target, laps.count)
             name = target
 
     def _target(self, child: Node, left: Left) -> str:

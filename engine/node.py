@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from engine.cause import cause_of, describe, under
+from engine.cause import cause_of, describe, under, whole_text
 from engine.control.gate import Order
 from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
@@ -316,13 +316,15 @@ class Node:
             error = StateError("a CancelledError came out though nobody asked it to stop", where=self.position or path)
             self._record_exit(execution, visit, "", cause=cause_of(error))
             raise error from stray
-        except Exception as error:
-            if isinstance(error, FlexcellError):
-                error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
+        except Exception as raised:
+            error = self._named(raised)
+            error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
             self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
-            raise
+            if error is raised:
+                raise
+            raise error from raised
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
             self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)
@@ -335,8 +337,16 @@ class Node:
         try:
             with execution.counted():
                 return self.work.enter(scope), None
-        except FlexcellError as error:
-            return NOTHING, error
+        except Exception as error:
+            return NOTHING, self._named(error)
+
+    def _named(self, error: Exception) -> FlexcellError:
+        """Return an error that retries and `on_error` take; one of Python's own gets a name and a place."""
+        if isinstance(error, FlexcellError):
+            return error
+        named = StateError(f"{type(error).__name__}: {error}", where=self.position or self.path)
+        named.__cause__ = error
+        return named
 
     def _record_exit(
         self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
@@ -373,7 +383,8 @@ class Node:
 def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
     """Write a line into the event log of the run."""
     recorder = execution.recorder
-    recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=message))
+    said = whole_text(message)
+    recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=said))
 
 
 def overdue(execution: Execution, path: str) -> Overdue:

@@ -14,6 +14,7 @@ from typing import cast
 
 from engine.document.step_meter import METER
 from engine.errors import UserdataError
+from engine.grown_lists import GrownLists
 from engine.nearness import near_names
 from engine.userdata_value import unchangeable
 
@@ -26,7 +27,7 @@ _COPY_ITEM = 0.3
 class Scope:
     """The values of one container while it is active."""
 
-    __slots__ = ("_isolated", "_values", "parent", "path")
+    __slots__ = ("_grown", "_isolated", "_values", "parent", "path")
 
     def __init__(
         self, path: str, values: Mapping[str, object], parent: Scope | None = None, *, isolated: bool = False
@@ -35,6 +36,7 @@ class Scope:
         self.parent = parent
         self._values = dict(values)
         self._isolated = isolated
+        self._grown: GrownLists | None = None
 
     def read(self, key: str, *, reader: str) -> object:
         """Return a value that the reader may change without changing the container's.
@@ -58,6 +60,27 @@ class Scope:
         scope = self._owner(key) or self
         scope._values[key] = detached(value)
         return scope.path
+
+    def append(self, key: str, value: object, *, writer: str) -> tuple[str, list[object], bool]:
+        """Append to the list where the key lives, or to a new one; `value` must be nobody else's.
+
+        Returns:
+            The path of the scope that has the list; the list; and whether it is new in that scope: the first value of
+            all, or a branch's own copy of a list that lives outside.
+
+        Raises:
+            UserdataError: it is no list; names the writer.
+        """
+        scope = self._owner(key) or self
+        is_new = key not in scope._values
+        before = self._find(key)
+        before = list[object]() if before is _MISSING else before
+        if not isinstance(before, list):
+            kind = type(before).__name__
+            raise UserdataError(f"cannot append to {key!r}, which is a {kind}", where=writer, hint="begin with []")
+        scope._grown = scope._grown or GrownLists()
+        grown = scope._values[key] = scope._grown.appended(key, cast("list[object]", before), value)
+        return scope.path, grown, is_new
 
     def keys(self) -> Iterator[str]:
         """Go through all keys that can be read from here."""

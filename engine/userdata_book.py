@@ -6,14 +6,25 @@ the values of containers that are left.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import cast
 
 import msgspec
 
 from engine.document.node import FOREACH_OUTCOMES
-from engine.event import Entered, Event, Exited, RunEnded, RunStarted, StatusChanged, Transitioned, UserdataWritten
+from engine.event import (
+    Entered,
+    Event,
+    Exited,
+    RunEnded,
+    RunStarted,
+    StatusChanged,
+    Transitioned,
+    UserdataAppended,
+    UserdataWritten,
+)
 from engine.foreach import ForEach
+from engine.grown_lists import GrownLists
 from engine.plan import Plan
 
 
@@ -52,7 +63,8 @@ class UserdataBook:
         self.scopes: dict[str, ScopeView] = {}
         self._plan = plan
         self._changed: set[str] = set()
-        self._items: dict[str, tuple[int, list[object]]] = {}
+        self._items: dict[str, tuple[int, Sequence[object]]] = {}
+        self._lists = GrownLists()
         self._begin("", plan().userdata, 0.0)
 
     def read(self, events: Iterable[Event]) -> None:
@@ -60,6 +72,7 @@ class UserdataBook:
         for event in events:
             self._take(event)
             self.seq = event.seq
+        self._lists.give_away()
 
     def copy(self) -> UserdataBook:
         """Return one that goes on from here by itself."""
@@ -84,7 +97,7 @@ class UserdataBook:
                     self._put("", key, Entry(value=value, by="", at_s=event.time_s, writes=0))
             case Entered():
                 self._enter(event)
-            case UserdataWritten():
+            case UserdataWritten() | UserdataAppended():
                 self._write(event)
             case Transitioned():
                 self._next_round(event)
@@ -103,7 +116,7 @@ class UserdataBook:
             return
         self._forget_inside(event.path)
         if isinstance(node.work, ForEach):
-            self._items[event.path] = (0, cast("list[object]", event.inputs.get("items", [])))
+            self._items[event.path] = (0, node.work.items_of(event.inputs))
             self._begin_round(event.path, node.work, event.time_s)
         else:
             self._begin(event.path, node.work.initial_values(event.inputs), event.time_s)
@@ -127,13 +140,17 @@ class UserdataBook:
         entries = {key: Entry(value=value, by="", at_s=time_s, writes=0) for key, value in values.items()}
         self._set(path, ScopeView(is_open=True, since_s=time_s, values=entries))
 
-    def _write(self, event: UserdataWritten) -> None:
+    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
         known = self.scopes.get(event.scope)
         before = known.values.get(event.key) if known is not None else None
         writes = 1 + (before.writes if before is not None else 0)
         if known is None:
             self._begin(event.scope, {}, event.time_s)
-        self._put(event.scope, event.key, Entry(value=event.value, by=event.path, at_s=event.time_s, writes=writes))
+        value = event.value
+        if isinstance(event, UserdataAppended):
+            so_far = cast("list[object]", before.value) if before is not None else []
+            value = self._lists.appended((event.scope, event.key), so_far, value)
+        self._put(event.scope, event.key, Entry(value=value, by=event.path, at_s=event.time_s, writes=writes))
 
     def _put(self, scope: str, key: str, entry: Entry) -> None:
         known = self.scopes[scope]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from engine.check.finding import Finding
 from engine.check.flow.read import conditions
 from engine.check.subject import Placed, Subject
+from engine.document.count import whole_number
 from engine.document.expression import Template
 from engine.errors import ExpressionError
 from engine.nearness import near_names
@@ -65,7 +66,7 @@ def _check_constant(subject: Subject, placed: Placed, keys: tuple[str, ...], fou
         message = f"`items` takes a list, and gets {value!r}"
         hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
         yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
-    elif key == "times" and (not isinstance(value, int) or isinstance(value, bool) or value < 0):
+    elif key == "times" and whole_number(value) is None:
         message = f"`times` takes a whole number, 0 or more, and gets {value!r}"
         hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
         yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)

@@ -142,7 +142,7 @@ def _uses(subject: Subject, placed: Placed) -> Iterator[_Use]:
         if keys[0] == "guard":
             due, what = bool, "the guard"
         elif keys[0] == "foreach":
-            due = list[object] if keys[1] == "items" else int
+            due = list[object] if keys[1] == "items" else float
         elif signature is not None and keys[1] in signature.parameters:
             due, what = signature.parameters[str(keys[1])].type, f"the parameter `{keys[1]}` of `{node.state}`"
         elif referred is not None and keys[1] in referred.behavior.parameters:

@@ -149,7 +149,7 @@ class ForEach(Strict, frozen=True, kw_only=True, rename={"item": "as"}):
 
     child: Node
     items: Expression | list[object] | None = None
-    times: int | Expression | None = None
+    times: int | float | Expression | None = None
     item: Key = "item"
     index: Key | None = None
     next: tuple[str, ...] = ()

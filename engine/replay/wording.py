@@ -24,6 +24,7 @@ from engine.event import (
     RunEnded,
     RunStarted,
     Transitioned,
+    UserdataAppended,
     UserdataWritten,
 )
 from engine.journal import encode_event
@@ -57,6 +58,8 @@ def wording(event: Event) -> str:
             return f"message of {event.topic}"
         case UserdataWritten():
             return f"wrote {event.key} = {_short(event.value)}"
+        case UserdataAppended():
+            return f"appended {_short(event.value)} to {event.key}"
         case Logged():
             return f"{event.level}: {event.message}"
         case Commanded():

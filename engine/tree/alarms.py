@@ -66,7 +66,7 @@ class Alarms:
     def begin(self) -> None:
         """Let run what was set in this tick."""
         for path, after_s in self._set.items():
-            self._execution.waits += after_s > 0
+            self._execution.waits.add_timed(path, after_s)
             timer = self._running[path] = self._execution.suspensions.timer(path, after_s)
             timer.future.add_done_callback(self._ring)
         self._set.clear()

@@ -15,7 +15,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.blackboard import Blackboard
 from py_trees.common import Status
 
-from engine.errors import FlexcellError, StateError
+from engine.contained import contained
+from engine.errors import StateError
 from engine.execution import Execution
 from engine.tree.alarms import Alarms
 from engine.tree.arguments import converted_arguments
@@ -152,13 +153,5 @@ class Foreign:
             self._execution.record_write(self._part.path, written_to, target, value)
 
     def _contain(self, what: str, call: Callable[[], T]) -> T:
-        try:
+        with contained(f"{what} of {self._part.path} ({self._plan.kind.__qualname__})", where=self._part.position):
             return call()
-        except FlexcellError:
-            raise
-        except Exception as error:
-            # Somebody else's behaviour may raise anything; what travels on names the node and the method.
-            raise StateError(
-                f"{what} of {self._part.path} ({self._plan.kind.__qualname__}) raised {type(error).__name__}: {error}",
-                where=self._part.position,
-            ) from error

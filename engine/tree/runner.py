@@ -14,9 +14,10 @@ from engine.cause import cause_of, describe
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
-from engine.event import Event, UserdataWritten
+from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.execution import Execution
 from engine.node import log
+from engine.node_path import inside
 from engine.settle import settle
 from engine.state import Outcome
 from engine.tree.alarms import Alarms
@@ -137,9 +138,9 @@ class TreeRunner:
             await self._wait()
 
     def _moment(self) -> float:
-        """What is unchanged while no time passes: virtual time itself, else how often something was waited for."""
+        """What is unchanged while no time passes: virtual time itself, else what was last waited for."""
         clock = self._execution.clock
-        return clock.now_s() if clock.virtual else self._execution.waits
+        return clock.now_s() if clock.virtual else self._execution.waits.last(self._path)
 
     async def _tick(self, root: Behaviour) -> None:
         self.ticks += 1
@@ -202,9 +203,11 @@ class TreeRunner:
 
     def _hear(self, event: Event) -> None:
         self._leaves.hear(event)
-        if isinstance(event, UserdataWritten) and event.key in self._watched:
+        if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)
             self._news.set()
+            if not inside(self._path, event.path):
+                self._execution.waits.add(self._path)
 
     def _outcome(self, root: Behaviour) -> Outcome:
         if root.status is Status.SUCCESS:
@@ -214,12 +217,12 @@ class TreeRunner:
     def _clear(self, torn: Behaviour) -> None:
         """Halt everything at and below a node, also what py_trees forgets when an exception has torn its tick."""
         with self._blackboard:
-            inside = tuple(torn.iterate())
-            for node in inside:
+            nodes = tuple(torn.iterate())
+            for node in nodes:
                 if node in self._growth.foreign:
                     self._contain(self._growth.foreign[node].clear)
             torn.stop(Status.INVALID)
-            for node in inside:
+            for node in nodes:
                 if node.status is not Status.INVALID or isinstance(node, TreeLeaf):
                     node.stop(Status.INVALID)
 

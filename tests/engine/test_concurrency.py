@@ -197,4 +197,4 @@ def test_a_loop_through_a_container_in_which_no_time_passes_is_named() -> None:
     """
     told = run_document(text)
     assert told.result.status == "errored"
-    assert "10240 transitions in a row without waiting for anything, through both" in str(told.result.cause)
+    assert "10000 transitions in a row without waiting for anything, through both" in str(told.result.cause)

@@ -1,0 +1,83 @@
+"""Loops in which nothing is waited for: found in both clocks, whatever else goes on beside them, and named."""
+
+from __future__ import annotations
+
+import asyncio
+from textwrap import dedent
+
+import pytest
+
+from engine.bus import SkillBus
+from engine.clock import new_clock
+from engine.event import Entered, Event
+from engine.run import Run
+from tests.engine.run_document import Told, plan_of, run_document
+
+BESIDE = """
+root:
+  concurrency:
+    states:
+      loop:
+        machine:
+          initial: ping
+          states:
+            ping: PING
+            pong: {state: test.Give, transitions: {a: ping, b: good, c: bad}}
+      busy:
+        machine:
+          initial: nap
+          states:
+            nap: {state: test.Give, with: {after_s: 0.001}, transitions: {a: nap, b: nap, c: nap}}
+    conditions: [{good: {loop: good}}, {bad: {loop: bad}}]
+"""
+GIVE = "{state: test.Give, transitions: {a: pong, b: bad, c: bad}}"
+HARDLY = "{state: test.Give, with: {after_s: 1.0e-12}, transitions: {a: pong, b: bad, c: bad}}"
+
+
+def run_in_real_time(text: str) -> Told:
+    """Run a document with the clock on the wall."""
+    plan = plan_of(dedent(text))
+    events: list[Event] = []
+
+    async def main() -> Told:
+        run = Run(plan, run="r", bus=SkillBus(new_clock()))
+        run.watch(events.append)
+        return Told(await run.execute(), tuple(events))
+
+    return asyncio.run(main())
+
+
+@pytest.mark.parametrize("ping", [GIVE, HARDLY])
+@pytest.mark.parametrize("run", [run_document, run_in_real_time])
+def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(ping: str, run: type[Told]) -> None:
+    told = run(BESIDE.replace("PING", ping))
+    cause = str(told.result.cause)
+    assert told.result.status == "errored"
+    assert "10000 transitions in a row without waiting for anything, through" in cause
+    assert "root/loop" in cause
+    assert len([event for event in told.events if isinstance(event, Entered)]) < 50_000
+
+
+def test_a_loop_that_waits_inside_a_container_is_none() -> None:
+    told = run_in_real_time(
+        """
+        userdata: {rounds: 0}
+        root:
+          machine:
+            initial: inner
+            states:
+              inner:
+                machine:
+                  initial: nap
+                  states:
+                    nap: {state: test.Give, with: {after_s: 2.0e-6}, transitions: {a: count, b: count, c: count}}
+                    count:
+                      state: test.Write
+                      with: {value: "${rounds + 1}"}
+                      out: {value: rounds}
+                      transitions: {done: over}
+                guard: {when: "${rounds < 10500}", to: good}
+                transitions: {over: inner}
+        """
+    )
+    assert told.result.outcome == "good", told.result.cause
