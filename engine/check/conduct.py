@@ -62,11 +62,11 @@ def _check_constant(subject: Subject, placed: Placed, keys: tuple[str, ...], fou
         message = f"this guard is always {'open' if value else 'closed'}"
         hint = "remove it" if value else "let it depend on a parameter or a userdata key"
         yield subject.finding("constant-guard", message, placed.path, *keys, hint=hint)
-    elif key == "items" and not isinstance(value, list):
-        message = f"`items` takes a list, and gets {value!r}"
-        hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
-        yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
     elif key == "times" and whole_number(value) is None:
         message = f"`times` takes a whole number, 0 or more, and gets {value!r}"
+        hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
+        yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
+    elif key == "items" and not isinstance(value, list):
+        message = f"`items` takes a list, and gets {value!r}"
         hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
         yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)

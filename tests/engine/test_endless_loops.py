@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from textwrap import dedent
 
 import pytest
@@ -49,7 +50,7 @@ def run_in_real_time(text: str) -> Told:
 
 @pytest.mark.parametrize("ping", [GIVE, HARDLY])
 @pytest.mark.parametrize("run", [run_document, run_in_real_time])
-def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(ping: str, run: type[Told]) -> None:
+def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(ping: str, run: Callable[[str], Told]) -> None:
     told = run(BESIDE.replace("PING", ping))
     cause = str(told.result.cause)
     assert told.result.status == "errored"
