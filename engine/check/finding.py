@@ -51,6 +51,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "no-path-to-outcome": ("warning", "from a node no outcome of the machine can be reached"),
     "instant-loop": ("error", "a loop in which no time passes and nothing changes"),
     "never-ends": ("error", "a part of a tree that cannot end, however its child ends"),
+    "restarted-children": ("warning", "a parallel runs children again that have succeeded, until all succeed at once"),
     "unused-outcome": ("warning", "an outcome is declared or connected that nothing leads to"),
     "unknown-child": ("error", "a condition names a child that does not exist"),
     "uncovered-combination": ("error", "all children may finish so that no condition holds"),

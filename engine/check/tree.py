@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Iterator
 
 from engine.check.finding import Finding
+from engine.check.instant import Instants
 from engine.check.subject import Placed, Subject
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
@@ -14,10 +15,12 @@ from engine.state_catalogue import find_behaviour
 
 def check_trees(subject: Subject) -> Iterator[Finding]:
     """Find what can be known to be wrong with trees before a tick."""
+    instants = Instants(subject)
     for placed in subject.nodes.values():
         if placed.in_tree and placed.is_part:
             yield from _check_dead_children(subject, placed)
             yield from _check_end(subject, placed)
+            yield from _check_restarts(subject, placed, instants)
             if placed.node.behaviour is not None:
                 yield from _check_behaviour(subject, placed, placed.node.behaviour)
 
@@ -48,6 +51,18 @@ def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
     hint = "leave one end as it is, or the tree goes on until it is stopped"
     message = f"this `{placed.kind}` never ends: it {said}"
     yield subject.finding("never-ends", message, placed.path, placed.kind, hint=hint, at_key=True)
+
+
+def _check_restarts(subject: Subject, placed: Placed, instants: Instants) -> Iterator[Finding]:
+    parallel = placed.node.parallel
+    if parallel is None or parallel.synchronise or parallel.policy == "one":
+        return
+    wanted = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
+    slow = [f"`{child.name}`" for child in wanted if not instants.ends[child.path]]
+    if len(slow) > 1:
+        message = f"{', '.join(slow[:3])} take time and must succeed in one tick; until then they are run again"
+        hint = "remove `synchronise: false`: what has succeeded then waits for the others"
+        yield subject.finding("restarted-children", message, placed.path, "parallel", "synchronise", hint=hint)
 
 
 def _check_behaviour(subject: Subject, placed: Placed, name: str) -> Iterator[Finding]:

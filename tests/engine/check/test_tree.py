@@ -71,6 +71,19 @@ def test_a_part_that_never_ends_is_told_once() -> None:
     ]
 
 
+def test_children_that_a_parallel_runs_again_until_all_succeed_at_once_are_told() -> None:
+    """One that takes time may wait for those that do not."""
+    wait = "{state: flow.Wait, with: {duration_s: 1}}"
+    later = "{state: flow.Wait, name: later, with: {duration_s: 3}}"
+    unsynchronised = "parallel: {synchronise: false, children: [%s, %s]}\n"
+    told = "restarted-children root/parallel"
+    assert said_of(f"{HEAD}{unsynchronised % (wait, later)}") == [told]
+    assert said_of(f"{HEAD}{unsynchronised % (wait, LOG)}") == []
+    assert said_of(f"{HEAD}{unsynchronised.replace('children', 'policy: [later], children') % (wait, later)}") == []
+    assert said_of(f"{HEAD}{unsynchronised.replace('children', 'policy: one, children') % (wait, later)}") == []
+    assert said_of(f"{HEAD}{unsynchronised.replace('false', 'true') % (wait, later)}") == []
+
+
 def test_an_end_that_never_occurs_need_not_be_connected() -> None:
     """A tree that only succeeds is connected with `success`; to connect `failure` as well does no harm."""
     tree = "{tree: {sequence: [{state: flow.Wait, with: {duration_s: 1}}]}, transitions: {success: good%s}}"
