@@ -39,6 +39,7 @@ class WaitingClock:
 
     def now_s(self) -> float:
         """Seconds since the run's clock started."""
+        self._execution.stirs += 1
         return self._execution.clock.now_s()
 
     async def sleep(self, duration_s: float) -> None:
@@ -104,13 +105,13 @@ class RunningContext:
             self._record_answered(call, None, cause_of(error))
             raise
         self._record_answered(call, answer, None)
-        execution.waits.add(self.path)
+        self._stir()
         return answer
 
     async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
         """Send a goal and wait for its end; when preempted, cancel it and wait for rest."""
         execution = self._execution
-        execution.waits.add(self.path)
+        self._stir()
         await execution.suspensions.until_free(self.path)
         self._goals += 1
         goal_id = f"{self.path}#{self._visit}.{self._goals}"
@@ -138,17 +139,17 @@ class RunningContext:
 
     async def latest(self, topic: str, kind: type[S]) -> S:
         """Return the newest message of a topic, waiting for the first one."""
-        self._execution.waits.add(self.path)
+        self._stir()
         return self._received(topic, await self._execution.skills.latest(topic, kind, holder=self._holder))
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
         """Wait for the next message of a topic."""
-        self._execution.waits.add(self.path)
+        self._stir()
         return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
 
     async def offer(self, outcome: str) -> None:
         """Ask the operator for an outcome where the run's autonomy does not let it pass; cancelling withdraws."""
-        self._execution.waits.add(self.path)
+        self._stir()
         required = self._autonomy.get(outcome, "off")
         await self._execution.gate.offer(self.path, self._visit, outcome, required)
 
@@ -158,7 +159,13 @@ class RunningContext:
 
     def random(self) -> float:
         """A number in [0, 1) from the run's seed."""
+        self._execution.stirs += 1
         return self._execution.random.random()
+
+    def _stir(self) -> None:
+        """Count that the state waits for somebody else, whose answer may be a new one each time."""
+        self._execution.waits.add(self.path)
+        self._execution.stirs += 1
 
     @property
     def _holder(self) -> Holder:

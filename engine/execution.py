@@ -43,6 +43,10 @@ class Execution:
     activity: Activity = field(default_factory=Activity)
     instant_limit: int = 10_000
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
+    polling_limit: int = 20_000
+    """Transitions of a loop in virtual time in which nothing happens but waiting, before it is reported."""
+    stirs: int = 0
+    """How often something was written or asked for that a state's next step may depend on."""
     abandon_after_s: float = 30.0
     """How long a node may take to confirm that it stopped before the run goes on without it."""
     waits: Waits = field(default_factory=Waits)
@@ -140,6 +144,7 @@ class Execution:
         if is_new:
             self.record_write(path, owner, key, plain_value(grown, key=key, where=path))
         else:
+            self.stirs += 1
             recorder = self.recorder
             recorder.record(
                 UserdataAppended(
@@ -150,6 +155,7 @@ class Execution:
 
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
         """Record that the node at `path` wrote a plain value to `key` of `scope`."""
+        self.stirs += 1
         recorder = self.recorder
         recorder.record(
             UserdataWritten(

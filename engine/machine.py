@@ -12,6 +12,7 @@ from engine.event import Cause, Transitioned
 from engine.execution import Execution
 from engine.nearness import near_names
 from engine.node import NOTHING, Entry, Left, Node, explain
+from engine.standstill import Standstill
 from engine.state import Outcome
 from engine.userdata import Scope
 from engine.waits import Laps
@@ -66,6 +67,7 @@ class Machine:
         if name not in self.children:
             return Outcome(name, cause=None if name in self.nominal else went_wrong)
         laps = Laps(path, execution.waits, execution.clock)
+        standstill = Standstill(path, execution) if execution.clock.virtual else None
         machine = self
         while True:
             left = await machine.children[name].perform(inner, execution)
@@ -81,7 +83,11 @@ class Machine:
             if laps.step(most=execution.instant_limit):
                 await asyncio.sleep(0)
                 if laps.count >= execution.instant_limit:
-                    raise machine._endless(path, target, laps.count)
+                    said = f"{laps.count} transitions in a row without waiting for anything"
+                    raise machine._endless(path, target, said, "let one of these states wait for something")
+            if standstill is not None and (passed_s := standstill.step()) is not None:
+                said = f"nothing happened in {passed_s:g} s but that this loop waited, and nothing can end it"
+                raise machine._endless(path, target, said, "wait for what is to happen, with a timeout")
             name = target
 
     def _target(self, child: Node, left: Left) -> str:
@@ -109,7 +115,7 @@ class Machine:
             )
         )
 
-    def _endless(self, path: str, name: str, instants: int) -> StateError:
+    def _endless(self, path: str, name: str, said: str, hint: str) -> StateError:
         """Name the loop by following the transitions that can be followed again."""
         loop = [name]
         while True:
@@ -118,7 +124,7 @@ class Machine:
                 break
             loop.append(targets[0])
         return StateError(
-            f"{instants} transitions in a row without waiting for anything, through {' → '.join(loop)}",
+            f"{said}, through {' → '.join(loop)}",
             where=path,
-            hint="let one of these states wait for something, or leave the loop",
+            hint=f"{hint}, or leave the loop",
         )

@@ -61,6 +61,7 @@ class Run:
         checkpoint: The moment to go on from; of this run after a crash, or of another one.
         world: Gives the state of the simulated world, kept in the journal with every commit.
         instant_limit: Transitions in a row in which nothing is waited for before a loop is reported.
+        polling_limit: Transitions in virtual time in which nothing happens but waiting before a loop is reported.
 
     Raises:
         DocumentError: a parameter or input is not acceptable.
@@ -81,6 +82,7 @@ class Run:
         checkpoint: Checkpoint | None = None,
         world: Callable[[], Awaitable[bytes | None]] | None = None,
         instant_limit: int = 10_000,
+        polling_limit: int = 20_000,
     ) -> None:
         self.id = run
         self.plan = plan
@@ -109,6 +111,7 @@ class Run:
             suspensions=suspensions,
             gate=Gate(self._recorder, suspensions),
             instant_limit=instant_limit,
+            polling_limit=polling_limit,
             abandon_after_s=self._supervision.abandon_after_s,
             world=world,
         )

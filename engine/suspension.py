@@ -142,6 +142,11 @@ class Suspensions:
         self._timers[id(timer)] = timer
         return timer
 
+    @property
+    def timers(self) -> tuple[Timer, ...]:
+        """Those that somebody waits for, held or not."""
+        return tuple(self._timers.values())
+
     def drop(self, timer: Timer) -> None:
         """Stop and forget a timer."""
         timer.cancel()

@@ -14,11 +14,13 @@ class Timer:
         held: Whether it begins held.
     """
 
-    __slots__ = ("_due_s", "_handle", "_left_s", "_loop", "future", "path")
+    __slots__ = ("_due_s", "_handle", "_left_s", "_loop", "future", "path", "since_s")
 
     def __init__(self, path: str, duration_s: float, *, held: bool) -> None:
         self.path = path
         self._loop = asyncio.get_running_loop()
+        self.since_s = self._loop.time()
+        """When it was set, on the time of the loop."""
         self.future: asyncio.Future[None] = self._loop.create_future()
         self._left_s = duration_s
         self._due_s = 0.0

@@ -32,7 +32,8 @@ _WHAT = "the world's process"
 # On a loaded machine that compiles the controllers for the first time, one arm takes half a minute.
 _START_S = 180.0
 _END_S = 6.0
-_RESTORE_S = 5.0
+# On an overloaded machine this takes seconds, and who gives up too soon cannot resume a run.
+_RESTORE_S = 20.0
 
 
 NewStopLine = Callable[[str], socket.socket]

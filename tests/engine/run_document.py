@@ -57,6 +57,7 @@ def run_document(
     parameters: Mapping[str, object] | None = None,
     inputs: Mapping[str, object] | None = None,
     seed: int = 0,
+    polling_limit: int = 20_000,
 ) -> Told:
     """Run a document to its end in virtual time."""
     plan = plan_of(text)
@@ -64,7 +65,7 @@ def run_document(
 
     async def main() -> RunResult:
         bus = SkillBus(new_clock())
-        run = Run(plan, run="r", bus=bus, parameters=parameters, inputs=inputs, seed=seed)
+        run = Run(plan, run="r", bus=bus, parameters=parameters, inputs=inputs, seed=seed, polling_limit=polling_limit)
         run.watch(events.append)
         if stop_first:
             run.stop("changed my mind")

@@ -82,3 +82,44 @@ def test_a_loop_that_waits_inside_a_container_is_none() -> None:
         """
     )
     assert told.result.outcome == "good", told.result.cause
+
+
+POLL = """
+userdata: {ready: false, seen: 0}
+root:
+  concurrency:
+    states:
+      poll:
+        machine:
+          initial: nap
+          states:
+            nap: {state: test.Give, with: {after_s: 0.1}, transitions: {a: look, b: bad, c: bad}}
+            look: {state: test.Give, with: {outcome: "${ready ? 'b' : 'a'}"}, transitions: {a: nap, b: good, c: bad}}
+      other: OTHER
+    conditions: [{good: {poll: good}}, {bad: {poll: bad}}, {good: {other: a}}]
+"""
+
+
+@pytest.mark.parametrize("other", ["{state: test.Give, with: {outcome: b}}", "{state: test.Give, with: {outcome: c}}"])
+def test_a_loop_that_polls_in_virtual_time_for_what_cannot_change_any_more_is_named(other: str) -> None:
+    told = run_document(POLL.replace("OTHER", other), polling_limit=2_000)
+    cause = str(told.result.cause)
+    assert told.result.status == "errored"
+    assert "nothing happened in 100 s but that this loop waited, and nothing can end it, through" in cause
+    assert "root/poll" in cause
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        "{state: test.Give, with: {outcome: a, after_s: 250}}",
+        """{machine: {initial: one, states: {
+            one: {state: test.Give, with: {outcome: a, after_s: 120}, transitions: {a: two, b: bad, c: bad}},
+            two: {state: test.Give, with: {outcome: a, after_s: 120}, transitions: {a: a, b: bad, c: bad}}}}}""",
+        "{state: test.Hang, timeout: {after: 250 s, to: a}}",
+    ],
+    ids=["sleeps", "sleeps twice", "timeout"],
+)
+def test_a_loop_that_polls_until_something_else_ends_is_none(other: str) -> None:
+    told = run_document(POLL.replace("OTHER", other), polling_limit=2_000)
+    assert told.result.outcome == "good", told.result.cause
