@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from engine.check.finding import Finding
 from engine.check.instant import Instants
 from engine.check.subject import Placed, Subject
+from engine.document.node import Parallel
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
 from engine.state_catalogue import find_behaviour
@@ -55,7 +56,7 @@ def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
 
 def _check_restarts(subject: Subject, placed: Placed, instants: Instants) -> Iterator[Finding]:
     parallel = placed.node.parallel
-    if parallel is None or parallel.synchronise or parallel.policy == "one":
+    if not isinstance(parallel, Parallel) or parallel.synchronise or parallel.policy == "one":
         return
     wanted = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
     slow = [f"`{child.name}`" for child in wanted if not instants.ends[child.path]]

@@ -82,6 +82,8 @@ def test_children_that_a_parallel_runs_again_until_all_succeed_at_once_are_told(
     assert said_of(f"{HEAD}{unsynchronised.replace('children', 'policy: [later], children') % (wait, later)}") == []
     assert said_of(f"{HEAD}{unsynchronised.replace('children', 'policy: one, children') % (wait, later)}") == []
     assert said_of(f"{HEAD}{unsynchronised.replace('false', 'true') % (wait, later)}") == []
+    assert said_of(f"{HEAD}parallel: [{wait}, {later}]\n") == []
+    assert said_of(f"{HEAD}parallel: [{wait}, {later}]\n") == []
 
 
 def test_an_end_that_never_occurs_need_not_be_connected() -> None:
