@@ -51,8 +51,8 @@ class Lockstep(Protocol):
         ...
 
 
-_LEAP_S = 0.25
 _GRID_S = 1e-9
+_LEAP_S = 0.25
 """How far a simulation is stepped at a time before the loop looks outside again."""
 
 

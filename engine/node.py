@@ -322,9 +322,7 @@ class Node:
             self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
-            if error is raised:
-                raise
-            raise error from raised
+            raise error from error.__cause__
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
             self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)

@@ -16,12 +16,11 @@ from engine.state_catalogue import find_behaviour
 
 def check_trees(subject: Subject) -> Iterator[Finding]:
     """Find what can be known to be wrong with trees before a tick."""
-    instants = Instants(subject)
     for placed in subject.nodes.values():
         if placed.in_tree and placed.is_part:
             yield from _check_dead_children(subject, placed)
             yield from _check_end(subject, placed)
-            yield from _check_restarts(subject, placed, instants)
+            yield from _check_restarts(subject, placed)
             if placed.node.behaviour is not None:
                 yield from _check_behaviour(subject, placed, placed.node.behaviour)
 
@@ -54,12 +53,13 @@ def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
     yield subject.finding("never-ends", message, placed.path, placed.kind, hint=hint, at_key=True)
 
 
-def _check_restarts(subject: Subject, placed: Placed, instants: Instants) -> Iterator[Finding]:
+def _check_restarts(subject: Subject, placed: Placed) -> Iterator[Finding]:
     parallel = placed.node.parallel
     if not isinstance(parallel, Parallel) or parallel.synchronise or parallel.policy == "one":
         return
     wanted = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
-    slow = [f"`{child.name}`" for child in wanted if not instants.ends[child.path]]
+    ends = Instants(subject).ends
+    slow = [f"`{child.name}`" for child in wanted if not ends[child.path]]
     if len(slow) > 1:
         message = f"{', '.join(slow[:3])} take time and must succeed in one tick; until then they are run again"
         hint = "remove `synchronise: false`: what has succeeded then waits for the others"
