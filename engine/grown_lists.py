@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
+from typing import cast
+
+from engine.event import UserdataAppended, UserdataWritten
 
 
 class GrownLists:
@@ -20,6 +23,13 @@ class GrownLists:
             own = self._own[place] = list(before)
         own.append(value)
         return own
+
+    def value_after(self, event: UserdataWritten | UserdataAppended, before: object) -> object:
+        """Return what the key of a write holds after it; `before` is None where it held nothing."""
+        if isinstance(event, UserdataWritten):
+            return event.value
+        so_far = cast("list[object]", [] if before is None else before)
+        return self.appended((event.scope, event.key), so_far, event.value)
 
     def give_away(self) -> None:
         """Leave all lists as they are from now on, since somebody else holds them."""

@@ -277,11 +277,7 @@ class History:
 
     def _keep(self, event: UserdataWritten | UserdataAppended) -> None:
         values = self._scopes.setdefault(event.scope, {})
-        value = event.value
-        if isinstance(event, UserdataAppended):
-            before = cast("list[object]", values.get(event.key, []))
-            value = self._lists.appended((event.scope, event.key), before, value)
-        values[event.key] = value
+        values[event.key] = self._lists.value_after(event, values.get(event.key))
 
     def _exit(self, event: Exited) -> None:
         path = event.path

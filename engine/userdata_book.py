@@ -7,7 +7,6 @@ the values of containers that are left.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import cast
 
 import msgspec
 
@@ -146,10 +145,7 @@ class UserdataBook:
         writes = 1 + (before.writes if before is not None else 0)
         if known is None:
             self._begin(event.scope, {}, event.time_s)
-        value = event.value
-        if isinstance(event, UserdataAppended):
-            so_far = cast("list[object]", before.value) if before is not None else []
-            value = self._lists.appended((event.scope, event.key), so_far, value)
+        value = self._lists.value_after(event, before.value if before is not None else None)
         self._put(event.scope, event.key, Entry(value=value, by=event.path, at_s=event.time_s, writes=writes))
 
     def _put(self, scope: str, key: str, entry: Entry) -> None:
