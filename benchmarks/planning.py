@@ -29,7 +29,8 @@ from benchmarks.planning_problems import problem_sets
 from benchmarks.planning_scenes import ARM, Case, cases, random_case
 from engine.messages import Pose
 from robots.planning.exact_checker import ExactChecker
-from robots.planning.planner import PLANNERS, ScenePlanner
+from robots.planning.planner import ScenePlanner
+from robots.planning.planner_names import PLANNERS
 from robots.planning.request import Plan, PlanRequest
 from robots.port import Array
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene

@@ -69,6 +69,7 @@ class Cameras:
 
     latest: OccupancyGrid | None = None
     stale_reason: str = ""
+    starting: bool = False
     intruder: np.ndarray | None = None
     told_s: float = 0.0
     _random: np.random.Generator = field(default_factory=lambda: np.random.default_rng(1))

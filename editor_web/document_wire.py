@@ -17,10 +17,11 @@ Point = tuple[float, float]
 
 
 class RuleBody(Wire):
-    """One condition of a concurrency container: the outcome, and which child must have ended how."""
+    """One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`."""
 
     outcome: str
     when: dict[str, str]
+    at_least: int | None
 
 
 class DocumentNodeBody(GraphNodeBody):
@@ -303,9 +304,14 @@ class EntryBody(Wire):
 
 
 class CatalogueBody(Wire):
-    """Everything that can be put into a behavior."""
+    """Everything that can be put into a behavior.
+
+    `names` are those of the open cell by kind, which the JSON Schema of a parameter calls `cell_name`: robots, parts,
+    cameras, frames. Those of a tool, link, output or label begin with the name of what has it: `left/panda_hand`.
+    """
 
     states: tuple[StateBody, ...]
     containers: tuple[ContainerBody, ...]
     behaviors: tuple[ReferableBody, ...]
     entries: tuple[EntryBody, ...]
+    names: dict[str, tuple[str, ...]]

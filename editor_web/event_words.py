@@ -6,6 +6,7 @@ import math
 
 import msgspec
 
+from engine.cause import outwards
 from engine.event import (
     Abandoned,
     Answered,
@@ -49,7 +50,7 @@ Words = tuple[str, str, str, Cause | None]
 
 
 class CauseLine(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of a cause chain, outermost first."""
+    """One link of a cause chain: first what was measured, then what followed from it."""
 
     message: str
     where: str
@@ -203,5 +204,4 @@ def _short(value: object, limit: int = 160) -> str:
 
 
 def _lines(cause: Cause | None) -> tuple[CauseLine, ...]:
-    chain = cause.chain() if cause else ()
-    return tuple(CauseLine(message=c.message, where=c.where, kind=c.kind) for c in chain)
+    return tuple(CauseLine(message=c.message, where=c.where, kind=c.kind) for c in outwards(cause))

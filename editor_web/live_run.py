@@ -9,6 +9,7 @@ from itertools import pairwise
 import msgspec
 
 from editor_web.event_words import LogLine, log_line, status_of
+from engine.cause import describe
 from engine.event import (
     Commanded,
     Diverted,
@@ -206,7 +207,7 @@ class LiveRun:
             visits=event.visit,
             outcome=event.outcome,
             duration_s=event.time_s - node.entered_s,
-            cause=event.cause.message if event.cause else "",
+            cause=describe(event.cause) if event.cause else "",
         )
 
 

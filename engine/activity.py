@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any, TypeVar
 
+from engine.first_step import step_now
 from engine.preemption import is_preempted
 
 T = TypeVar("T")
@@ -20,11 +21,13 @@ class Activity:
         self._branches: dict[str, asyncio.Task[Any]] = {}
 
     def branch(self, path: str, work: Coroutine[Any, Any, T], *, body: bool = False) -> asyncio.Task[T]:
-        """Start a task that carries the node at `path`, or with `body` only what is inside it."""
+        """Start a task that carries the node at `path`, or with `body` only what is inside it, which begins at once."""
         key = f"{path}/" if body else path
         task = asyncio.create_task(work, name=path)
         self._branches[key] = task
         task.add_done_callback(lambda done: self._forget(key, done))
+        if body:
+            step_now(task)
         return task
 
     def task_of(self, path: str) -> asyncio.Task[Any] | None:

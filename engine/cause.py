@@ -22,9 +22,22 @@ def cause_of(error: BaseException) -> Cause:
     return Cause(message=text, where=_raised_at(error), kind=type(error).__name__, because=because)
 
 
+def outwards(cause: Cause | None) -> tuple[Cause, ...]:
+    """Return the links of a chain as people are told them: what was measured first, then what followed from it."""
+    return cause.chain()[::-1] if cause is not None else ()
+
+
 def describe(cause: Cause) -> str:
-    """Write a chain on one line, outermost first, joined by `because`."""
-    return " because ".join(_link(link) for link in cause.chain())
+    """Write a chain on one line, from what was measured outwards, joined by `so`."""
+    return ", so ".join(map(link_text, outwards(cause)))
+
+
+def link_text(link: Cause) -> str:
+    """Write one link: what is said of a node by its name is said by its path."""
+    name = link.where.rpartition("/")[2]
+    if name and link.message.startswith((f"{name} ended with ", f"{name} was left for ")):
+        return f"{link.where}{link.message[len(name) :]}"
+    return f"{link.where}: {link.message}" if link.where else link.message
 
 
 def under(message: str, because: Cause | None, *, where: str = "", kind: str = "") -> Cause:
@@ -48,10 +61,6 @@ def whole_text(text: str) -> str:
     except UnicodeEncodeError:
         return text.encode(errors="backslashreplace").decode()
     return text
-
-
-def _link(cause: Cause) -> str:
-    return f"{cause.where}: {cause.message}" if cause.where else cause.message
 
 
 def _raised_at(error: BaseException) -> str:

@@ -9,6 +9,7 @@ threads are at work, so their results arrive at a definite instant.
 from __future__ import annotations
 
 import asyncio
+import logging
 import math
 import selectors
 from collections.abc import Callable, Coroutine
@@ -19,6 +20,7 @@ from typing import Any, Protocol, TypeVar
 from engine.errors import FlexcellError
 
 T = TypeVar("T")
+_log = logging.getLogger(__name__)
 
 
 class Clock(Protocol):
@@ -52,6 +54,8 @@ class Lockstep(Protocol):
 
 
 _GRID_S = 1e-9
+_CLOSING_S = 60.0
+"""How long, in virtual time, a task may take to end after it was cancelled because the loop is closed."""
 _LEAP_S = 0.25
 """How far a simulation is stepped at a time before the loop looks outside again."""
 
@@ -166,6 +170,13 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         """Count (+1) or discount (-1) something real that will wake the loop, such as a server."""
         self._outside += change
 
+    def expects_more_than(self, timers: int) -> bool:
+        """Tell whether anything but so many timers can bring something about."""
+        if self._working or self._outside or any(simulation.busy for simulation in self._stepped):
+            return True
+        due: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - asyncio's own, of no public name
+        return sum(not each.cancelled() for each in due) > timers
+
     async def idle(self, depth: float) -> None:
         """Return when nothing more is ready at this instant; the deepest waiter goes first, alone."""
         waiter: asyncio.Future[None] = self.create_future()
@@ -237,7 +248,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     """Called the first time that nothing can wake, instead of cancelling the main task."""
 
     def run_main(self, main: Coroutine[Any, Any, T]) -> T:
-        """Run `main` to its end, then cancel what it left behind.
+        """Run `main` to its end, then cancel what it left behind; what takes no notice of that is named in the log.
 
         Raises:
             NothingCanWake: everything waits and nothing is due.
@@ -260,7 +271,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         for task in left:
             task.cancel()
         if left:
-            self.run_until_complete(asyncio.gather(*left, return_exceptions=True))
+            _, deaf = self.run_until_complete(asyncio.wait(left, timeout=_CLOSING_S))
+            for task in deaf:
+                _log.error(
+                    "the virtual loop is closed over %s, which does not end when it is cancelled", task.get_name()
+                )
         self.run_until_complete(self.shutdown_asyncgens())
         self.run_until_complete(self.shutdown_default_executor())
         asyncio.set_event_loop(None)

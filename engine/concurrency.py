@@ -3,31 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 from engine.cause import under
+from engine.diagnosis import explain, went_wrong
+from engine.document.condition import Condition
 from engine.errors import StateError
 from engine.event import Cause
 from engine.execution import Execution
-from engine.node import NOTHING, Entry, Left, Node, explain, overdue
+from engine.node import NOTHING, Entry, Node, overdue
+from engine.node_exit import ContainerOutcome, Left
 from engine.preemption import preempt
-from engine.settle import settle
 from engine.state import Outcome
 from engine.userdata import Scope
-
-
-@dataclass(frozen=True, kw_only=True)
-class Condition:
-    """`outcome` is taken when every named child has finished with the outcome named for it."""
-
-    outcome: str
-    when: Mapping[str, str]
-
-    def holds(self, finished: Mapping[str, Left]) -> bool:
-        """Tell whether all named children have finished so."""
-        return all(name in finished and finished[name].outcome == due for name, due in self.when.items())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +28,8 @@ class Concurrency:
     conditions: tuple[Condition, ...]
     otherwise: str | None = None
     userdata: Mapping[str, object] = field(default_factory=dict[str, object])
+    shared: frozenset[str] = frozenset()
+    """The keys that branches see each other write."""
 
     @property
     def kind(self) -> str:
@@ -56,7 +48,7 @@ class Concurrency:
         return frozenset(
             c.outcome
             for c in self.conditions
-            if all(due in self.children[name].work.nominal for name, due in c.when.items())
+            if c.asks_only_for(lambda name, due: due in self.children[name].work.nominal)
         )
 
     @cached_property
@@ -76,7 +68,9 @@ class Concurrency:
         point = entry.point
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
         written: Mapping[str, Mapping[str, object]] = point.branches if point is not None else {}
-        branches = {name: branch_scope(path, name, inner, written.get(name, {})) for name in self.children}
+        branches = {
+            name: branch_scope(path, name, inner, written.get(name, {}), shared=self.shared) for name in self.children
+        }
         tasks = {
             name: execution.activity.branch(child.path, child.perform(branches[name], execution))
             for name, child in self.children.items()
@@ -98,22 +92,30 @@ class Concurrency:
             task.add_done_callback(partial(_arrive, arrived, name, ended))
         while len(finished) < len(tasks):
             await ended.wait()
-            await settle(depth=path.count("/"))
+            await execution.settlement.settled(depth=path.count("/"))
             ended.clear()
             for name in sorted(arrived, key=self._rank.__getitem__):
                 finished[name] = _as_outcome(tasks[name].result())
             arrived.clear()
             for condition in execution.latest(f"{path}/", self).conditions:
-                if condition.holds(finished):
-                    return Outcome(condition.outcome, cause=self._cause(condition.outcome, finished))
+                if condition.holds(has_ended(finished)):
+                    return self.ended(condition, finished)
         return self._uncovered(path, finished)
+
+    def ended(self, condition: Condition, finished: Mapping[str, Left]) -> ContainerOutcome:
+        """Return its outcome by a condition that holds, with the children that this asked for as the reason."""
+        so = has_ended(finished)
+        asked = [explain(self.children[name], finished[name]) for name, due in condition.when.items() if so(name, due)]
+        together = " and ".join(each.message for each in asked)
+        reason = asked[0] if len(asked) == 1 else Cause(message=together, where=asked[0].where.rpartition("/")[0])
+        return ContainerOutcome(condition.outcome, cause=self._cause(condition.outcome, finished), reason=reason)
 
     def _cause(self, outcome: str, finished: Mapping[str, Left]) -> Cause | None:
         if outcome in self.nominal:
             return None
         for name, child in self.children.items():
             left = finished.get(name)
-            if left is not None and (left.cause is not None or left.outcome not in child.work.nominal):
+            if left is not None and went_wrong(child, left):
                 return explain(child, left)
         return None
 
@@ -131,6 +133,11 @@ class Concurrency:
         )
 
 
+def has_ended(finished: Mapping[str, Left]) -> Callable[[str, str], bool]:
+    """Return what a condition asks: whether a child has finished with an outcome."""
+    return lambda name, due: name in finished and finished[name].outcome == due
+
+
 def _arrive(arrived: list[str], name: str, ended: asyncio.Event, _: asyncio.Task[Left]) -> None:
     arrived.append(name)
     ended.set()
@@ -138,7 +145,7 @@ def _arrive(arrived: list[str], name: str, ended: asyncio.Event, _: asyncio.Task
 
 def _as_outcome(left: Left) -> Left:
     """Give a child that was left by timeout or on_error the outcome named there."""
-    return left if left.target is None else Left(left.target, None, left.cause)
+    return left if left.target is None else Left(left.target, None, left.cause, left.reason)
 
 
 def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
@@ -148,9 +155,11 @@ def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
             raise error
 
 
-def branch_scope(path: str, name: str, outer: Scope, written: Mapping[str, object]) -> Scope:
-    """Return the scope of one branch, in which its writes stay until the branches are merged."""
-    return Scope(f"{path}/{name}*", written, outer, isolated=True)
+def branch_scope(
+    path: str, name: str, outer: Scope, written: Mapping[str, object], *, shared: frozenset[str] = frozenset()
+) -> Scope:
+    """Return the scope of one branch, in which its writes stay until the branches are merged, but for shared keys."""
+    return Scope(f"{path}/{name}*", written, outer, isolated=True, shared=shared)
 
 
 def merge(branch: Scope, into: Scope, execution: Execution) -> None:

@@ -15,6 +15,7 @@ from engine.errors import FlexcellError
 from engine.event import Answered, Called, Cause, GoalFinished, GoalHeld, GoalResumed, GoalSent, Received
 from engine.execution import Execution
 from engine.node import log
+from engine.nonfinite import without_nonfinite
 from engine.recorder import Recorder
 from engine.skill import Action, Service
 from engine.skill_port import Goal
@@ -100,7 +101,7 @@ class RunningContext:
         self._record_called(call, request, f"{to}/{request.skill_name()}")
         await execution.commit()
         try:
-            answer = await execution.skills.call(request, to=to, holder=self._holder)
+            answer = await self._answer(request, to)
         except FlexcellError as error:
             self._record_answered(call, None, cause_of(error))
             raise
@@ -162,6 +163,15 @@ class RunningContext:
         self._execution.stirs += 1
         return self._execution.random.random()
 
+    async def _answer(self, request: Service[R], to: str) -> R:
+        execution = self._execution
+        observed = execution.observed.take(self.path, request, to)
+        if observed is None:
+            return await execution.skills.call(request, to=to, holder=self._holder)
+        if observed.error is not None:
+            raise observed.error
+        return observed.answer
+
     def _stir(self) -> None:
         """Count that the state waits for somebody else, whose answer may be a new one each time."""
         self._execution.waits.add(self.path)
@@ -179,7 +189,7 @@ class RunningContext:
                 time_s=recorder.now_s(),
                 path=self.path,
                 topic=topic,
-                message=msgspec.to_builtins(message),
+                message=without_nonfinite(msgspec.to_builtins(message)),
             )
         )
         return message
@@ -193,7 +203,7 @@ class RunningContext:
                 path=self.path,
                 call=call,
                 address=address,
-                request=msgspec.to_builtins(request),
+                request=without_nonfinite(msgspec.to_builtins(request)),
             )
         )
 
@@ -205,7 +215,7 @@ class RunningContext:
                 time_s=recorder.now_s(),
                 path=self.path,
                 call=call,
-                result=msgspec.to_builtins(answer),
+                result=without_nonfinite(msgspec.to_builtins(answer)),
                 cause=cause,
             )
         )
@@ -219,7 +229,7 @@ class RunningContext:
                 path=self.path,
                 goal=goal_id,
                 address=address,
-                request=msgspec.to_builtins(goal),
+                request=without_nonfinite(msgspec.to_builtins(goal)),
             )
         )
 
@@ -232,7 +242,7 @@ class RunningContext:
                 path=self.path,
                 goal=goal_id,
                 status=end.status.value,
-                result=msgspec.to_builtins(end.result) if end.result is not None else None,
+                result=without_nonfinite(msgspec.to_builtins(end.result)) if end.result is not None else None,
                 cause=end.cause,
             )
         )

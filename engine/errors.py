@@ -42,6 +42,9 @@ class FlexcellError(Exception):
 class DocumentError(FlexcellError):
     """A behavior, cell or entries document cannot be used; `where` is a `Position`."""
 
+    others: tuple[DocumentError, ...] = ()
+    """The other mistakes of the same document, where this is the first of several."""
+
 
 class ExpressionError(FlexcellError):
     """A `${…}` expression does not compile, or failed when evaluated."""
@@ -123,3 +126,7 @@ class CellError(FlexcellError):
 
 class RobotError(FlexcellError):
     """A robot or device reported a fault or lost its connection."""
+
+
+class PathBlocked(RobotError):
+    """Something of the planning scene is in the way of a motion that looks for no other; the message names both."""

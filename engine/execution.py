@@ -17,8 +17,10 @@ from engine.document.duration import LONGEST_S
 from engine.document.step_meter import METER
 from engine.errors import StateError
 from engine.event import Abandoned, UserdataAppended, UserdataWritten
+from engine.observed_answers import ObservedAnswers
 from engine.point import Point
 from engine.recorder import Recorder
+from engine.settle import Settlement
 from engine.skill_port import SkillPort
 from engine.suspension import Suspensions
 from engine.userdata import Scope
@@ -50,6 +52,8 @@ class Execution:
     abandon_after_s: float = 30.0
     """How long a node may take to confirm that it stopped before the run goes on without it."""
     waits: Waits = field(default_factory=Waits)
+    settlement: Settlement = field(default_factory=Settlement)
+    observed: ObservedAnswers = field(default_factory=ObservedAnswers)
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, Point] = field(default_factory=dict[str, Point])
     """Where nodes stood that are gone on with; each is taken once."""

@@ -8,13 +8,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
+from engine.diagnosis import Diagnosis, explain
 from engine.document.count import whole_number
 from engine.document.expression import Template
 from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import StateError, UserdataError
-from engine.event import Transitioned
+from engine.event import Cause, Transitioned
 from engine.execution import Execution
-from engine.node import Entry, Left, Node, explain
+from engine.node import Entry, Node
+from engine.node_exit import ContainerOutcome, Left
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -101,8 +103,9 @@ class ForEach:
         point = entry.point
         items = self.items_of(entry.inputs)
         first = point.round if point is not None else 0
+        diagnosis = Diagnosis(point.cause, point.reason) if point is not None else Diagnosis()
         if point is not None and point.current in FOREACH_OUTCOMES:
-            return Outcome(point.current, cause=point.cause)
+            return diagnosis.outcome(point.current, self.nominal)
         loop = self
         for number in range(first, len(items)):
             resumed = point is not None and number == first and point.values
@@ -115,11 +118,13 @@ class ForEach:
             if goes_on:
                 loop._collect(inner, scope, path, execution)
             self._record(execution, path, left, (EXHAUSTED if last else "child") if goes_on else BROKEN)
+            diagnosis.take(loop.child, left)
             if not goes_on:
                 return Outcome(BROKEN, cause=explain(loop.child, left))
             if number % _FAIRNESS == 0:
                 await asyncio.sleep(0)
-        return Outcome(EXHAUSTED)
+        nothing = Cause(message="there was nothing to go through", where=path)
+        return ContainerOutcome(EXHAUSTED, reason=diagnosis.reason if len(items) else nothing)
 
     def _record(self, execution: Execution, path: str, left: Left, target: str) -> None:
         recorder = execution.recorder

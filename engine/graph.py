@@ -105,8 +105,5 @@ def _ways_out(child: Node) -> Mapping[str, str]:
 def _rules(node: Node) -> tuple[str, ...]:
     if node.concurrency is None:
         return ()
-    rules = [
-        f"{rule.outcome}: " + " and ".join(f"{child}={outcome}" for child, outcome in rule.when.items())
-        for rule in node.concurrency.rules
-    ]
+    rules = [f"{rule.outcome}: {rule}" for rule in node.concurrency.rules]
     return (*rules, *([f"{node.concurrency.otherwise}: otherwise"] if node.concurrency.otherwise else []))

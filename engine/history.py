@@ -11,7 +11,9 @@ from dataclasses import dataclass, field, replace
 from typing import cast
 
 from engine.checkpoint import Checkpoint
+from engine.concurrency import Concurrency, has_ended
 from engine.control.autonomy import AutonomyLevel
+from engine.diagnosis import Diagnosis, explain
 from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import DocumentError
 from engine.event import (
@@ -36,9 +38,11 @@ from engine.grown_lists import GrownLists
 from engine.machine import Machine
 from engine.nearness import near_names
 from engine.node import Node, Work
+from engine.node_exit import Left, guard_closed
 from engine.plan import Plan
 from engine.point import Point
 from engine.priority import Priority
+from engine.reference import Reference
 from engine.tree import Mark, mark_of
 
 BY_OUTCOME = ("operator", "start")
@@ -55,7 +59,7 @@ class _Open:
     attempt: int = 1
     entered: bool = True
     current: str | None = None
-    cause: Cause | None = None
+    diagnosis: Diagnosis = field(default_factory=Diagnosis)
     round: int = 0
     done: list[Mark] = field(default_factory=list[Mark])
 
@@ -68,6 +72,7 @@ class _Left:
     outcome: str | None
     diverted: str | None
     cause: Cause | None
+    reason: Cause | None = None
     passed: bool = False
     attempt: int = 1
     since_s: float = 0.0
@@ -180,6 +185,7 @@ class History:
                 diverted=left.diverted,
                 failed=left.outcome is None and left.diverted is None,
                 cause=left.cause,
+                reason=left.reason,
                 passed=left.passed,
                 attempt=left.attempt,
                 elapsed_s=self.time_s - left.since_s,
@@ -215,7 +221,8 @@ class History:
             elapsed_s=self.time_s - node.since_s,
             inputs=node.inputs,
             current=node.current,
-            cause=node.cause,
+            cause=node.diagnosis.cause,
+            reason=node.diagnosis.reason,
             values=dict(self._scopes.get(scope, {})),
             branches=branches,
             round=node.round,
@@ -283,18 +290,36 @@ class History:
         path = event.path
         self._commit_writes(path)
         node = self._open.pop(path, None)
+        outcome = event.outcome or None
+        reason = self._reason(path, node, outcome)
         self._forget_inside(path)
         if event.preempted:
             return
-        outcome = event.outcome or None
         self._left[path] = _Left(
             event.visit,
             outcome,
             None,
             event.cause,
+            reason,
             attempt=node.attempt if node is not None else 1,
             since_s=node.since_s if node is not None else event.time_s,
         )
+
+    def _reason(self, path: str, node: _Open | None, outcome: str | None) -> Cause | None:
+        """Return how a container came to its outcome, as `engine.node.ContainerOutcome` has it; no event tells it."""
+        work = self._work(path)
+        if work is None or outcome is None:
+            return None
+        if isinstance(work, Concurrency):
+            ended = {name: _as_left(left) for name in work.children if (left := self._left.get(f"{path}/{name}"))}
+            holding = next(
+                (each for each in work.conditions if each.outcome == outcome and each.holds(has_ended(ended))), None
+            )
+            return work.ended(holding, ended).reason if holding is not None else None
+        if isinstance(work, Reference):
+            root = self._left.get(f"{path}/root")
+            return explain(work.target.root, _as_left(root)) if root is not None else None
+        return node.diagnosis.reason if node is not None else None
 
     def _divert(self, event: Diverted) -> None:
         path = event.path
@@ -302,7 +327,8 @@ class History:
         self._forget_inside(path)
         by_outcome = event.by in BY_OUTCOME
         outcome, target = (event.target, None) if by_outcome else (None, event.target)
-        self._left[path] = _Left(event.visit, outcome, target, event.cause)
+        reason = guard_closed(path) if event.by == "guard" else None
+        self._left[path] = _Left(event.visit, outcome, target, event.cause, reason)
 
     def _retry(self, event: Retried) -> None:
         if event.path not in self._plan.nodes:
@@ -318,8 +344,9 @@ class History:
         if container is None:
             return
         container.current = event.target
-        if left is not None and left.cause is not None:
-            container.cause = left.cause
+        child = self._plan.nodes.get(f"{event.path}/{event.source}")
+        if left is not None and child is not None:
+            container.diagnosis.take(child, _as_left(left))
         work = self._work(event.path)
         if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
             container.round += 1
@@ -365,3 +392,7 @@ class History:
         for table in (self._open, self._left, self._scopes):
             for inner in [key for key in table if key.startswith((below, rounds))]:
                 del table[inner]
+
+
+def _as_left(left: _Left) -> Left:
+    return Left(left.outcome or "", left.diverted, left.cause, left.reason)

@@ -102,6 +102,8 @@ def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
             yield f"{path} has other parameters{_when(path, active)}"
         if _conditions(before) != _conditions(after):
             yield f"{path} has other conditions"
+        if _shared(before) != _shared(after):
+            yield f"{path} shares other keys{_when(path, active)}"
         if _measures(before) != _measures(after):
             yield f"{path} has another timeout, retry, guard or on_error{_when(path, active)}"
     for key in new.userdata:
@@ -115,6 +117,10 @@ def _parameters(node: Node) -> object:
 
 def _conditions(node: Node) -> object:
     return node.work.conditions if isinstance(node.work, Concurrency) else None
+
+
+def _shared(node: Node) -> object:
+    return node.work.shared if isinstance(node.work, Concurrency) else None
 
 
 def _measures(node: Node) -> tuple[object, ...]:

@@ -13,9 +13,11 @@ import msgspec
 
 from engine.cell import OpenCell
 from engine.cell_store import absolute_address
+from engine.check import check_given, require_sound
 from engine.checkpoint import Checkpoint
 from engine.control import LEVELS, AutonomyLevel
 from engine.document import Behavior
+from engine.document.cell import Cell
 from engine.errors import ControlError
 from engine.history import History
 from engine.hot_change import plan_change
@@ -120,6 +122,37 @@ def _require_devices(plan: Plan, cell: OpenCell) -> None:
     """Refuse what commands devices while one is lost: its first motion would only fail."""
     if plan.commands_hardware:
         cell.require_connected()
+
+
+def require_simulation(plan: Plan, cell: Cell | None, *, allowed: bool = False) -> None:
+    """Refuse to let others stand in for nodes where a robot of the cell is real, unless that is said.
+
+    Raises:
+        ControlError: a robot is real.
+    """
+    robots = cell.document.robots if cell is not None else {}
+    real = [name for name, entry in robots.items() if not entry.simulated]
+    if plan.stood_in_for and real and not allowed:
+        raise ControlError(
+            f"something stands in for {plan.stood_in_for[0]}, and {real[0]} is a real robot",
+            where=plan.name,
+            hint="run it in a simulated cell; `--substitute-on-robots` runs it here",
+        )
+
+
+def require_names(behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]) -> None:
+    """Refuse a run that names what its cell does not have.
+
+    Args:
+        behavior: What is to run.
+        catalogue: The states by name.
+        cell: Where.
+        parameters: What the run is given.
+
+    Raises:
+        DocumentError: a robot, part, frame or another thing is not in the cell; `where` is the position.
+    """
+    require_sound(check_given(behavior, catalogue, cell, parameters))
 
 
 @dataclass(frozen=True, kw_only=True)

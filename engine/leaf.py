@@ -20,6 +20,7 @@ from engine.errors import FlexcellError, StateError, UserdataError
 from engine.execution import Execution
 from engine.nearness import near_names
 from engine.node import Entry, Node
+from engine.nonfinite import without_nonfinite
 from engine.state import Context, Outcome, State
 from engine.userdata import Scope
 
@@ -35,11 +36,8 @@ class Leaf:
     outputs: Mapping[str, str]
     position: str
     autonomy: Mapping[str, str] = field(default_factory=dict[str, str])
-
-    @property
-    def kind(self) -> str:
-        """The key of this node in documents."""
-        return "state"
+    kind: str = "state"
+    """The key of this node in documents, or that it stands in for another."""
 
     @property
     def children(self) -> Mapping[str, Node]:
@@ -67,7 +65,12 @@ class Leaf:
     @cached_property
     def commands_hardware(self) -> bool:
         """Whether its class leases anything while it runs."""
-        return self.state.resources is not State.resources
+        return self.signature.commands_hardware
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The userdata keys, as its container names them, that its parameters and inputs are made of."""
+        return frozenset(self.parameters.names).union(self.inputs.get(key, key) for key in self.signature.inputs)
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Nothing: it has no scope of its own."""
@@ -192,4 +195,4 @@ def _mapping(given: object) -> dict[str, object]:
 
 
 def _plain(value: object) -> dict[str, object]:
-    return msgspec.to_builtins(value)
+    return without_nonfinite(msgspec.to_builtins(value))

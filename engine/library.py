@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
 
-from engine.check import Finding, check_behavior, read_beside
-from engine.document import Behavior, Parameter, load_behavior, load_source
+from engine.check import Finding, check_survey, invalid, read_beside
+from engine.document import Behavior, Parameter, load_source, survey_behavior
 from engine.document.collection_pause import without_collection
 from engine.errors import DocumentError, Position
 from engine.graph import GraphNode, new_graph
@@ -149,10 +149,13 @@ class Library:
             data = load_source(file).data
             if isinstance(data, dict) and "root" not in data:
                 return _Read(stamps=stamps, view=BehaviorView(id="", name="", description=""), behavior=None)
-            behavior = load_behavior(file)
         except DocumentError as error:
-            return _Read(stamps=stamps, view=_unreadable(behavior_id, error), behavior=None)
-        findings = check_behavior(behavior, self.catalogue)
+            return _Read(stamps=stamps, view=_unreadable(behavior_id, (invalid(error, file),)), behavior=None)
+        survey = survey_behavior(file)
+        findings = check_survey(survey, file, self.catalogue)
+        behavior = survey.behavior
+        if behavior is None or survey.mistakes or survey.circles:
+            return _Read(stamps=stamps, view=_unreadable(behavior_id, findings), behavior=None)
         others = [inner.file for inner in _all_references(behavior)]
         stamps |= {other: _stamp(other) for other in (*others, *read_beside(behavior))}
         return _Read(stamps=stamps, view=self._view(behavior_id, behavior, findings), behavior=behavior)
@@ -205,15 +208,6 @@ def _finding(finding: Finding) -> FindingView:
     )
 
 
-def _unreadable(behavior_id: str, error: DocumentError) -> BehaviorView:
-    line, column = (error.where.line, error.where.column) if isinstance(error.where, Position) else (1, 1)
-    finding = FindingView(
-        severity="error",
-        code="invalid-document",
-        message=error.message,
-        path="",
-        line=line,
-        column=column,
-        hint=error.hint or "",
-    )
-    return BehaviorView(id=behavior_id, name=Path(behavior_id).name, description="", findings=(finding,))
+def _unreadable(behavior_id: str, findings: Sequence[Finding]) -> BehaviorView:
+    views = tuple(map(_finding, findings))
+    return BehaviorView(id=behavior_id, name=Path(behavior_id).name, description="", findings=views)

@@ -7,11 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from engine.diagnosis import Diagnosis
 from engine.errors import StateError
-from engine.event import Cause, Transitioned
+from engine.event import Transitioned
 from engine.execution import Execution
 from engine.nearness import near_names
-from engine.node import NOTHING, Entry, Left, Node, explain
+from engine.node import NOTHING, Entry, Node
+from engine.node_exit import Left
 from engine.standstill import Standstill
 from engine.state import Outcome
 from engine.userdata import Scope
@@ -63,9 +65,9 @@ class Machine:
         point = entry.point
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
         name = point.current if point is not None and point.current is not None else self.initial
-        went_wrong: Cause | None = point.cause if point is not None else None
+        diagnosis = Diagnosis(point.cause, point.reason) if point is not None else Diagnosis()
         if name not in self.children:
-            return Outcome(name, cause=None if name in self.nominal else went_wrong)
+            return diagnosis.outcome(name, self.nominal)
         laps = Laps(path, execution.waits, execution.clock)
         standstill = Standstill(path, execution) if execution.clock.virtual else None
         machine = self
@@ -74,12 +76,11 @@ class Machine:
             # After a hot change the transitions are those of the new version.
             machine = execution.latest(f"{path}/", machine)
             child = machine.children[name]
-            if left.cause is not None or (left.outcome and left.outcome not in child.work.nominal):
-                went_wrong = explain(child, left)
+            diagnosis.take(child, left)
             target = machine._target(child, left)
             self._record(execution, path, name, left.outcome, target)
             if target not in machine.children:
-                return Outcome(target, cause=None if target in machine.nominal else went_wrong)
+                return diagnosis.outcome(target, machine.nominal)
             if laps.step(most=execution.instant_limit):
                 await asyncio.sleep(0)
                 if laps.count >= execution.instant_limit:

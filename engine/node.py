@@ -11,8 +11,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Protocol
 
-import msgspec
-
 from engine.cause import cause_of, describe, under, whole_text
 from engine.control.gate import Order
 from engine.document.duration import LONGEST_S
@@ -21,23 +19,15 @@ from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopp
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
 from engine.measure import Guard, Retry, Timeout
+from engine.node_exit import ContainerOutcome, Left, guard_closed
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, goes_on, preempt
-from engine.settle import settle
 from engine.state import Outcome, State
 from engine.userdata import Scope
 
 _FAIRNESS = 256
 """Repetitions in a row without a wait after which everybody else has a turn."""
 _MOST_DOUBLED = 60
-
-
-class Left(msgspec.Struct, frozen=True):
-    """How a node was left: with an outcome, or straight to a target (timeout, guard, on_error)."""
-
-    outcome: str
-    target: str | None = None
-    cause: Cause | None = None
 
 
 @dataclass(frozen=True)
@@ -118,6 +108,11 @@ class Node:
         return tuple(dict.fromkeys(own))
 
     @cached_property
+    def has_choice(self) -> bool:
+        """Whether its good ends lead to different targets inside a machine."""
+        return len({self.transitions[each] for each in self.work.nominal if each in self.transitions}) > 1
+
+    @cached_property
     def _plain(self) -> bool:
         return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
 
@@ -171,7 +166,7 @@ class Node:
         if point.failed:
             # It had ended with this error, and nobody had handled it when the engine died.
             raise StateError(point.cause.message if point.cause is not None else "failed", where=self.path)
-        return Left(point.left or "", point.diverted, point.cause)
+        return Left(point.left or "", point.diverted, point.cause, point.reason)
 
     async def _after(self, left: Left, scope: Scope, execution: Execution) -> Order | None:
         visit = execution.visits.get(self.path, 0)
@@ -193,9 +188,9 @@ class Node:
 
     async def _guarded(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         try:
-            if self.guard is not None and point is None and not self._open(self.guard, scope, execution):
+            if self.guard is not None and point is None and not self.is_open(self.guard, scope, execution):
                 self._record_diverted(execution, "guard", self.guard.target, None)
-                return Left("", self.guard.target)
+                return Left("", self.guard.target, reason=guard_closed(self.path))
             if self.timeout is None:
                 return await self._retried(scope, execution, point)
             return await self._timed(self.timeout, scope, execution, point)
@@ -209,7 +204,8 @@ class Node:
             self._record_diverted(execution, "on_error", self.on_error, cause)
             return Left("", self.on_error, cause)
 
-    def _open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
+    def is_open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
+        """Evaluate a guard of this node; raises FlexcellError where it gives no truth value."""
         where = self.position or self.path
         with execution.counted():
             value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
@@ -219,14 +215,14 @@ class Node:
 
     async def _timed(self, timeout: Timeout, scope: Scope, execution: Execution, point: Point | None) -> Left:
         # A task of its own: a stop and a timeout may come together, and clean-up must be cut by neither.
-        body = execution.activity.branch(self.path, self._retried(scope, execution, point), body=True)
         elapsed_s = point.elapsed_s if point is not None else 0.0
         timer = execution.suspensions.timer(self.path, max(0.0, timeout.after_s - elapsed_s))
+        body = execution.activity.branch(self.path, self._retried(scope, execution, point), body=True)
         try:
             await asyncio.wait({body, timer.future}, return_when=asyncio.FIRST_COMPLETED)
             if not body.done():
                 # What ends at this very instant is in time; everything inside decides before we do.
-                await settle(depth=self.path.count("/") - 0.5)
+                await execution.settlement.settled(depth=self.path.count("/") - 0.5)
         except asyncio.CancelledError:
             await preempt((body,), overdue(execution, self.path))
             raise
@@ -328,7 +324,8 @@ class Node:
             self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError
         self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
-        return Left(outcome.name, None, outcome.cause)
+        reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
+        return Left(outcome.name, None, outcome.cause, reason)
 
     def _entered(self, scope: Scope, execution: Execution) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""
@@ -402,9 +399,3 @@ def overdue(execution: Execution, path: str) -> Overdue:
         abandon_after_s=execution.abandon_after_s + grace_s,
         stands_still=execution.suspensions.held,
     )
-
-
-def explain(child: Node, left: Left) -> Cause:
-    """Return why a container failed through this child."""
-    said = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
-    return under(said, left.cause, where=child.path)

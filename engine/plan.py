@@ -13,6 +13,7 @@ from engine.document.collection_pause import without_collection
 from engine.document.expression import Template, compile_template
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.signature import read_signature
+from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.foreach import ForEach
 from engine.leaf import Leaf
@@ -21,6 +22,7 @@ from engine.nearness import near_names
 from engine.node import Node, Work
 from engine.priority import Priority
 from engine.reference import Reference
+from engine.stand_in import SUBSTITUTE, require_used, stand_in_for
 from engine.state import State
 from engine.state_catalogue import Catalogue, find_state
 from engine.tree import new_tree
@@ -40,6 +42,7 @@ class Plan:
     success: tuple[str, ...]
     parameters: Mapping[str, Parameter]
     userdata: Mapping[str, object]
+    substitutes: Substitutes | None = None
 
     @cached_property
     def nodes(self) -> Mapping[str, Node]:
@@ -56,6 +59,11 @@ class Plan:
     def commands_hardware(self) -> bool:
         """Whether any of its states commands a device."""
         return any(isinstance(node.work, Leaf) and node.work.commands_hardware for node in self.nodes.values())
+
+    @cached_property
+    def stood_in_for(self) -> tuple[str, ...]:
+        """The nodes that something stands in for, in document order."""
+        return tuple(path for path, node in self.nodes.items() if node.work.kind == SUBSTITUTE)
 
     def outcomes_of(self, path: str) -> tuple[str, ...] | None:
         """Return the outcomes that the node at `path` can have; None where there is no such node."""
@@ -87,20 +95,30 @@ class Plan:
 
 
 @without_collection
-def new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str = "root") -> Plan:
-    """Make a behavior executable; `path` is that of its root node.
+def new_plan(behavior: document.Behavior, catalogue: Catalogue) -> Plan:
+    """Make a behavior executable, with the substitutes that it has.
 
     Raises:
-        DocumentError: a state is unknown, or an expression does not compile; `where` is the position.
+        DocumentError: a state is unknown, an expression does not compile, or a substitute fits nothing; `where` is the
+            position.
     """
+    plan = _new_plan(behavior, catalogue, path="root", substitutes=behavior.substitutes)
+    if behavior.substitutes is not None:
+        require_used(behavior.substitutes, plan.nodes)
+    return plan
+
+
+def _new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str, substitutes: Substitutes | None) -> Plan:
+    """Plan a behavior whose root has a path."""
     return Plan(
         name=behavior.name,
         document_hash=behavior.meaning,
-        root=_Planner(behavior, catalogue, path).node("root", "root", behavior.root),
+        root=_Planner(behavior, catalogue, path, substitutes).node("root", "root", behavior.root),
         outcomes=behavior.outcomes,
         success=behavior.success,
         parameters=behavior.parameters,
         userdata=behavior.document.userdata,
+        substitutes=substitutes,
     )
 
 
@@ -109,6 +127,7 @@ class _Planner:
     behavior: document.Behavior
     catalogue: Catalogue
     base: str
+    substitutes: Substitutes | None
 
     def node(self, name: str, inside: str, node: nodes.Node) -> Node:
         """Plan one node; `inside` is its path in its own document."""
@@ -124,10 +143,12 @@ class _Planner:
         if node.kind not in makers:
             where = self.behavior.position(inside)
             raise DocumentError(f"`{node.kind}` cannot be run yet", where=where, hint="use a machine")
+        path = self.base + inside.removeprefix("root")
+        work = makers[node.kind](inside, node)
         return Node(
-            path=self.base + inside.removeprefix("root"),
+            path=path,
             name=name,
-            work=makers[node.kind](inside, node),
+            work=work if self.substitutes is None else stand_in_for(path, work, self.substitutes, self.catalogue),
             transitions=node.transitions,
             timeout=_timeout(node.timeout),
             retry=_retry(node.retry) if node.retry else None,
@@ -187,12 +208,12 @@ class _Planner:
 
     def _concurrency(self, inside: str, node: nodes.Node) -> Work:
         container = node.concurrency
-        rules = container.rules if container else ()
         return concurrency.Concurrency(
             children=self._children(inside, node),
-            conditions=tuple(concurrency.Condition(outcome=rule.outcome, when=rule.when) for rule in rules),
+            conditions=container.rules if container else (),
             otherwise=container.otherwise if container else None,
             userdata=node.userdata,
+            shared=frozenset(container.shared) if container else frozenset(),
         )
 
     def _leaf(self, inside: str, node: nodes.Node) -> Work:
@@ -219,7 +240,7 @@ class _Planner:
         target = self.behavior.references[node.behavior or ""]
         below = self.base + inside.removeprefix("root")
         return Reference(
-            target=new_plan(target, self.catalogue, path=f"{below}/root"),
+            target=_new_plan(target, self.catalogue, path=f"{below}/root", substitutes=self.substitutes),
             parameters=self._template(inside, node.parameters, "with"),
             inputs=node.inputs,
             outputs=node.outputs,

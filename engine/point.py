@@ -26,6 +26,9 @@ class Point:
     failed: bool = False
     """It ended with the error `cause`, which nobody had handled yet."""
     cause: Cause | None = None
+    """What went wrong last: in it where it has left, among its children where it is active."""
+    reason: Cause | None = None
+    """How it came to its outcome, or what decided the course of its children, where nothing went wrong."""
     passed: bool = False
     attempt: int = 1
     elapsed_s: float = 0.0

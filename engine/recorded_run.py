@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
-from engine.document import Behavior, load_behavior
+from engine.document import Behavior
+from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, FlexcellError, JournalError
 from engine.event import AnyEvent, BehaviorChanged, Event, RunStarted
 from engine.journal import RunOrigin, RunRecord, WorldState, journal_path, open_snapshot
-from engine.recording import Documents, collect_documents
+from engine.recording import Documents, collect_documents, recorded_behavior, recorded_substitutes
 from engine.resume import effective
 
 
@@ -61,12 +61,21 @@ class RecordedRun:
         Raises:
             FlexcellError: the stored documents are damaged.
         """
-        origin = self.origin
-        if not origin.documents:
-            return None
-        texts = {name: text.encode() for name, text in origin.documents.items()}
-        with TemporaryDirectory(prefix="flexcell-") as folder:
-            return load_behavior(Documents(behavior=origin.document, texts=texts).unpack(Path(folder)))
+        return recorded_behavior(self._documents) if self.origin.documents else None
+
+    @property
+    def substitutes(self) -> Substitutes | None:
+        """What stood in for nodes of its behavior; None for nothing.
+
+        Raises:
+            DocumentError: the document is damaged.
+        """
+        return recorded_substitutes(self._documents)
+
+    @property
+    def _documents(self) -> Documents:
+        texts = {name: text.encode() for name, text in self.origin.documents.items()}
+        return Documents(behavior=self.origin.document, texts=texts)
 
 
 def read_run(place: Path | str, run_id: str) -> RecordedRun:

@@ -9,9 +9,11 @@ from typing import Protocol
 
 import msgspec
 
+from engine.diagnosis import explain
 from engine.document.expression import Template
 from engine.execution import Execution
-from engine.node import Entry, Node, explain
+from engine.node import Entry, Node
+from engine.node_exit import ContainerOutcome
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -96,4 +98,5 @@ class Reference:
             with execution.counted():
                 value = inner.read(key, reader=self.position)
             execution.write(path, scope, outer, value)
-        return Outcome(name, cause=None if name in self.nominal else explain(self.target.root, left))
+        why = explain(self.target.root, left)
+        return ContainerOutcome(name, cause=None if name in self.nominal else why, reason=why)

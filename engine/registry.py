@@ -1,9 +1,10 @@
 """Finds states, worlds, drivers and servers by name, through the entry points of installed packages.
 
 Groups: `flexcell.states` (a mapping of state name → class), `flexcell.worlds` and
-`flexcell.drivers` (a maker per `kind`), `flexcell.servers`. A user's own states stand in modules
-that the project file allows, and are found as `module:Class`. `load_states` is the one place where
-such modules are imported: at the start of a command or server, never because a document names them.
+`flexcell.drivers` (a maker per `kind`), `flexcell.servers`, `flexcell.models` (see
+`engine.robot_models`). A user's own states stand in modules that the project file allows, and are
+found as `module:Class`. `load_states` is the one place where such modules are imported: at the
+start of a command or server, never because a document names them.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ STATES = "flexcell.states"
 WORLDS = "flexcell.worlds"
 DRIVERS = "flexcell.drivers"
 SERVERS = "flexcell.servers"
+MODELS = "flexcell.models"
 
 
 def load_states(start: Path | None = None) -> StateCatalogue:
@@ -68,6 +70,11 @@ def state_by_path(name: str) -> type[State]:
         hint = near_names(class_name, _states_of(module))
         raise RegistryError("this is not a subclass of engine.state.State", where=name, hint=hint)
     return found
+
+
+def registered(group: str) -> tuple[str, ...]:
+    """Return the names that installed packages register in a group, sorted; nothing is loaded."""
+    return tuple(sorted(point.name for point in entry_points(group=group)))
 
 
 def load_maker(group: str, kind: str) -> Any:

@@ -19,6 +19,7 @@ from engine.node import Node
 from engine.node_path import inside
 from engine.plan import Plan
 from engine.point import Point
+from engine.stand_in import SUBSTITUTE
 
 RERUN, ASK = "rerun", "ask"
 
@@ -175,7 +176,7 @@ def last_entered(events: Iterable[Event], seq: int) -> str:
     for event in events:
         if event.seq > seq:
             break
-        if isinstance(event, Entered) and event.kind == "state":
+        if isinstance(event, Entered) and event.kind in ("state", SUBSTITUTE):
             found = event.path
     if not found:
         raise DocumentError(f"no state was entered before event {seq}", hint="choose a later one")

@@ -13,12 +13,14 @@ from engine.bus import SkillBus
 from engine.cause import cause_of, describe, under
 from engine.checkpoint import Checkpoint
 from engine.control import Control, Gate
+from engine.diagnosis import explain
 from engine.errors import ControlError, FlexcellError, JournalError, NotStopped
 from engine.event import Cause, RunEnded
 from engine.execution import Execution
 from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
-from engine.node import Left, Node, explain, log
+from engine.node import Node, log
+from engine.node_exit import Left
 from engine.plan import Plan
 from engine.preemption import preempt_for_good
 from engine.recorder import Recorder, Watcher
@@ -41,6 +43,8 @@ class RunResult:
     cause: Cause | None
     duration_s: float
     userdata: Mapping[str, object]
+    stood_in_for: tuple[str, ...] = ()
+    """The nodes that did nothing, as a test has put something in their place."""
     abandoned: tuple[str, ...] = ()
     """States that did not end when told to; what they command may still move and stays leased."""
 
@@ -246,6 +250,7 @@ class Run:
             cause=end.cause,
             duration_s=round(self._execution.clock.now_s() - started_s, 6),
             userdata=scope.own_values(),
+            stood_in_for=self.plan.stood_in_for,
             abandoned=tuple(self._execution.abandoned),
         )
 
@@ -254,7 +259,8 @@ class Run:
             self._log.stop_requested(self._stop_reason)
             return "stopped" if self._failure is None else "errored", None, self._stopped()
         root = self.plan.root
-        self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
+        with self._execution.settlement.owned():
+            self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
         try:
             while not self._task.done():
                 try:
@@ -324,6 +330,7 @@ class Run:
             gate=self._execution.gate,
             suspensions=self._execution.suspensions,
             activity=self._execution.activity,
+            settlement=self._execution.settlement,
             recorder=self._recorder,
             structure=self,
             stop=self.stop,

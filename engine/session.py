@@ -18,13 +18,23 @@ from engine.control import Breakpoint, Control, load_breakpoints, save_breakpoin
 from engine.document import Behavior
 from engine.document.collection_pause import without_collection
 from engine.document.faults import Faults
+from engine.document.substitutes import Substitutes
 from engine.editing import Documents
 from engine.errors import ControlError, FlexcellError
 from engine.event import Event
 from engine.faults import FaultPort
 from engine.hot_change import ChangeReport
 from engine.journal import Journal, RunRecord, list_runs
-from engine.launch import Moment, moment_of, new_origin, new_run, plan_resume, resume_run
+from engine.launch import (
+    Moment,
+    moment_of,
+    new_origin,
+    new_run,
+    plan_resume,
+    require_names,
+    require_simulation,
+    resume_run,
+)
 from engine.library import BehaviorView, Library
 from engine.nearness import near_names
 from engine.plan import Catalogue, Plan, new_plan
@@ -57,7 +67,7 @@ class Session:
         self.cell = cell
         self._library = Library(project, catalogue)
         self._entries = StoredEntries(cell)
-        self.documents = Documents(project, catalogue, stored=self._entries.of_cell)
+        self.documents = Documents(project, catalogue, stored=self._entries.of_cell, cell=cell.document)
         self.archive = Archive(project, catalogue, journal.path)
         self._journal = journal
         self._recordings = recordings
@@ -154,6 +164,9 @@ class Session:
             checkpoint = moment_of(found, plan, seq=begin.seq, path=begin.path)
             known = {name: value for name, value in checkpoint.parameters.items() if name in plan.parameters}
             parameters = {**known, **parameters}
+        if self.cell.document is not None:
+            catalogue = self._library.catalogue
+            await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
         # Before the run, whose clock goes from here on.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         run = new_run(
@@ -193,7 +206,8 @@ class Session:
             there = found.origin.cell or "no cell"
             raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
         catalogue = self._library.catalogue
-        behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
+        behavior, plan = await asyncio.to_thread(self._planned, behavior_id, found.substitutes)
+        require_simulation(plan, self.cell.document)
         # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
         alone = all(started.result is not None for started in self._runs.values())
@@ -250,14 +264,14 @@ class Session:
         """
         self.control(run_id)
         started = self._known(run_id)
-        _, plan = await asyncio.to_thread(self._planned, started.behavior_id)
+        _, plan = await asyncio.to_thread(self._planned, started.behavior_id, started.run.plan.substitutes)
         self.control(run_id)
         return started.run.change(plan)
 
     @without_collection
-    def _planned(self, behavior_id: str) -> tuple[Behavior, Plan]:
+    def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
         """Read, check and plan a behavior: on a thread, for it may be large."""
-        behavior = self._library.behavior(behavior_id)
+        behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)
         return behavior, new_plan(behavior, self._library.catalogue)
 
     async def stop(self, run_id: str, *, reason: str) -> None:

@@ -6,6 +6,7 @@ injected, without the states or the bus knowing.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import msgspec
@@ -44,6 +45,14 @@ class Goal(Protocol):
         ...
 
 
+class ToldEntries(Protocol):
+    """Of a run that is told again: when each node is entered is known, so nobody has to observe anything for it."""
+
+    def expect(self, path: str, visit: int, wake: Callable[[], None]) -> Callable[[], None]:
+        """Call `wake` when the node at `path` is due to be entered the `visit`-th time; returns what forgets that."""
+        ...
+
+
 class SkillPort(Protocol):
     """What a run asks of its surroundings; `holder.branch` is the path of the state that asks."""
 
@@ -61,6 +70,15 @@ class SkillPort(Protocol):
 
     async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
         """Wait for the next message of a topic."""
+        ...
+
+    def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call back at each new message of a topic that was read; returns what ends it."""
+        ...
+
+    @property
+    def entries(self) -> ToldEntries | None:
+        """Those of the recording that stands in for the cell; None where nothing does."""
         ...
 
 
@@ -100,3 +118,12 @@ class BusPort:
         """Wait for the next message of a topic."""
         with self._bus.topic(topic, kind).stream(size=1) as stream:
             return await stream.next()
+
+    def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call back at each new message of a topic that was read; returns what ends it."""
+        return self._bus.find_topic(topic).subscribe(lambda _: callback()).close
+
+    @property
+    def entries(self) -> ToldEntries | None:
+        """None: what comes is not known."""
+        return None

@@ -123,6 +123,9 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     hardware and an operator is demanded, else rerun."""
     instant: ClassVar[bool] = False
     """True when it waits for nothing, and parameters and inputs alone decide its outcome; loops of them are found."""
+    observes: ClassVar[bool] = False
+    """True when it only reads what others measure, at little cost and without an effect: a behavior tree then asks it
+    again on its own while what stands behind it is at work, and no event tells of that unless the answer changes."""
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = _ALWAYS_WRITTEN
     """Outcome → output keys that are not written with it; the check takes all others for written."""
 

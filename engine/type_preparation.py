@@ -13,15 +13,19 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from threading import RLock
 from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from importlib.abc import Loader, MetaPathFinder
+
     # Loaded with the first module that defines a type: the command that stops a cell does without.
     from msgspec import Struct, StructMeta
+else:
+    # The classes themselves would be a third of what that command imports.
+    Loader = MetaPathFinder = object
 
 _lock = RLock()
 _waiting: list[StructMeta] = []

@@ -2,8 +2,9 @@
 
 A read looks outward from the innermost container; a write goes to the nearest scope that has
 the key, else it makes the key in the innermost one. A branch of a concurrency container writes
-into a scope of its own that is merged, in document order, when the container finishes. A
-behavior reference is a wall: only what `in` and `out` name passes.
+into a scope of its own that is merged, in document order, when the container finishes; keys that
+the container shares are written where they live around it. A behavior reference is a wall: only
+what `in` and `out` name passes.
 """
 
 from __future__ import annotations
@@ -25,17 +26,32 @@ _COPY_ITEM = 0.3
 
 
 class Scope:
-    """The values of one container while it is active."""
+    """The values of one container while it is active.
 
-    __slots__ = ("_grown", "_isolated", "_values", "parent", "path")
+    Args:
+        path: The path of the container; that of a branch has `*` behind it.
+        values: What it begins with.
+        parent: The scope around it.
+        isolated: Whether what is written inside stays in it, as in a branch.
+        shared: The keys that do not stay in an isolated one.
+    """
+
+    __slots__ = ("_grown", "_isolated", "_shared", "_values", "parent", "path")
 
     def __init__(
-        self, path: str, values: Mapping[str, object], parent: Scope | None = None, *, isolated: bool = False
+        self,
+        path: str,
+        values: Mapping[str, object],
+        parent: Scope | None = None,
+        *,
+        isolated: bool = False,
+        shared: frozenset[str] = frozenset(),
     ) -> None:
         self.path = path
         self.parent = parent
         self._values = dict(values)
         self._isolated = isolated
+        self._shared = shared
         self._grown: GrownLists | None = None
 
     def read(self, key: str, *, reader: str) -> object:
@@ -108,11 +124,14 @@ class Scope:
 
     def _owner(self, key: str) -> Scope | None:
         scope: Scope | None = self
+        among: Scope | None = None
         while scope is not None:
-            if key in scope._values or scope._isolated:
+            if key in scope._values or (scope._isolated and key not in scope._shared):
                 return scope
+            if scope._isolated and among is None:
+                among = scope.parent
             scope = scope.parent
-        return None
+        return among
 
 
 def detached(value: object) -> object:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from engine.cause import under
+from engine.errors import PathBlocked
 from engine.event import Cause
 from engine.skill import Action
 from engine.state import ActionEnd
 
+_BLOCKED = PathBlocked.__name__
 _NO_REASON = {
     "canceled": "the goal was cancelled by somebody other than this state",
     "rejected": "the device gave no reason for refusing it",
@@ -29,3 +31,8 @@ def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: st
     skill = goal.skill_name()
     fallback = Cause(message=_NO_REASON.get(end.status, "the device gave no reason"), where=f"{to}/{skill}")
     return under(f"{what}: {skill} was {end.status}", end.cause or fallback, where=where, kind=kind)
+
+
+def is_path_blocked(end: ActionEnd[Any]) -> bool:
+    """Tell whether a goal was refused because something of the planning scene is in its way."""
+    return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

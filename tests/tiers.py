@@ -34,9 +34,9 @@ FOLDERS = {
 FILES = {"tests/editor_web/test_frontend.py": "process", "tests/house/test_audit.py": "process"}
 
 
-def nightly(value: object) -> ParameterSet:
-    """Make a value of a parametrized test one of those that only run with `--nightly`."""
-    return pytest.param(value, marks=pytest.mark.nightly)
+def nightly(*values: object) -> ParameterSet:
+    """Make a value of a parametrized test, or those of one row, one of those that only run with `--nightly`."""
+    return pytest.param(*values, marks=pytest.mark.nightly)
 
 
 @cache

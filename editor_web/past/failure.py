@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 import msgspec
 
 from editor_web.event_words import LogLine, log_line
+from engine.cause import outwards
 from engine.errors import FlexcellError
 from engine.event import Cause, Diverted, Entered, Event, Exited, RunEnded
 
@@ -17,7 +18,7 @@ _AROUND_KINDS = frozenset(
 
 
 class FailureLink(msgspec.Struct, frozen=True, kw_only=True):
-    """One link of the chain of causes, outermost first; `hint` says what to do about it, may be empty."""
+    """One link of the chain of causes, what was measured first; `hint` says what to do about it, may be empty."""
 
     message: str
     where: str
@@ -55,16 +56,16 @@ def failure_of(events: Sequence[Event], *, is_failed: bool) -> Failure | None:
     end = events[-1] if events else None
     if not isinstance(end, RunEnded) or not is_failed:
         return None
-    links = tuple(map(_link, end.cause.chain())) if end.cause is not None else ()
+    links = tuple(map(_link, outwards(end.cause)))
     origin = _origin(events, end)
     path = _path(origin)
-    last = links[-1] if links else None
+    first = links[0] if links else None
     return Failure(
         seq=origin.seq,
         time_s=origin.time_s,
         path=path,
-        text=last.message if last is not None else log_line(end).text,
-        hint=next((link.hint for link in reversed(links) if link.hint), ""),
+        text=first.message if first is not None else log_line(end).text,
+        hint=next((link.hint for link in links if link.hint), ""),
         links=links,
         steps=tuple(_steps(events, path, origin.seq)),
         around=_around(events, path, origin.seq),
@@ -75,7 +76,9 @@ def _origin(events: Sequence[Event], end: RunEnded) -> Event:
     """Return the event that began it: the deepest and earliest one of the same cause, in the last visit of its node."""
     if end.cause is not None:
         root = end.cause.chain()[-1]
-        found = _innermost(events, lambda event: _root_of(event) == root)
+        found = _innermost(events, lambda event: _root_of(event) == root) or _innermost(
+            events, lambda event: _is_end_of_node(event) and _path(event) == root.where
+        )
         if found is not None:
             return found
     return _innermost(events, _is_end_of_node) or end

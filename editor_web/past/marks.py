@@ -70,7 +70,7 @@ def mark_of(event: Event) -> TimeMark | None:
     line = log_line(event)
     text = f"ended with {event.outcome or 'an error'}" if isinstance(event, Exited) else line.text
     if line.causes:
-        text = f"{text}: {line.causes[-1].message}"
+        text = f"{text}: {line.causes[0].message}"
     return TimeMark(seq=event.seq, time_s=event.time_s, kind=kind, path=line.path, text=text)
 
 

@@ -1,4 +1,4 @@
-"""What can be put into a behavior: states, containers, other behaviors, entries of the cell's store."""
+"""What can be put into a behavior: states, containers, other behaviors, entries and names of the cell."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ def _catalogue(services: Services, entries: tuple[EntryBody, ...]) -> CatalogueB
         containers=tuple(ContainerBody.model_validate(each) for each in container_views()),
         behaviors=tuple(ReferableBody.model_validate(each) for each in services.documents.referable()),
         entries=entries,
+        names={str(kind): names for kind, names in services.documents.offered().items()},
     )
 
 

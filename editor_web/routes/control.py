@@ -46,84 +46,86 @@ async def _control_of(run_id: str, services: ServicesOf) -> Control:
 ControlOf = Annotated[Control, Depends(_control_of)]
 
 
-def _seen(control: Control) -> ControlBody:
+async def _seen(control: Control) -> ControlBody:
+    """Return what an operator sees once everything has happened that a command makes happen at once."""
+    await control.settled()
     return ControlBody.model_validate(control.view())
 
 
 @router.get("/{run_id}/control")
 async def get_control(control: ControlOf) -> ControlBody:
     """Return where a run waits, what is locked, and whether it is paused."""
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/pause")
 async def pause(control: ControlOf) -> ControlBody:
     """Hold every goal and timer; `confirmed` says when everything rests."""
     control.pause()
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/resume")
 async def resume(control: ControlOf) -> ControlBody:
     """Let a paused run go on."""
     control.resume()
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/step")
 async def step(control: ControlOf, body: StepBody) -> ControlBody:
     """Let a paused run make one step."""
     control.step(body.mode, body.path)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/lock")
 async def lock(control: ControlOf, body: LockBody) -> ControlBody:
     """Hold the outcome of a node."""
     control.lock(body.path, body.reason)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/unlock")
 async def unlock(control: ControlOf, body: NodeBody) -> ControlBody:
     """Let the outcome of a locked node pass."""
     control.unlock(body.path)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/force")
 async def force(control: ControlOf, body: ForceBody) -> ControlBody:
     """End a node with an outcome; what runs in it is preempted."""
     control.force(body.path, body.outcome)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/repeat")
 async def repeat(control: ControlOf, body: NodeBody) -> ControlBody:
     """Run a node again; what runs in it is preempted first."""
     control.repeat(body.path)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/answer")
 async def answer(control: ControlOf, body: NodeBody) -> ControlBody:
     """Agree to the outcome that a node has requested."""
     control.answer(body.path)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/autonomy")
 async def set_autonomy(control: ControlOf, body: AutonomyBody) -> ControlBody:
     """Set which outcomes pass without being asked for."""
     control.set_autonomy(body.level)
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/breakpoints")
 async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlBody:
     """Replace all breakpoints of a run."""
     control.set_breakpoints(await run_in_threadpool(made_breakpoints, body))
-    return _seen(control)
+    return await _seen(control)
 
 
 @router.post("/{run_id}/control/change")

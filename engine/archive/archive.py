@@ -5,21 +5,20 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import msgspec
 
 from engine.archive.past_runs import PastRun, PastRuns, is_success
 from engine.archive.recording_files import RecordingFile, recording_files, recording_path
 from engine.cause import describe
-from engine.document import Behavior, load_behavior
+from engine.document import Behavior
 from engine.errors import FlexcellError, JournalError
 from engine.event import AnyEvent, RunEnded
 from engine.graph import new_graph
 from engine.journal import journal_path, read_events, read_origin
 from engine.library import BehaviorView
 from engine.plan import Catalogue, Plan, new_plan
-from engine.recording import Documents, load_recording
+from engine.recording import Documents, load_recording, recorded_behavior
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,9 +158,8 @@ class Archive:
 
     def _read(self, documents: Documents, name: str) -> _Executed:
         try:
-            with TemporaryDirectory(prefix="flexcell-") as folder:
-                behavior = load_behavior(documents.unpack(Path(folder)))
-                view = self._drawn(behavior, documents.behavior)
+            behavior = recorded_behavior(documents)
+            view = self._drawn(behavior, documents.behavior)
         except FlexcellError:
             # Its events can be looked at all the same.
             return _Executed(view=_unknown(name))

@@ -9,8 +9,8 @@ from engine.authoring.place import calling_position
 from engine.authoring.plain import as_plain
 from engine.authoring.step import Step, StepKeys, TreePart, given, new_step
 
-Rule = tuple[str, Mapping[str, str]]
-"""`("finished", {"left": "reached", "right": "reached"})`: the outcome, and what it takes."""
+Rule = tuple[str, Mapping[str, str | int]]
+"""`("finished", {"left": "reached", "right": "reached"})`: the outcome, and what it takes; with `at_least`, so many."""
 
 
 def machine(
@@ -48,19 +48,24 @@ def concurrency(
     conditions: Sequence[Rule],
     otherwise: str | None = None,
     userdata: Mapping[str, object] | None = None,
+    shared: Sequence[str] | None = None,
     **keys: Unpack[StepKeys],
 ) -> Step:
     """Run steps side by side until a condition holds.
 
     Args:
         states: The steps by name, in order.
-        conditions: `(outcome, {step: its outcome})` in order of precedence; all of one must hold.
+        conditions: `(outcome, {step: its outcome})` in order of precedence; all of one must hold,
+            or so many of it as a number under `at_least` says.
         otherwise: The outcome when all have ended and no condition holds.
         userdata: Initial values of its own scope.
+        shared: Keys of this scope, or of one around it, that the steps see each other write.
         **keys: What every step may be given.
     """
     rules = [{outcome: dict(when)} for outcome, when in conditions]
-    what = given(states=dict(states), conditions=rules, otherwise=otherwise, userdata=_values(userdata))
+    what = given(
+        states=dict(states), conditions=rules, otherwise=otherwise, userdata=_values(userdata), shared=_list(shared)
+    )
     return new_step("concurrency", what, **keys)
 
 

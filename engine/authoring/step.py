@@ -43,6 +43,7 @@ class StepKeys(PartKeys, total=False):
     autonomy: Mapping[str, AutonomyLevel]
     resume: str
     success: Sequence[str]
+    every: float | str
 
 
 def new_step(kind: NodeKind, what: object, **keys: Unpack[StepKeys]) -> Step:

@@ -23,13 +23,16 @@ def parallel(
     *children: TreePart,
     policy: Literal["all", "one"] | Sequence[str] | None = None,
     synchronise: bool | None = None,
+    success_count: int | None = None,
+    failure_count: int | None = None,
     **keys: Unpack[PartKeys],
 ) -> TreePart:
-    """Run children together; `policy` says whose success is its own: all, one, or those named."""
-    if policy is None and synchronise is None:
-        return new_part("parallel", list(children), **keys)
+    """Run children together; `policy` says whose success is its own (all, one, or those named), or the counts do."""
     named = policy if isinstance(policy, str) or policy is None else list(policy)
-    return new_part("parallel", given(children=list(children), policy=named, synchronise=synchronise), **keys)
+    more = given(policy=named, synchronise=synchronise, success_count=success_count, failure_count=failure_count)
+    if not more:
+        return new_part("parallel", list(children), **keys)
+    return new_part("parallel", {"children": list(children), **more}, **keys)
 
 
 def inverter(child: TreePart, **keys: Unpack[PartKeys]) -> TreePart:

@@ -1,7 +1,8 @@
 """The static check: findings about a behavior before it runs, each with node path and file position."""
 
-from engine.check.check import check_behavior, check_file, read_beside
-from engine.check.finding import CODES, Finding, Severity
+from engine.check.cell_check import check_cell, check_entries_document
+from engine.check.check import check_behavior, check_file, check_given, check_survey, read_beside
+from engine.check.finding import CODES, Finding, Severity, invalid, require_sound
 from engine.check.page import page_name, page_text
 from engine.check.stored import check_stored, names_by_kind
 
@@ -10,10 +11,16 @@ __all__ = [
     "Finding",
     "Severity",
     "check_behavior",
+    "check_cell",
+    "check_entries_document",
     "check_file",
+    "check_given",
     "check_stored",
+    "check_survey",
+    "invalid",
     "names_by_kind",
     "page_name",
     "page_text",
     "read_beside",
+    "require_sound",
 ]

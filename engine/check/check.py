@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from engine.cell_names import CellNames, cell_names
+from engine.check.cell_use import CellUse
 from engine.check.conditions import check_conditions
 from engine.check.conduct import check_conduct
 from engine.check.declaration import check_declarations, check_unused
-from engine.check.entries import Entries, check_entries
-from engine.check.finding import Finding, new_finding
+from engine.check.entries import Entries, check_entries, with_written
+from engine.check.finding import Finding, invalid, new_finding, place_of
 from engine.check.flow.flow import Flow
 from engine.check.flow.read import Read, reads
 from engine.check.flow.resolve import Flows, Resolver
@@ -17,6 +20,7 @@ from engine.check.flow.site import Sites
 from engine.check.instant import check_loops
 from engine.check.keys import check_keys
 from engine.check.kinds import check_kinds
+from engine.check.magnitude import check_magnitudes
 from engine.check.parameters import check_parameters
 from engine.check.reachability import check_reachability
 from engine.check.resources import check_resources
@@ -25,33 +29,46 @@ from engine.check.tree import check_trees
 from engine.check.units import check_units
 from engine.check.wiring import check_wiring
 from engine.document.behavior import Behavior
-from engine.document.cell import load_cell
+from engine.document.cell import Cell, load_cell
 from engine.document.collection_pause import without_collection
 from engine.document.entries import load_entries
 from engine.document.expression_cost import MAX_STEPS
-from engine.document.loader import CircularReference, read_behavior
+from engine.document.loader import CircularReference, Survey, survey_behavior
 from engine.document.step_meter import METER
-from engine.errors import DocumentError, Position
+from engine.errors import DocumentError
 
 MAX_CHECK_STEPS = 200 * MAX_STEPS
 """What the constant expressions of a behavior may cost in a check together: 2 s."""
 
 
 @without_collection
-def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | None = None) -> tuple[Finding, ...]:
+def check_behavior(
+    behavior: Behavior,
+    catalogue: Catalogue,
+    entries: Entries | None = None,
+    *,
+    cell: Cell | None = None,
+    parameters: Mapping[str, object] | None = None,
+) -> tuple[Finding, ...]:
     """Return everything that is wrong with a behavior and those it refers to, in document order.
 
     Args:
         behavior: The behavior as loaded.
         catalogue: The states by name, and what the project allows; nothing is imported.
         entries: Names, by kind, of the entries that the store will have; by default those that the
-            behavior's own cell is seeded with. They are left unchecked where it names no cell.
+            cell is seeded with. They are left unchecked where it names no cell.
+        cell: The cell that it is to run in; by default the one that it names.
+        parameters: What a run gives it, by which names are looked for in the cell; the rest has its defaults.
     """
     findings: list[Finding] = []
-    if entries is None:
-        entries, trouble = _own_entries(behavior)
-        findings += trouble
+    around = _around(behavior, cell)
+    if isinstance(around, Finding):
+        findings.append(around)
+        around = _Around()
+    known = around.entries if entries is None else entries
     subjects = new_subjects(behavior, catalogue)
+    known = with_written(known, subjects) if known is not None else None
+    use = CellUse(around.names, subjects, parameters or {}) if around.names is not None else None
     read = {id(subject): tuple(reads(subject)) for subject in subjects}
     flows: dict[int, Flow] = {}
     passed_on = _passed_on(subjects)
@@ -60,23 +77,57 @@ def check_behavior(behavior: Behavior, catalogue: Catalogue, entries: Entries | 
         flows[id(subject)] = Flow(subject, Sites(dict.fromkeys(keys)))
     with METER.limited(MAX_CHECK_STEPS, "this check"):
         for subject in subjects:
-            findings += _check_one(subject, entries, read[id(subject)], Flows(flows))
+            findings += _check_one(subject, known, use, read[id(subject)], Flows(flows))
     return tuple(findings)
 
 
-def check_file(path: Path | str, catalogue: Catalogue, entries: Entries | None = None) -> tuple[Finding, ...]:
-    """Return everything that is wrong with the behavior in a file, be it that it cannot be read."""
-    try:
-        behavior, circles = read_behavior(path)
-    except DocumentError as error:
-        position = error.where if isinstance(error.where, Position) else Position(file=str(path), line=1, column=1)
-        hint = error.hint or ""
-        return (new_finding("invalid-document", error.message, path="", position=position, hint=hint),)
-    return (*(_circular(circle) for circle in circles), *check_behavior(behavior, catalogue, entries))
+@without_collection
+def check_given(
+    behavior: Behavior, catalogue: Catalogue, cell: Cell, parameters: Mapping[str, object]
+) -> tuple[Finding, ...]:
+    """Return the names that the cell of a run does not offer, with the parameters that the run is given.
+
+    Args:
+        behavior: What is to run.
+        catalogue: The states by name.
+        cell: Where.
+        parameters: By name; the rest have their defaults.
+    """
+    subjects = new_subjects(behavior, catalogue)
+    use = CellUse(cell_names(cell), subjects, parameters)
+    with METER.limited(MAX_CHECK_STEPS, "this check"):
+        return tuple(finding for subject in subjects for finding in use.check(subject, None))
 
 
-def _check_one(subject: Subject, entries: Entries | None, read: Sequence[Read], flows: Flows) -> list[Finding]:
+def check_file(
+    path: Path | str, catalogue: Catalogue, entries: Entries | None = None, *, cell: Cell | None = None
+) -> tuple[Finding, ...]:
+    """Return everything that is wrong with the behavior in a file: each mistake, and what is found around it."""
+    return check_survey(survey_behavior(path), path, catalogue, entries, cell=cell)
+
+
+def check_survey(
+    survey: Survey,
+    path: Path | str,
+    catalogue: Catalogue,
+    entries: Entries | None = None,
+    *,
+    cell: Cell | None = None,
+) -> tuple[Finding, ...]:
+    """Return the mistakes of a document as it was read, and everything that is wrong with it around them."""
+    read = [invalid(error, path) for error in survey.mistakes]
+    read += [_circular(circle) for circle in survey.circles]
+    if survey.behavior is None:
+        return tuple(read)
+    found = [*read, *check_behavior(survey.behavior, catalogue, entries, cell=cell)]
+    return tuple(sorted(found, key=place_of) if survey.mistakes else found)
+
+
+def _check_one(
+    subject: Subject, entries: Entries | None, use: CellUse | None, read: Sequence[Read], flows: Flows
+) -> list[Finding]:
     flow = flows.of(subject)
+    resolver = Resolver(flow, flows)
     findings = [
         *check_declarations(subject),
         *check_wiring(subject),
@@ -86,13 +137,18 @@ def _check_one(subject: Subject, entries: Entries | None, read: Sequence[Read], 
         *check_parameters(subject),
         *check_conduct(subject),
         *check_units(subject),
+        *check_magnitudes(subject),
         *check_keys(subject, flow, read),
-        *check_kinds(subject, Resolver(flow, flows)),
+        *check_kinds(subject, resolver),
         *check_loops(subject, read),
         *check_resources(subject),
         *(check_entries(subject, entries) if entries is not None else ()),
+        *(use.check(subject, resolver) if use is not None else ()),
     ]
-    if not any(finding.severity == "error" for finding in findings):
+    gaps = subject.gaps
+    if subject.behavior.gaps:
+        findings = [each for each in findings if not gaps.follows(each, "root" + each.path.removeprefix(subject.base))]
+    elif not any(finding.severity == "error" for finding in findings):
         # With a mistyped name, say, nobody knows what else would be used.
         findings += check_unused(subject, {each.key for each in read})
     mismatched = {finding.position for finding in findings if finding.code == "type-mismatch"}
@@ -122,17 +178,25 @@ def read_beside(behavior: Behavior) -> tuple[Path, ...]:
     return (behavior.cell_file, seed) if seed is not None else (behavior.cell_file,)
 
 
-def _own_entries(behavior: Behavior) -> tuple[Entries | None, tuple[Finding, ...]]:
-    """Return the entries that the behavior's own cell is seeded with; None where it names no cell, or a broken one."""
-    if behavior.cell_file is None:
-        return None, ()
+@dataclass(frozen=True, kw_only=True)
+class _Around:
+    """What is known around a behavior: the names that its cell offers, and the entries that it is seeded with."""
+
+    names: CellNames | None = None
+    entries: Entries | None = None
+
+
+def _around(behavior: Behavior, cell: Cell | None) -> _Around | Finding:
+    """Return what the cell of a behavior offers, or what is wrong with that cell."""
+    if cell is None and behavior.cell_file is None:
+        return _Around()
     try:
-        seed = load_cell(behavior.cell_file).seed_file
-        return (load_entries(seed).names_by_kind(), ()) if seed is not None else (None, ())
+        found = cell if cell is not None else load_cell(behavior.cell_file or "")
+        seed = load_entries(found.seed_file).names_by_kind() if found.seed_file is not None else None
+        return _Around(names=cell_names(found), entries=seed)
     except DocumentError as error:
         position = behavior.source.position(("cell",))
-        found = new_finding("invalid-cell", str(error), path="root", position=position)
-        return None, (found,)
+        return new_finding("invalid-cell", str(error), path="root", position=position)
 
 
 def _circular(circle: CircularReference) -> Finding:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject
-from engine.document.node import Condition
+from engine.document.condition import Condition
 from engine.nearness import near_names
 
 MAX_STEPS = 20_000
@@ -63,6 +64,14 @@ def _check_coverage(subject: Subject, placed: Placed) -> Iterator[Finding]:
         yield subject.finding("combinations-not-checked", message, *where, hint="add `otherwise`", at_key=True)
 
 
+class _Open(NamedTuple):
+    """A rule that may hold yet: how many more children must end as it says, of how many that have not ended."""
+
+    when: Mapping[str, str]
+    needed: int
+    undecided: int
+
+
 @dataclass
 class _Search:
     """Looks for combinations of child outcomes that satisfy no condition.
@@ -75,6 +84,7 @@ class _Search:
     outcomes: Mapping[str, tuple[str, ...]]
     steps: int = 0
     exhausted: bool = False
+    _covered: set[tuple[int, tuple[tuple[int, int], ...]]] = field(default_factory=set[Any])
 
     def uncovered(self) -> Iterator[dict[str, str]]:
         """Go through uncovered combinations until the search is over or takes too long."""
@@ -85,7 +95,8 @@ class _Search:
         choices = {name: self._distinct(all_of, named.get(name, set())) for name, all_of in self.outcomes.items()}
         # The children that most conditions name decide most, so they are tried first.
         order = sorted(named, key=lambda name: -sum(name in rule.when for rule in self.rules))
-        for chosen in self._extend({}, order, choices, [(rule.when, len(rule.when)) for rule in self.rules]):
+        open_rules = [_Open(rule.when, rule.needed, len(rule.when)) for rule in self.rules]
+        for chosen in self._extend({}, order, choices, open_rules):
             yield {name: chosen.get(name, choices[name][0]) for name in self.outcomes}
 
     def _distinct(self, outcomes: tuple[str, ...], named: set[str]) -> tuple[str, ...]:
@@ -97,7 +108,7 @@ class _Search:
         chosen: dict[str, str],
         order: list[str],
         choices: Mapping[str, tuple[str, ...]],
-        open_rules: Sequence[tuple[Mapping[str, str], int]],
+        open_rules: Sequence[_Open],
     ) -> Iterator[dict[str, str]]:
         self.steps += 1
         if self.steps > MAX_STEPS:
@@ -106,23 +117,33 @@ class _Search:
         if not open_rules or not order:
             yield dict(chosen)
             return
+        # What counts children asks only how many have ended so, not which.
+        left = (len(order), tuple((id(rule.when), rule.needed) for rule in open_rules))
+        if left in self._covered:
+            return
+        is_covered = True
         name, rest = order[0], order[1:]
         for outcome in choices[name]:
             still_open = _still_open(open_rules, name, outcome)
             if still_open is not None:
-                yield from self._extend({**chosen, name: outcome}, rest, choices, still_open)
+                for combination in self._extend({**chosen, name: outcome}, rest, choices, still_open):
+                    is_covered = False
+                    yield combination
+        if is_covered and not self.exhausted:
+            self._covered.add(left)
 
 
-def _still_open(
-    rules: Sequence[tuple[Mapping[str, str], int]], name: str, outcome: str
-) -> list[tuple[Mapping[str, str], int]] | None:
-    """Return the rules that a child's outcome leaves open, with how many children each waits for; None if one holds."""
-    still_open: list[tuple[Mapping[str, str], int]] = []
-    for when, waiting in rules:
-        wanted = when.get(name)
-        if wanted is None or wanted == outcome:
-            waiting -= wanted is not None
-            if waiting == 0:
-                return None
-            still_open.append((when, waiting))
+def _still_open(rules: Sequence[_Open], name: str, outcome: str) -> list[_Open] | None:
+    """Return the rules that can still hold once a child has ended so; None if one holds."""
+    still_open: list[_Open] = []
+    for rule in rules:
+        wanted = rule.when.get(name)
+        if wanted is None:
+            still_open.append(rule)
+            continue
+        needed = rule.needed - (wanted == outcome)
+        if needed == 0:
+            return None
+        if needed < rule.undecided:
+            still_open.append(_Open(rule.when, needed, rule.undecided - 1))
     return still_open

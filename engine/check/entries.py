@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import Any, cast
 
 import msgspec.inspect as inspect
 
+from engine.check.annotated import parts
 from engine.check.finding import Finding
 from engine.check.parameters import default_values, value_by_default
+from engine.check.settled import settled
 from engine.check.subject import Placed, Subject
 from engine.nearness import near_names
 
@@ -19,6 +21,28 @@ Entries = Mapping[str, Collection[str]]
 Steps = tuple[str, ...]
 
 
+def with_written(entries: Entries, subjects: Iterable[Subject]) -> Entries:
+    """Return the entries with those that states of the behaviors write themselves, as far as their names are known."""
+    found = {kind: set(names) for kind, names in entries.items()}
+    for subject in subjects:
+        for kind, name in _written(subject):
+            found.setdefault(kind, set()).add(name)
+    return found
+
+
+def _written(subject: Subject) -> Iterator[tuple[str, str]]:
+    defaults = default_values(subject)
+    for placed in subject.nodes.values():
+        signature = subject.signature(placed.node)
+        given = subject.given_to(placed)
+        for name, parameter in signature.parameters.items() if signature is not None else ():
+            for part in parts(parameter.type, settled(given[name], defaults)) if name in given else ():
+                of = str(part.says.get("new_entry_of", ""))
+                kind = settled(given[of], defaults) if of in given else part.says.get("new_entry")
+                if isinstance(kind, str) and isinstance(part.value, str):
+                    yield kind, part.value
+
+
 def check_entries(subject: Subject, entries: Entries) -> Iterator[Finding]:
     """Find names of entries that do not exist, or exist as another kind than the state reads."""
     defaults = default_values(subject)
@@ -26,7 +50,7 @@ def check_entries(subject: Subject, entries: Entries) -> Iterator[Finding]:
         signature = subject.signature(placed.node)
         for name, found in subject.given_to(placed).items():
             known, value = value_by_default(found, defaults)
-            if known and isinstance(value, dict) and signature is not None and name in signature.parameters:
+            if known and isinstance(value, dict | str) and signature is not None and name in signature.parameters:
                 # A field called `entry` that is not marked with a kind may name an entry of any kind.
                 kinds = {("entry",): "", **entry_fields(signature.parameters[name].type)}
                 yield from _check_value(subject, placed, name, cast("object", value), kinds, entries)

@@ -5,12 +5,13 @@ Each kind has a page, `docs/findings/<code>.md`, with what it means and how to m
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Literal
 
 import msgspec
 
-from engine.errors import Position
+from engine.errors import DocumentError, Position
 
 Severity = Literal["error", "warning"]
 
@@ -35,9 +36,15 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "bad-expression": ("error", "an expression is not well formed"),
     "undeclared-name": ("error", "an expression uses a name that is no parameter or userdata key"),
     "missing-entry": ("warning", "a named entry is not in the entries that are known, or of another kind"),
+    "unknown-in-cell": ("error", "the cell has nothing of this kind and name"),
+    "maybe-unknown-in-cell": ("warning", "a name that the cell does not have, on some way or until a run adds it"),
+    "unreachable-joints": ("error", "an arm of the cell has other joints, or cannot have these angles"),
     "missing-unit": ("warning", "a parameter without a unit is handed on to where a unit is due"),
     "unit-mismatch": ("warning", "a parameter is handed on to where another unit is due"),
+    "suspect-unit": ("warning", "a number is so large that it seems to be in another unit"),
     "range-too-wide": ("warning", "a parameter may be given values that are refused where it is handed on to"),
+    "unknown-model": ("error", "no robot or gripper model has this name, or its folder cannot be used"),
+    "unknown-driver": ("error", "no driver has this name"),
     "bad-declaration": ("error", "a parameter of the behavior contradicts itself"),
     "required-parameter": ("warning", "a parameter of the behavior has no default, so each run must give it"),
     "unused-parameter": ("warning", "nothing uses a parameter of the behavior"),
@@ -52,6 +59,8 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "instant-loop": ("error", "a loop in which no time passes and nothing changes"),
     "never-ends": ("error", "a part of a tree that cannot end, however its child ends"),
     "restarted-children": ("warning", "a parallel runs children again that have succeeded, until all succeed at once"),
+    "unwatched-check": ("warning", "nothing asks a check again while what stands behind it is at work"),
+    "idle-every": ("warning", "an `every` that is never used"),
     "unused-outcome": ("warning", "an outcome is declared or connected that nothing leads to"),
     "unknown-child": ("error", "a condition names a child that does not exist"),
     "uncovered-combination": ("error", "all children may finish so that no condition holds"),
@@ -80,6 +89,28 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True, gc=False):
         return f"{self.position}: {self.severity}: {self.message}{advice} [{self.code}]"
 
 
+def place_of(finding: Finding) -> tuple[str, int, int]:
+    """Return what sorts findings by where they are."""
+    return finding.position.file, finding.position.line, finding.position.column
+
+
 def new_finding(code: str, message: str, *, path: str, position: Position, hint: str = "") -> Finding:
     """Make a finding with the severity that belongs to its code."""
     return Finding(severity=CODES[code][0], code=code, message=message, path=path, position=position, hint=hint)
+
+
+def invalid(error: DocumentError, path: Path | str) -> Finding:
+    """Make the finding of a mistake in the document at `path`."""
+    position = error.where if isinstance(error.where, Position) else Position(file=str(path), line=1, column=1)
+    return new_finding("invalid-document", error.message, path="", position=position, hint=error.hint or "")
+
+
+def require_sound(findings: Iterable[Finding]) -> None:
+    """Refuse a document that has errors.
+
+    Raises:
+        DocumentError: it has; the first one, `where` is its position.
+    """
+    for finding in findings:
+        if finding.severity == "error":
+            raise DocumentError(finding.message, where=finding.position, hint=finding.hint or None)

@@ -93,9 +93,7 @@ class Instants:
     def _of_branches(self, container: Concurrency, children: Sequence[Placed]) -> frozenset[str]:
         seen = {child.name: self._seen(child) for child in children}
         found = {
-            rule.outcome
-            for rule in container.rules
-            if all(outcome in seen.get(name, ()) for name, outcome in rule.when.items())
+            rule.outcome for rule in container.rules if rule.holds(lambda name, outcome: outcome in seen.get(name, ()))
         }
         if container.otherwise is not None and all(seen.values()):
             found.add(container.otherwise)

@@ -12,6 +12,7 @@ from engine.check.flow.read import Read
 from engine.check.flow.route import route, shown
 from engine.check.flow.site import Site
 from engine.check.subject import Placed, Subject
+from engine.document.node import shared_keys
 from engine.nearness import near_names
 
 _MOST_ROUTES = 100
@@ -37,8 +38,7 @@ class _Keys:
         sites = self.flow.sites
         routes = 0
         for read in self.read:
-            facts = self.flow.behind if read.by == "collect" else self.flow.before
-            fact = facts.get(read.placed.path, 0)
+            fact = self.flow.fact_at(read) or 0
             if not fact & sites.undefined_bit(read.key):
                 continue
             if not fact & sites.defined_bits(read.key):
@@ -52,7 +52,7 @@ class _Keys:
         for placed in self.subject.nodes.values():
             if placed.kind in _SIDE_BY_SIDE and placed.path in self.flow.inside:
                 writers = self._writers(placed)
-                for key in sorted(writers):
+                for key in sorted(writers.keys() - set(shared_keys(placed.node))):
                     yield from self._check_writers(key, writers[key])
                     yield from self._check_siblings(placed, key, writers[key])
 
@@ -68,6 +68,10 @@ class _Keys:
         if read.by == "expression":
             message = f"`{key}` is neither a parameter nor a userdata key that can be read here"
             return self.subject.finding("undeclared-name", message, path, *read.keys, hint=near)
+        if read.by == "shared":
+            message = f"the shared key `{key}` is defined nowhere around the branches"
+            hint = f"give it an initial value in a `userdata`, `{key}: …`; {near}"
+            return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
         if read.by == "input":
             message = f"`{read.placed.node.state}` reads the userdata key `{key}`, which is not defined here"
             return self.subject.finding("undefined-key", message, path, hint=f"map it with `in: {{{key}: …}}`; {near}")
@@ -77,7 +81,7 @@ class _Keys:
     def _perhaps_undefined(self, read: Read, *, with_route: bool) -> Finding:
         path, key = read.placed.path, read.key
         message = f"`{read.placed.name}` reads `{key}`, which may not be defined"
-        if with_route and read.by != "collect":
+        if with_route and read.by not in ("collect", "shared"):
             steps = route(self.flow, path, self.flow.sites.undefined_bit(key))
             message += f": nothing defines it on the way {shown(steps)}"
         hint = f"give `{key}` an initial value in `userdata`, or lead this way elsewhere"
@@ -123,7 +127,7 @@ class _Keys:
         if len(writers) > 1:
             names = " and ".join(f"`{child.name}`" for child in writers)
             message = f"{names} run side by side and write `{key}`; what `{writers[-1].name}` writes stays"
-            hint = "let them write different keys with `out`"
+            hint = f"let them write different keys with `out`, or name it in the container: `shared: [{key}]`"
             yield self.subject.finding("parallel-writers", message, writers[-1].path, hint=hint)
 
     def _check_siblings(self, placed: Placed, key: str, writers: Sequence[Placed]) -> Iterator[Finding]:
@@ -139,5 +143,5 @@ class _Keys:
             if other is not None and branch not in told:
                 told.add(branch)
                 message = f"`{read.placed.name}` reads `{key}` as it was before, though `{other}` beside it writes it"
-                hint = "a branch sees what others write only after all of them have ended"
+                hint = f"a branch sees what others write once all have ended, or at once with `shared: [{key}]`"
                 yield self.subject.finding("sibling-read", message, path, *read.keys, hint=hint)

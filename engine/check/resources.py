@@ -63,7 +63,7 @@ class _Resources:
         signature = subject.signature(placed.node)
         if signature is not None:
             # Most states command nothing, and a class that does not say otherwise need not be made.
-            if signature.state.resources is State.resources:
+            if not signature.commands_hardware:
                 return frozenset()
             return _state_resources(signature, _given(subject, placed, known))
         referred = subject.referred(placed.node)

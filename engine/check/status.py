@@ -60,12 +60,22 @@ def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
 
 
 def _parallel(group: tuple[Node, ...] | Parallel, children: Sequence[tuple[str, Statuses]]) -> Statuses:
+    if isinstance(group, Parallel) and group.counts:
+        return _counted(group, [statuses for _, statuses in children])
     policy = "all" if isinstance(group, tuple) else group.policy
     failing: Statuses = FAILURE if any("failure" in statuses for _, statuses in children) else NEVER
     due = children if isinstance(policy, str) else [child for child in children if child[0] in policy]
     can = ["success" in statuses for _, statuses in due]
     succeeds = any(can) if policy == "one" else all(can)
     return failing | (SUCCESS if succeeds else NEVER)
+
+
+def _counted(group: Parallel, ends: Sequence[Statuses]) -> Statuses:
+    needed = group.success_count or len(ends)
+    able = sum("success" in statuses for statuses in ends)
+    failing = sum("failure" in statuses for statuses in ends)
+    fails = failing >= min(group.failure_count or 1, len(ends) - needed + 1)
+    return (SUCCESS if able >= needed else NEVER) | (FAILURE if fails else NEVER)
 
 
 def _remapped(remap: Remap, child: Statuses) -> Statuses:

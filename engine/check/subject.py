@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from engine.check.finding import Finding, new_finding
+from engine.check.gaps import Gaps
 from engine.check.status import BOTH, Status, Statuses, end_statuses
 from engine.document.behavior import Behavior
 from engine.document.expression import Template, compile_template
@@ -58,6 +59,8 @@ class Subject:
     """What a document may name."""
     references: Mapping[str, Subject]
     """The behaviors referred to, by the path as written."""
+    gaps: Gaps
+    """What could not be read of it."""
     given: Mapping[str, Given]
     """The values under `with`, compiled, by path and name; nodes without are absent."""
     outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
@@ -71,7 +74,11 @@ class Subject:
     def incomplete(self) -> bool:
         """True when a state or a reference is missing, so that nobody knows which keys it writes."""
         refers = (placed.node.behavior for placed in self.nodes.values())
-        return bool(self.unknown) or any(name is not None and name not in self.references for name in refers)
+        return (
+            bool(self.unknown)
+            or self.gaps.hides_values
+            or any(name is not None and name not in self.references for name in refers)
+        )
 
     @property
     def inside_out(self) -> Iterator[Placed]:
@@ -185,6 +192,7 @@ def _make(behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], ma
         unknown=unknown,
         catalogue=catalogue,
         references=references,
+        gaps=Gaps(behavior),
         given={
             path: {name: template(value) for name, value in placed.node.parameters.items()}
             for path, placed in nodes.items()
@@ -198,7 +206,7 @@ def _make(behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], ma
     for placed in subject.inside_out:
         path = placed.path
         own = _own_outcomes(placed, subject)
-        if own is not None:
+        if own is not None and not (subject.gaps.hides_course(path) and _sees_diversions(placed.container)):
             outcomes[path] = _seen_outside(placed, own)
         nominal[path] = _nominal(placed, subject)
         if placed.in_tree:
@@ -244,16 +252,21 @@ def _signatures(
 
 
 def _seen_outside(placed: Placed, own: tuple[str, ...]) -> tuple[str, ...]:
-    container = placed.container
-    if container is None or (container.concurrency is None and container.foreach is None):
+    if not _sees_diversions(placed.container):
         return own
     # In a concurrency or foreach container a guard, timeout or error gives the child an outcome that it sees.
     leading = diversions(placed.node).values()
     return tuple(dict.fromkeys((*own, *leading))) if leading else own
 
 
+def _sees_diversions(container: Node | None) -> bool:
+    return container is not None and (container.concurrency is not None or container.foreach is not None)
+
+
 def _own_outcomes(placed: Placed, subject: Subject) -> tuple[str, ...] | None:
     node = placed.node
+    if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_inside(placed.path):
+        return None
     if node.state is not None:
         signature = subject.signatures.get(node.state)
         return signature.outcomes if signature is not None else None
@@ -284,7 +297,7 @@ def _nominal(placed: Placed, subject: Subject) -> frozenset[str]:
         good = {child.name: subject.nominal[child.path] for child in subject.children(placed)}
         rules = node.concurrency.rules
         return frozenset(
-            rule.outcome for rule in rules if all(due in good.get(name, ()) for name, due in rule.when.items())
+            rule.outcome for rule in rules if rule.asks_only_for(lambda name, due: due in good.get(name, ()))
         )
     if node.foreach is not None:
         return frozenset(FOREACH_OUTCOMES[:1])
@@ -312,6 +325,8 @@ def _reached_nominally(placed: Placed, initial: str, subject: Subject) -> frozen
 
 def _statuses(placed: Placed, subject: Subject) -> Statuses:
     children = subject.children(placed)
+    if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_course(placed.path):
+        return BOTH
     if placed.is_part:
         return end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
     outcomes = subject.outcomes.get(placed.path)

@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from engine.check.finding import Finding
 from engine.check.instant import Instants
 from engine.check.subject import Placed, Subject
-from engine.document.node import Parallel
+from engine.document.expression import Template
+from engine.document.node import Composite, Node, Parallel
+from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
 from engine.state_catalogue import find_behaviour
@@ -21,6 +23,7 @@ def check_trees(subject: Subject) -> Iterator[Finding]:
             yield from _check_dead_children(subject, placed)
             yield from _check_end(subject, placed)
             yield from _check_restarts(subject, placed)
+            yield from _check_watching(subject, placed)
             if placed.node.behaviour is not None:
                 yield from _check_behaviour(subject, placed, placed.node.behaviour)
 
@@ -55,7 +58,7 @@ def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
 
 def _check_restarts(subject: Subject, placed: Placed) -> Iterator[Finding]:
     parallel = placed.node.parallel
-    if not isinstance(parallel, Parallel) or parallel.synchronise or parallel.policy == "one":
+    if not isinstance(parallel, Parallel) or parallel.counts or parallel.synchronise or parallel.policy == "one":
         return
     wanted = [child for child in subject.children(placed) if parallel.policy == "all" or child.name in parallel.policy]
     ends = Instants(subject).ends
@@ -64,6 +67,48 @@ def _check_restarts(subject: Subject, placed: Placed) -> Iterator[Finding]:
         message = f"{', '.join(slow[:3])} take time and must succeed in one tick; until then they are run again"
         hint = "remove `synchronise: false`: what has succeeded then waits for the others"
         yield subject.finding("restarted-children", message, placed.path, "parallel", "synchronise", hint=hint)
+
+
+def _check_watching(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    """Look at the states directly in a part of a tree, which a composite without memory may ask again."""
+    for child in subject.children(placed):
+        signature = subject.signature(child.node)
+        if signature is None:
+            continue
+        is_action = signature.commands_hardware
+        in_front = _is_in_front(subject, child)
+        if child.node.every is not None and (is_action or not in_front):
+            what = "an action" if is_action else "not in front of anything that is at work meanwhile"
+            message = f"`{child.name}` is {what}, so `every` has no effect"
+            hint = "it is for checks in front of an action in a `sequence` or `selector` without memory"
+            yield subject.finding("idle-every", message, child.path, "every", hint=hint, at_key=True)
+        elif in_front and not is_action and not _is_asked_again(subject, child, signature):
+            message = (
+                f"`{child.name}` stands in front of others to watch over them, and nothing asks it again meanwhile"
+            )
+            hint = f"give it a period, `every: 200 ms`; or say in the class of `{signature.name}` that it `observes`"
+            yield subject.finding("unwatched-check", message, child.path, "state", hint=hint)
+
+
+def _is_asked_again(subject: Subject, placed: Placed, signature: StateSignature) -> bool:
+    reads = any(isinstance(given, Template) and given.names for given in subject.given_to(placed).values())
+    return signature.instant or signature.observes or placed.node.every is not None or reads or bool(signature.inputs)
+
+
+def _is_in_front(subject: Subject, placed: Placed) -> bool:
+    """Tell whether a leaf of a tree, or a part around it, stands in front of others in a composite without memory."""
+    below = placed
+    while below.parent is not None and below.in_tree:
+        around = subject.nodes[below.parent]
+        if _without_memory(around.node) and below.path != subject.children(around)[-1].path:
+            return True
+        below = around
+    return False
+
+
+def _without_memory(node: Node) -> bool:
+    group = node.sequence or node.selector
+    return isinstance(group, Composite) and not group.memory
 
 
 def _check_behaviour(subject: Subject, placed: Placed, name: str) -> Iterator[Finding]:

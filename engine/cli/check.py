@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TextIO
 
 import typer
 
 from engine.authoring.python_file import is_python_name, load_python_behavior
-from engine.check import Finding, check_behavior, check_file, page_text
-from engine.check.finding import new_finding
+from engine.cell_names import cell_names
+from engine.check import Finding, check_behavior, check_cell, check_entries_document, check_survey, invalid, page_text
+from engine.cli.check_fix import fix_file, fix_lines
 from engine.cli.check_store import stored_names
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
-from engine.document import load_behavior, load_source
-from engine.document.cell import load_cell
+from engine.document import survey_behavior
+from engine.document.cell import Cell, load_cell
 from engine.document.entries import SECTIONS, load_entries
 from engine.document.project import PROJECT_FILE, load_project
-from engine.errors import DocumentError, Position
+from engine.document.recovery import load_around
+from engine.errors import DocumentError, FlexcellError, Position
 from engine.plan import Catalogue
 from engine.registry import load_states
 
@@ -34,12 +37,25 @@ def check(
         Literal["text", "json", "github", "sarif"], typer.Option("--format", help="How findings are printed.")
     ] = "text",
     json: Annotated[bool, typer.Option("--json", help="The same as --format json.")] = False,
+    cell: Annotated[
+        Path | None, typer.Option(help="The cell to check behaviors and entries for; the one they name by default.")
+    ] = None,
     store: Annotated[
         str,
         typer.Option(
             help="Look for named entries in this store: a file, mongodb://…, or `cell` for that of the behavior's cell."
         ),
     ] = "",
+    fix: Annotated[
+        bool,
+        typer.Option(
+            "--fix",
+            help="Write those fixes of the editor into behavior documents that need no choice; name the others.",
+        ),
+    ] = False,
+    fix_likely: Annotated[
+        bool, typer.Option("--fix-likely", help="As --fix, and the first of several fixes. No node is deleted.")
+    ] = False,
     explain: Annotated[
         str, typer.Option(help="Print what a kind of finding means and what to do about it.", metavar="CODE")
     ] = "",
@@ -51,8 +67,11 @@ def check(
     if not files:
         raise typer.BadParameter("give the documents to check", param_hint="FILES")
     catalogues = {folder: load_states(folder) for folder in dict.fromkeys(file.parent for file in files)}
-    findings = [finding for file in files for finding in findings_of(file, catalogues[file.parent], store)]
+    around = load_cell(cell) if cell is not None else None
     chosen = "json" if json else format_
+    told = sys.stdout if chosen == "text" else sys.stderr
+    is_kept = not (fix or fix_likely) or _fix(files, catalogues, told, likely=fix_likely)
+    findings = [finding for file in files for finding in findings_of(file, catalogues[file.parent], store, around)]
     if chosen == "json":
         sys.stdout.write(as_json(findings) + "\n")
     elif chosen == "sarif":
@@ -62,35 +81,51 @@ def check(
     else:
         sys.stdout.writelines(f"{finding}\n" for finding in findings)
         sys.stderr.write(_summary(len(files), findings))
-    if any(finding.severity == "error" for finding in findings):
+    if not is_kept or any(finding.severity == "error" for finding in findings):
         raise typer.Exit(ExitCode.BAD_INPUT)
 
 
-def findings_of(file: Path, catalogue: Catalogue, store: str = "") -> tuple[Finding, ...]:
-    """Return the findings of one document of any kind; one that cannot be read is one finding.
+def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], told: TextIO, *, likely: bool) -> bool:
+    """Fix documents and tell what was done; False where one could not be written."""
+    is_kept = True
+    for file in files:
+        try:
+            made = fix_file(file, catalogues[file.parent], likely=likely)
+        except FlexcellError as error:
+            sys.stderr.write(f"flexcell: {error}\n")
+            is_kept = False
+            continue
+        if made is not None:
+            told.writelines(f"{line}\n" for line in fix_lines(file, made))
+    return is_kept
 
-    Named entries are looked for in `store`, by default among those that the cell is seeded with.
+
+def findings_of(file: Path, catalogue: Catalogue, store: str = "", cell: Cell | None = None) -> tuple[Finding, ...]:
+    """Return the findings of one document of any kind; each mistake in it is one.
+
+    Args:
+        file: The document.
+        catalogue: The states by name.
+        store: Where named entries are looked for; by default among those that the cell is seeded with.
+        cell: The cell in which a behavior is to run, or of which entries are; by default the one that is named.
     """
     try:
         if is_python_name(str(file)):
             behavior = load_python_behavior(str(file))
-            return check_behavior(behavior, catalogue, stored_names(behavior, store) if store else None)
+            return check_behavior(behavior, catalogue, stored_names(behavior, store) if store else None, cell=cell)
         if file.name == PROJECT_FILE:
             load_project(file)
             return ()
         kind = document_kind(file)
         if kind == "behavior":
-            return check_file(file, catalogue, stored_names(load_behavior(file), store) if store else None)
+            survey = survey_behavior(file)
+            known = stored_names(survey.behavior, store) if store and survey.behavior is not None else None
+            return check_survey(survey, file, catalogue, known, cell=cell)
         if kind == "cell":
-            seed = load_cell(file).seed_file
-            if seed is not None:
-                load_entries(seed)
-        else:
-            load_entries(file)
+            return check_cell(load_cell(file))
+        return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
     except DocumentError as error:
-        where = error.where if isinstance(error.where, Position) else Position(file=str(file), line=1, column=1)
-        return (new_finding("invalid-document", error.message, path="", position=where, hint=error.hint or ""),)
-    return ()
+        return tuple(invalid(each, file) for each in (error, *error.others))
 
 
 def document_kind(file: Path) -> str:
@@ -99,10 +134,13 @@ def document_kind(file: Path) -> str:
     Raises:
         DocumentError: it cannot be read.
     """
-    data = load_source(file).data
+    recovered = load_around(file)
+    data = recovered.source.data if recovered.source is not None else None
     for key, kind in (("root", "behavior"), ("outcomes", "behavior"), ("cell", "cell"), *_ENTRIES):
         if isinstance(data, dict) and key in data:
             return kind
+    if recovered.mistakes:
+        raise recovered.mistakes[0]
     raise DocumentError(
         "this is no behavior, cell or entries document",
         where=Position(file=str(file), line=1, column=1),

@@ -11,6 +11,7 @@ import typer
 
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior
+from engine.cli.output_file import prepare, write
 from engine.coverage import Coverage, merge, read_coverage
 from engine.coverage.logs import RunLog, read_logs
 from engine.coverage.record import BehaviorCoverage, percent
@@ -40,6 +41,7 @@ def report(
     Covered are nodes that were entered, and ways out of them that were taken: transitions,
     outcomes, conditions, timeouts, guards, error targets, statuses.
     """
+    prepare(output)
     coverages = merge(tuple(coverage for file in files for coverage in read_coverage(file)))
     if not coverages:
         raise FlexcellError("there is no coverage in these files", hint="fill them with `flexcell run --coverage`")
@@ -47,7 +49,7 @@ def report(
     if output is None:
         sys.stdout.write(text)
     else:
-        output.write_text(text, encoding="utf-8")
+        write(output, text.encode())
     _judge(coverages, fail_under)
 
 

@@ -7,11 +7,16 @@ from pathlib import Path
 
 
 def main() -> None:
-    """Run the command line; `flexcell stop` in its plain forms without loading the rest."""
+    """Run the command line; `flexcell stop` in its plain forms, and `--version`, without loading the rest."""
     if sys.argv[1:2] == ["stop"] and (options := _stop_options(sys.argv[2:])) is not None:
         from engine.cli.stop import stop_cell
 
         sys.exit(stop_cell(*options))
+    if sys.argv[1:] == ["--version"]:
+        from importlib.metadata import version
+
+        sys.stdout.write(f"flexcell {version('flexcell')}\n")
+        return
     from engine.cli.main import main as command_line
 
     command_line()

@@ -23,6 +23,7 @@ from engine.cli.progress import Progress
 from engine.clock import NothingCanWake, VirtualLoop, run_virtual
 from engine.document.cell import Cell
 from engine.document.faults import Faults
+from engine.errors import FlexcellError
 from engine.event import Event
 from engine.faults import FaultPort
 from engine.journal import Journal, NullJournal
@@ -97,15 +98,24 @@ def carry_out(order: Order, *, report: Callable[[Ended], None]) -> ExitCode:
     async def main() -> Ended:
         ended = await _execute(order)
         if ended.result.abandoned:
-            report(ended)
+            code = _reported(ended, report)
             _say(f"abandoned: {', '.join(ended.result.abandoned)}; the process ends without waiting for it")
             sys.stdout.flush()
             sys.stderr.flush()
-            os._exit(ended.exit_code)
+            os._exit(code)
         return ended
 
     ended = _on_clock(main(), virtual=order.virtual)
-    report(ended)
+    return _reported(ended, report)
+
+
+def _reported(ended: Ended, report: Callable[[Ended], None]) -> ExitCode:
+    """Report a run and return the exit code; it has been, whatever becomes of the report."""
+    try:
+        report(ended)
+    except FlexcellError as error:
+        _say(str(error))
+        return ended.exit_code or ExitCode.ERRORED
     return ended.exit_code
 
 

@@ -12,36 +12,48 @@ from engine.check import Finding, check_behavior
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.parameter import Parameter
+from engine.document.substitutes import Substitutes
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.nearness import near_names
 from engine.plan import Catalogue, Plan, new_plan
 
 
-def read_behavior(file: Path, catalogue: Catalogue) -> tuple[Behavior, tuple[Finding, ...]]:
+def read_behavior(
+    file: Path, catalogue: Catalogue, *, cell: Cell | None = None, given: Sequence[str] = ()
+) -> tuple[Behavior, tuple[Finding, ...]]:
     """Load and check a behavior, given as a document or as `FILE.py:NAME`; the findings include warnings.
 
+    Args:
+        file: The behavior.
+        catalogue: The states by name.
+        cell: Where it is to run; by default in the cell that it names.
+        given: Its parameters for this run, `name=value`.
+
     Raises:
-        DocumentError: it cannot be read at all.
+        DocumentError: it cannot be read at all, or a parameter is not acceptable.
     """
     name = str(file)
     behavior = load_python_behavior(name) if is_python_name(name) else load_behavior(file)
-    return behavior, check_behavior(behavior, catalogue)
+    parameters = read_parameters(given, behavior.parameters)
+    return behavior, check_behavior(behavior, catalogue, cell=cell, parameters=parameters)
 
 
-def read_plan(file: Path, catalogue: Catalogue) -> Plan:
-    """Load, check and plan a behavior while others go on.
+def read_plan(
+    file: Path, catalogue: Catalogue, *, cell: Cell | None = None, substitutes: Substitutes | None = None
+) -> Plan:
+    """Load, check and plan a behavior while others go on, for the cell that it names or another one.
 
     Raises:
         DocumentError: it cannot be read, or has errors; the first one is given.
     """
-    behavior, findings = read_behavior(file, catalogue)
-    for finding in findings:
-        if finding.severity == "error":
-            raise DocumentError(finding.message, where=finding.position, hint=finding.hint or None)
-    return new_plan(behavior, catalogue)
+    behavior, findings = read_behavior(file, catalogue, cell=cell)
+    require_sound(findings)
+    return new_plan(behavior.with_substitutes(substitutes), catalogue)
 
 
-def read_plan_anew(file: Path, catalogue: Catalogue) -> Plan:
+def read_plan_anew(
+    file: Path, catalogue: Catalogue, *, cell: Cell | None = None, substitutes: Substitutes | None = None
+) -> Plan:
     """Load, check and plan a behavior whose file may have changed since this process read it.
 
     Raises:
@@ -51,7 +63,7 @@ def read_plan_anew(file: Path, catalogue: Catalogue) -> Plan:
     if is_python_name(str(file)):
         hint = "save it as YAML with `flexcell export` and run that"
         raise ControlError("a behavior made in Python cannot be read anew", where=file, hint=hint)
-    return read_plan(file, catalogue)
+    return read_plan(file, catalogue, cell=cell, substitutes=substitutes)
 
 
 def behavior_source(file: Path) -> str:

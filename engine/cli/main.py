@@ -14,7 +14,7 @@ import typer
 from engine.cli.commands import Commands
 from engine.cli.exit_code import ExitCode
 from engine.cli.stop import REASON, stop_cell
-from engine.errors import FlexcellError
+from engine.errors import DocumentError, FlexcellError, Position
 from engine.state_names import STATE_FOLDER
 
 app = typer.Typer(
@@ -61,12 +61,19 @@ def main() -> None:
         verify_packages()
         app()
     except FlexcellError as error:
-        sys.stderr.write(f"flexcell: {error}\n")
+        sys.stderr.write(f"flexcell: {error}{_others(error)}\n")
         sys.exit(ExitCode.BAD_INPUT)
     except BrokenPipeError:
         # The reader of our output, such as `head`, has left; there is nobody to tell.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(ExitCode.SUCCESS)
+
+
+def _others(error: FlexcellError) -> str:
+    """Say how many other mistakes a document has that was refused with its first."""
+    if not isinstance(error, DocumentError) or not error.others or not isinstance(error.where, Position):
+        return ""
+    return f"; {len(error.others)} more: flexcell check {error.where.file}"
 
 
 def verify_packages() -> None:

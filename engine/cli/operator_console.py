@@ -18,7 +18,6 @@ from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, 
 from engine.nearness import near_names
 from engine.plan import Plan
 from engine.run import Run
-from engine.settle import settle
 from engine.supervision import Supervision
 
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
@@ -111,7 +110,7 @@ class OperatorConsole:
         while not self.run.ended:
             self._rests.clear()
             # What was let go a moment ago must not be taken for resting.
-            await settle(depth=-1)
+            await self.run.control.settled()
             if self._at_rest():
                 break
             await self._rests.wait()

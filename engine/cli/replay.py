@@ -11,6 +11,7 @@ import msgspec
 import typer
 
 from engine.cli.exit_code import ExitCode
+from engine.cli.output_file import prepare
 from engine.document import load_behavior
 from engine.errors import FlexcellError
 from engine.junit import Case, Problem, Suite, class_name, write_junit
@@ -43,6 +44,7 @@ def replay(
     Exit code 0: everything happened again and nothing else. 4: something differs; the first
     difference is named. 2: a recording, or the behavior, cannot be used.
     """
+    prepare(junit)
     # Not from where a recording lies or what it names: that is of whoever made it.
     catalogue = load_states(Path.cwd())
     results = [_replayed(name, catalogue, behavior, journal) for name in recordings]

@@ -16,11 +16,12 @@ from engine.cli.execution import Ended, Order, carry_out
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_plan, read_plan_anew
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
+from engine.cli.output_file import prepare, write
 from engine.cli.run_report import print_json, print_result
 from engine.document.cell import Cell, load_cell
 from engine.errors import ControlError
 from engine.journal import Journal, NullJournal, encode_event_log
-from engine.launch import Resumption, plan_resume, resume_run
+from engine.launch import Resumption, plan_resume, require_simulation, resume_run
 from engine.plan import Catalogue
 from engine.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
@@ -54,6 +55,9 @@ def resume(
     ] = False,
     events: Annotated[Path | None, typer.Option(help="Write the new events here, one JSON object a line.")] = None,
     timeout: Annotated[float | None, typer.Option(help="Stop the run after this many seconds.", min=0.001)] = None,
+    substitute_on_robots: Annotated[
+        bool, typer.Option("--substitute-on-robots", help="Where a run has substitutes: also where a robot is real.")
+    ] = False,
     operator: Operator = False,
     autonomy: Autonomy = None,
     operator_loss: Loss = "hold",
@@ -68,10 +72,13 @@ def resume(
     What had ended is not done again. A state in mid-work follows its `resume` policy; one that asks
     is asked for on the terminal, or must be answered with --answer. Exit codes are those of `run`.
     """
+    prepare(events)
     found = read_run(journal, run)
     file = behavior or _recorded_file(found)
     catalogue = _known_states(file, named=behavior is not None)
-    plan = read_plan(file, catalogue)
+    place = _read_cell(cell, found)
+    plan = read_plan(file, catalogue, cell=place, substitutes=found.substitutes)
+    require_simulation(plan, place, allowed=substitute_on_robots)
     options = OperatorOptions(
         autonomy=autonomy,
         operator=operator,
@@ -100,7 +107,7 @@ def resume(
     supervision = options.supervision(file, autonomy=resumption.autonomy)
     order = Order(
         make=partial(_make, resumption, catalogue, answers, supervision),
-        cell=_read_cell(cell, found),
+        cell=place,
         seed=found.origin.seed,
         journal=journal,
         store=found.origin.store,
@@ -108,17 +115,19 @@ def resume(
         virtual=(clock or found.origin.clock) == "virtual",
         quiet=quiet or json,
         supervision=supervision,
-        reload=partial(read_plan_anew, file, catalogue) if operator else None,
+        reload=partial(read_plan_anew, file, catalogue, cell=place, substitutes=found.substitutes)
+        if operator
+        else None,
     )
 
     def report(ended: Ended) -> None:
         encoded = encode_event_log(ended.log)
-        if events is not None:
-            events.write_bytes(encoded)
         if json:
             print_json(ended.result, encoded, len(ended.log))
         else:
             print_result(ended.result)
+        if events is not None:
+            write(events, encoded)
 
     raise typer.Exit(carry_out(order, report=report))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,21 +12,23 @@ from typing import Annotated, Literal
 import typer
 
 from engine.cell import OpenCell
-from engine.check import Finding, check_stored
+from engine.check import Finding, check_given, check_stored
 from engine.checkpoint import Checkpoint
 from engine.cli.execution import Ended, MakeRun, Order, carry_out
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, read_plan_anew
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
+from engine.cli.output_file import prepare, write
 from engine.cli.run_junit import write_run_junit
 from engine.cli.run_report import print_json, print_result
 from engine.coverage import Coverage
 from engine.document import Behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.faults import load_faults
+from engine.document.substitutes import load_substitutes
 from engine.errors import DocumentError
 from engine.journal import Journal, NullJournal, encode_event_log
-from engine.launch import moment_of, new_origin, new_run
+from engine.launch import moment_of, new_origin, new_run, require_simulation
 from engine.plan import Catalogue, Plan, new_plan
 from engine.recorded_run import RecordedRun, read_run
 from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, collect_documents
@@ -98,6 +101,13 @@ def run(
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Write the result here as JUnit XML.")] = None,
     faults: Annotated[Path | None, typer.Option(help="Let go wrong what this fault document says.")] = None,
+    substitutes: Annotated[
+        Path | None,
+        typer.Option(help="Let something else stand in for the nodes that this document names."),
+    ] = None,
+    substitute_on_robots: Annotated[
+        bool, typer.Option("--substitute-on-robots", help="With --substitutes: also where a robot is real.")
+    ] = False,
     coverage: Annotated[
         Path | None, typer.Option(help="Add what was covered of the behavior to this file; it is made at first.")
     ] = None,
@@ -107,10 +117,16 @@ def run(
     """Run a behavior.
 
     Exit code 0: its outcome is a success. 1: another outcome. 2: nothing was started.
-    3: it ended with an error. 130: interrupted; robots are at rest and the journal is closed.
+    3: it ended with an error, or a file that was asked for could not be written in the end.
+    130: interrupted; robots are at rest and the journal is closed.
     """
+    prepare(events, record, junit, coverage)
     catalogue = load_states(file)
-    behavior = read_sound_behavior(file, catalogue)
+    recorded = _read_recorded(from_, at, journal)
+    place = _named_cell(cell, recorded)
+    behavior = whole = read_sound_behavior(file, catalogue, cell=place, given=parameter or ())
+    if substitutes is not None:
+        behavior = behavior.with_substitutes(load_substitutes(substitutes))
     plan = new_plan(behavior, catalogue)
     options = OperatorOptions(
         autonomy=autonomy,
@@ -121,15 +137,18 @@ def run(
         paused=paused,
     )
     supervision = options.supervision(file)
-    start = _read_start(from_, at, plan, journal)
-    opened = _read_cell(cell, behavior, start)
+    start = _read_start(recorded, at, plan)
+    opened = place or read_cell(None, behavior)
+    require_simulation(plan, opened, allowed=substitute_on_robots)
     parameters = read_parameters(parameter or [], behavior.parameters)
     if start is not None:
         known = {name: value for name, value in start.checkpoint.parameters.items() if name in plan.parameters}
         parameters = {**known, **parameters}
         seed = start.found.origin.seed if seed is None else seed
+        if opened is not None:
+            refuse_errors(check_given(behavior, catalogue, opened, parameters))
     inputs = read_inputs(input_ or [])
-    covered = Coverage(behavior, catalogue) if coverage is not None else None
+    covered = Coverage(whole, catalogue) if coverage is not None else None
     if covered is not None and coverage is not None:
         covered.require_same(coverage)
     order = Order(
@@ -163,21 +182,23 @@ def run(
         else None,
         faults=load_faults(faults) if faults is not None else None,
         watchers=(covered.follow(),) if covered is not None else (),
-        reload=partial(read_plan_anew, file, catalogue) if operator else None,
+        reload=partial(read_plan_anew, file, catalogue, cell=opened, substitutes=behavior.substitutes)
+        if operator
+        else None,
     )
 
     def report(ended: Ended) -> None:
         encoded = encode_event_log(ended.log)
-        if events is not None:
-            events.write_bytes(encoded)
-        if covered is not None and coverage is not None:
-            covered.accumulate(coverage)
-        if junit is not None:
-            write_run_junit(junit, file, plan, ended.result, seed=seed, clock=clock)
         if json:
             print_json(ended.result, encoded, len(ended.log))
         else:
             print_result(ended.result)
+        if events is not None:
+            write(events, encoded)
+        if covered is not None and coverage is not None:
+            covered.accumulate(coverage)
+        if junit is not None:
+            write_run_junit(junit, file, plan, ended.result, seed=seed, clock=clock)
 
     raise typer.Exit(carry_out(order, report=report))
 
@@ -221,7 +242,7 @@ async def _say_what_is_missing(behavior: Behavior, catalogue: Catalogue, cell: O
             sys.stderr.write(f"{finding}\n")
 
 
-def _read_start(text: str | None, at: str | None, plan: Plan, journal: str) -> _Start | None:
+def _read_recorded(text: str | None, at: str | None, journal: str) -> tuple[RecordedRun, int] | None:
     if text is None:
         if at is not None:
             raise DocumentError("--at needs --from", hint="such as --from RUN@120")
@@ -229,7 +250,13 @@ def _read_start(text: str | None, at: str | None, plan: Plan, journal: str) -> _
     run_id, _, number = text.rpartition("@")
     if not run_id or not number.isdecimal():
         raise DocumentError(f"{text!r} is not RUN@SEQ", where="--from", hint="`flexcell runs show RUN --events`")
-    found, seq = read_run(journal, run_id), int(number)
+    return read_run(journal, run_id), int(number)
+
+
+def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> _Start | None:
+    if recorded is None:
+        return None
+    found, seq = recorded
     start = _Start(found=found, seq=seq, checkpoint=moment_of(found, plan, seq=seq, path=at))
     if found.world is not None and not start.restores:
         known = found.world.seq
@@ -239,19 +266,22 @@ def _read_start(text: str | None, at: str | None, plan: Plan, journal: str) -> _
     return start
 
 
-def _read_cell(file: Path | None, behavior: Behavior, start: _Start | None) -> Cell | None:
-    if file is None and start is not None and start.found.origin.cell is not None:
-        return load_cell(Path(start.found.origin.cell))
-    return read_cell(file, behavior)
+def _named_cell(file: Path | None, recorded: tuple[RecordedRun, int] | None) -> Cell | None:
+    """Return the cell of the command line, else that of the run to begin with; None for that of the behavior."""
+    if file is None and recorded is not None and recorded[0].origin.cell is not None:
+        file = Path(recorded[0].origin.cell)
+    return load_cell(file) if file is not None else None
 
 
-def read_sound_behavior(file: Path, catalogue: Catalogue) -> Behavior:
-    """Load a behavior; one that has errors ends the command with all of them.
+def read_sound_behavior(
+    file: Path, catalogue: Catalogue, *, cell: Cell | None = None, given: Sequence[str] = ()
+) -> Behavior:
+    """Load a behavior; one that has errors in the cell where it is to run ends the command with all of them.
 
     Raises:
         DocumentError: it cannot be read at all.
     """
-    behavior, findings = read_behavior(file, catalogue)
+    behavior, findings = read_behavior(file, catalogue, cell=cell, given=given)
     refuse_errors(findings)
     return behavior
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.cause import describe
+from engine.cause import describe, link_text, outwards
 from engine.junit import Case, Problem, Suite, class_name, write_junit
 from engine.plan import Plan
 from engine.run import RunResult
@@ -37,6 +37,6 @@ def _problem(result: RunResult) -> Problem | None:
     return Problem(
         kind="failure" if result.status == "finished" else "error",
         type=said,
-        message=f"{said}: {why}" if why else said,
-        text="\nbecause ".join([said, *why.split(" because ")]) if why else said,
+        message=why or said,
+        text="\nso ".join(map(link_text, outwards(result.cause))) or said,
     )

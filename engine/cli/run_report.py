@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import sys
 from hashlib import sha256
-from typing import Any
 
 import msgspec
 from rich.console import Console
 
-from engine.cause import describe
+from engine.cause import link_text, outwards
 from engine.event import Cause
 from engine.run import RunResult
 
@@ -27,14 +26,17 @@ def print_json(result: RunResult, encoded: bytes, count: int) -> None:
         "events": count,
         "events_sha256": sha256(encoded).hexdigest(),
         "userdata": result.userdata,
+        **({"stood_in_for": result.stood_in_for} if result.stood_in_for else {}),
     }
     sys.stdout.write(msgspec.json.encode(document).decode() + "\n")
 
 
 def cause_links(cause: Cause | None) -> list[dict[str, object]]:
-    """Return a cause chain as the commands give it to machines."""
-    chain = cause.chain() if cause else ()
-    return [{"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes} for link in chain]
+    """Return a cause chain as the commands give it to machines: what was measured first, the run's end last."""
+    return [
+        {"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes}
+        for link in outwards(cause)
+    ]
 
 
 def print_result(result: RunResult) -> None:
@@ -43,18 +45,16 @@ def print_result(result: RunResult) -> None:
     style = "green" if result.success else "red"
     what = result.outcome or result.status
     console.print(f"[bold {style}]{what}[/] after {result.duration_s:.2f} s [dim](run {result.run})[/]")
+    if result.stood_in_for:
+        console.print(f"substitutes stood in for {', '.join(result.stood_in_for)}", markup=False, soft_wrap=True)
     if not result.success:
         print_cause(result.cause, console)
 
 
 def print_cause(cause: Cause | None, console: Console) -> None:
-    """Print a cause chain, a line for each link and each node that it came through."""
-    for depth, link in enumerate(cause.chain() if cause is not None else ()):
-        console.print(f"{'  ' * depth}because {describe_link(link)}", markup=False, highlight=False, soft_wrap=True)
+    """Print a cause chain from what was measured outwards, a line for each link and each node that it came through."""
+    for depth, link in enumerate(outwards(cause)):
+        begin = f"{'  ' * depth}so " if depth else ""
+        console.print(f"{begin}{link_text(link)}", markup=False, highlight=False, soft_wrap=True)
         for node in link.nodes:
-            console.print(f"{'  ' * depth}        in {node}", markup=False, highlight=False, soft_wrap=True)
-
-
-def describe_link(link: Any) -> str:
-    """Write one link of a cause chain without what is below it."""
-    return describe(msgspec.structs.replace(link, because=None))
+            console.print(f"{'  ' * depth}     in {node}", markup=False, highlight=False, soft_wrap=True)

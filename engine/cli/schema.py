@@ -12,7 +12,7 @@ from engine.document.schema import schema_texts
 
 def schema(
     kind: Annotated[
-        Literal["behavior", "cell", "entries", "faults"], typer.Argument(help="Which document.")
+        Literal["behavior", "cell", "entries", "faults", "substitutes"], typer.Argument(help="Which document.")
     ] = "behavior",
 ) -> None:
     """Print the JSON Schema of a kind of document."""

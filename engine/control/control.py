@@ -19,6 +19,7 @@ from engine.nearness import near_names
 from engine.node_path import inside
 from engine.preemption import preempt_for_order
 from engine.recorder import Recorder
+from engine.settle import Settlement
 from engine.suspension import Suspensions
 
 LossPolicy = Literal["hold", "continue", "stop"]
@@ -67,6 +68,7 @@ class Control:
         gate: Where the nodes wait.
         suspensions: What holds their goals and timers.
         activity: What is active.
+        settlement: Tells when the run is quiet.
         recorder: The event log.
         structure: The behavior, for messages about what does not exist.
         stop: Stops the run with a reason.
@@ -80,6 +82,7 @@ class Control:
         gate: Gate,
         suspensions: Suspensions,
         activity: Activity,
+        settlement: Settlement,
         recorder: Recorder,
         structure: Structure,
         stop: Callable[[str], None],
@@ -91,6 +94,7 @@ class Control:
         self._gate = gate
         self._suspensions = suspensions
         self._activity = activity
+        self._settlement = settlement
         self._recorder = recorder
         self._stop = stop
         self._demanded = demanded
@@ -226,6 +230,10 @@ class Control:
         self._set_operator("lost", asks=True)
         loop = asyncio.get_running_loop()
         self._loss = loop.call_later(self._loss_timeout_s, self._apply_loss)
+
+    async def settled(self) -> None:
+        """Return when all has happened that a command makes happen at once."""
+        await self._settlement.settled(depth=-1.0)
 
     def view(self) -> ControlView:
         """Return the present state."""

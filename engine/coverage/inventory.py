@@ -8,7 +8,8 @@ from functools import cached_property
 
 from engine.coverage.item import Item, ItemKind
 from engine.document.behavior import Behavior
-from engine.document.node import TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Condition, Node
+from engine.document.condition import Condition
+from engine.document.node import TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
 from engine.errors import Position
 from engine.plan import Catalogue, Plan, new_plan
 
@@ -18,8 +19,7 @@ class Rule:
     """One condition of a concurrency container, or its `otherwise`, under the name of its item."""
 
     name: str
-    outcome: str
-    when: Mapping[str, str]
+    condition: Condition
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,11 +142,12 @@ class _Listing:
             return
         rules: list[Rule] = []
         for number, rule in enumerate(container.rules, start=1):
-            rules.append(Rule(name=f"{number}: {_text(rule)}", outcome=rule.outcome, when=rule.when))
+            rules.append(Rule(name=f"{number}: {_text(rule)}", condition=rule))
             where = behavior.position(inside, "concurrency", "conditions", number - 1)
             self._add("condition", path, where, rules[-1].name, rule.outcome)
         if container.otherwise is not None:
-            rules.append(Rule(name="otherwise", outcome=container.otherwise, when={}))
+            always = Condition(outcome=container.otherwise, when={})
+            rules.append(Rule(name="otherwise", condition=always))
             where = behavior.key_position(inside, "concurrency", "otherwise")
             self._add("condition", path, where, "otherwise", container.otherwise)
         self.rules[path] = tuple(rules)
@@ -175,4 +176,5 @@ def _statuses_of_part(node: Node) -> tuple[str, ...]:
 
 
 def _text(rule: Condition) -> str:
-    return f"{rule.outcome} ← " + ", ".join(f"{child}: {outcome}" for child, outcome in rule.when.items())
+    children = ", ".join(f"{child}: {outcome}" for child, outcome in rule.when.items())
+    return f"{rule.outcome} ← {children}" if rule.needs_all else f"{rule.outcome} ← {rule.needed} of {children}"

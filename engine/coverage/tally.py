@@ -62,9 +62,10 @@ class Tally:
         succeeding = self._inventory.succeeding.get(path)
         if succeeding is not None:
             self._count(("status", path, "success" if outcome in succeeding else "failure"))
+        finished = self._finished.get(path, {})
         for rule in self._inventory.rules.get(path, ()):
-            finished = self._finished.get(path, {})
-            if rule.outcome == outcome and all(finished.get(child) == due for child, due in rule.when.items()):
+            condition = rule.condition
+            if condition.outcome == outcome and condition.holds(lambda child, due: finished.get(child) == due):
                 self._count(("condition", path, rule.name))
                 break
 

@@ -6,10 +6,18 @@ A document that cannot be used is a `DocumentError` with file, line and column.
 from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, RobotEntry, load_cell
 from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
+from engine.document.condition import Condition
 from engine.document.entries import Entries, EntriesDocument, load_entries, write_entries
 from engine.document.expression import Template, compile_template
-from engine.document.loader import CircularReference, load_behavior, parse_behavior, read_behavior
-from engine.document.node import Concurrency, Condition, ForEach, Guard, Machine, Node, Retry, Timeout
+from engine.document.loader import (
+    CircularReference,
+    Survey,
+    load_behavior,
+    parse_behavior,
+    read_behavior,
+    survey_behavior,
+)
+from engine.document.node import Concurrency, ForEach, Guard, Machine, Node, Retry, Timeout
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.placement import Placement
 from engine.document.schema import write_schemas
@@ -44,6 +52,7 @@ __all__ = [
     "RobotEntry",
     "Source",
     "StateSignature",
+    "Survey",
     "Template",
     "Timeout",
     "bind_parameters",
@@ -56,6 +65,7 @@ __all__ = [
     "parse_source",
     "read_behavior",
     "read_signature",
+    "survey_behavior",
     "write_entries",
     "write_schemas",
     "write_yaml",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -12,6 +13,7 @@ from msgspec import Meta
 from engine.document.conversion import Strict
 from engine.document.node import Key, Node, OutcomeName
 from engine.document.parameter import Parameter
+from engine.document.substitutes import Substitutes
 from engine.document.yaml_source import DataPath, Source
 from engine.errors import Position
 
@@ -45,6 +47,11 @@ class Behavior:
     source: Source = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
     """The classes that Python gave it, by the `module:Class` written for each; a document brings none."""
+    substitutes: Substitutes | None = field(default=None, repr=False)
+    """What stands in for some of its nodes, in a test."""
+    gaps: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]], repr=False, compare=False)
+    """What could not be read, in a behavior that is only to be checked: keys by the path of their node, or by an empty
+    one where they are the behavior's own; an empty key where nobody knows which. None of a behavior that may be run."""
 
     @property
     def name(self) -> str:
@@ -77,6 +84,13 @@ class Behavior:
         cell = self.document.cell
         return (self.file.parent / cell).resolve() if cell is not None else None
 
+    def with_substitutes(self, substitutes: Substitutes | None) -> Behavior:
+        """Return the behavior with stand-ins, which does not mean the same any more; itself for none."""
+        if substitutes is None:
+            return self
+        meaning = sha256(self.meaning.encode() + substitutes.text).hexdigest()
+        return replace(self, substitutes=substitutes, meaning=meaning)
+
     def nodes(self) -> Iterator[tuple[str, Node]]:
         """Go through (path, node) in document order, containers before their children."""
         return walk("root", self.root)
@@ -88,13 +102,14 @@ class Behavior:
             path: The node; where it is absent, the nearest ancestor is given.
             keys: Keys as written, from the node inward, e.g. `"with", "speed"`.
         """
-        return self.source.position((*self._data_path(path), *keys), of_key=not keys)
+        return self.source.position((*self.data_path(path), *keys), of_key=not keys)
 
     def key_position(self, path: str, *keys: str | int) -> Position:
         """Return where a key inside the node at `path` stands."""
-        return self.source.position((*self._data_path(path), *keys), of_key=True)
+        return self.source.position((*self.data_path(path), *keys), of_key=True)
 
-    def _data_path(self, path: str) -> DataPath:
+    def data_path(self, path: str) -> DataPath:
+        """Return the keys from the document inward to the node at `path`, or to its nearest ancestor."""
         steps: list[str | int] = ["root"]
         node = self.root
         for name in path.split("/")[1:]:

@@ -7,8 +7,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from engine.document.conversion import Strict
-from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
-from engine.messages import Vector3
+from engine.document.placement import Angle, Color, Length, Name, Offset, Placement, Point
 
 Pixels = Annotated[int, Meta(ge=16, le=4096, description="Number of pixels")]
 Rate = Annotated[float, Meta(gt=0.0, le=120.0, description="Images in a second")]
@@ -55,8 +54,8 @@ class DepthCamera(Strict, frozen=True, kw_only=True):
     `driver` is `sim`.
     """
 
-    at: Vector3
-    look_at: Vector3
+    at: Point
+    look_at: Point
     size_px: tuple[Pixels, Pixels] = (640, 480)
     fov_rad: FieldOfView = 1.0
     rate_hz: Rate = 10.0
@@ -74,7 +73,7 @@ class OccupancyMap(Strict, frozen=True, kw_only=True):
     that and left out.
     """
 
-    center_m: Vector3
+    center_m: Point
     size_m: tuple[Length, Length, Length]
     voxel_m: Annotated[float, Meta(ge=0.005, le=0.1, description="Edge of a voxel in metres")] = 0.02
     robot_margin_m: Offset = 0.04
@@ -93,8 +92,8 @@ class Person(Strict, frozen=True, kw_only=True):
     `forearm_m` ends in the middle of the hand, which is what `hand_rests` and reaches are about.
     """
 
-    shoulder: Vector3
-    hand_rests: Vector3
+    shoulder: Point
+    hand_rests: Point
     upper_arm_m: Length = 0.32
     forearm_m: Length = 0.36
     radius_m: Length = 0.05

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TypeVar, cast
 
 import msgspec
 import msgspec.inspect as inspect
 
+from engine.document.mistakes import Mistake, Sifting, as_meant
 from engine.document.yaml_source import DataPath, Source
 from engine.errors import DocumentError
 from engine.nearness import near_names
 
 T = TypeVar("T")
 
-_AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`(?P<key>key)` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
-_UNKNOWN = re.compile(r"Object contains unknown field `(.*)`", re.DOTALL)
+_AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`key` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
+_NO_CHOICE = re.compile(r"Invalid enum value '(.*)'", re.DOTALL)
 _MISSING = re.compile(r"Object missing required field `(.*)`")
 _TYPES = {"object": "mapping", "array": "list", "str": "text", "float": "number", "int": "integer", "bool": "boolean"}
 
@@ -35,37 +36,66 @@ def convert(source: Source, kind: type[T], *, refused: Mapping[str, str] | None 
         refused: For keys that are known and not supported, what to say about them.
 
     Raises:
-        DocumentError: the data does not fit; `where` is the position.
+        DocumentError: the data does not fit; `where` is the position of the first mistake, `others` are the others.
     """
     try:
         return msgspec.convert(source.data, kind)
-    except msgspec.ValidationError as error:
-        raise _located(source, kind, str(error), refused or {}) from None
+    except msgspec.ValidationError as complaint:
+        sifting = Sifting()
+        sifting.sift(source.data, kind)
+        found = refusals(source, kind, sifting.mistakes, refused=refused) or [
+            _refusal(source, kind, (), str(complaint))
+        ]
+        raise together(found) from None
 
 
-def _located(source: Source, kind: object, complaint: str, refused: Mapping[str, str]) -> DocumentError:
-    path = _find(source.data, kind, complaint)
-    what, key_is_wrong = _what(complaint)
-    unknown = _UNKNOWN.fullmatch(what)
-    if unknown:
-        name = unknown[1]
-        where = source.position((*path, name), of_key=True)
-        if name in refused:
-            return DocumentError(f"this version does not run `{name}`", where=where, hint=refused[name])
-        hint = near_names(name, field_names(kind, path))
-        return DocumentError(f"unknown key `{name}`", where=where, hint=hint)
-    missing = _MISSING.fullmatch(what)
+def together(mistakes: Sequence[DocumentError]) -> DocumentError:
+    """Return the first mistake of a document, with the others as its `others`."""
+    first, *others = mistakes
+    first.others = tuple(others)
+    return first
+
+
+def refusals(
+    source: Source, kind: object, mistakes: Iterable[Mistake], *, refused: Mapping[str, str] | None = None
+) -> list[DocumentError]:
+    """Return what to say about the mistakes of a document that is to be a `kind`."""
+    known = list(mistakes)
+    meant = as_meant(source, known)
+    return [_of_mistake(meant, kind, mistake, refused or {}) for mistake in known]
+
+
+def _of_mistake(source: Source, kind: object, mistake: Mistake, refused: Mapping[str, str]) -> DocumentError:
+    path = mistake.path
+    match mistake.fault:
+        case "unknown":
+            name = str(path[-1])
+            where = source.position(path, of_key=True)
+            if name in refused:
+                return DocumentError(f"this version does not run `{name}`", where=where, hint=refused[name])
+            hint = near_names(name, field_names(kind, path[:-1]))
+            return DocumentError(f"unknown key `{name}`", where=where, hint=hint)
+        case "missing":
+            return DocumentError(f"the key `{path[-1]}` is missing", where=source.position(path[:-1], of_key=True))
+        case "key":
+            return _refusal(source, kind, path, mistake.complaint, of_key=True)
+        case "value":
+            return _refusal(source, kind, path, mistake.complaint)
+
+
+def _refusal(source: Source, kind: object, path: DataPath, complaint: str, *, of_key: bool = False) -> DocumentError:
+    match = cast("re.Match[str]", _AT.match(complaint))
+    steps = re.findall(r"\.([^.\[\]]+)|\[(\d+)\]", match["path"] or "$")
+    path = (*path, *(name or int(index) for name, index in steps))
+    missing = _MISSING.fullmatch(match["what"])
     if missing:
         return DocumentError(f"the key `{missing[1]}` is missing", where=source.position(path, of_key=True))
-    where = source.position(path, of_key=key_is_wrong)
+    where = source.position(path, of_key=of_key)
     name = next((step for step in reversed(path) if isinstance(step, str)), None)
     subject = f"`{name}`: " if name is not None else ""
-    return DocumentError(f"{subject}{in_words(what)}", where=where, hint=_advice(kind, path, of_key=key_is_wrong))
-
-
-def _what(complaint: str) -> tuple[str, bool]:
-    match = cast("re.Match[str]", _AT.match(complaint))
-    return match["what"], match["key"] is not None
+    choice = _NO_CHOICE.fullmatch(match["what"])
+    hint = _advice(kind, path, of_key=of_key, given=choice[1] if choice else "")
+    return DocumentError(f"{subject}{in_words(match['what'])}", where=where, hint=hint)
 
 
 def in_words(what: str) -> str:
@@ -81,57 +111,6 @@ def in_words(what: str) -> str:
     return f"{said[:1].lower()}{said[1:]}"
 
 
-def _find(data: object, kind: object, complaint: str) -> DataPath:
-    """Return where the complaint is about; msgspec leaves out which key of a mapping it was."""
-    match = cast("re.Match[str]", _AT.match(complaint))
-    steps = re.findall(r"\.([^.\[\]]+)|\[(\d+|\.\.\.)\]", match["path"] or "$")
-    # A complaint about a key says in which mapping; the key is one more step that has to be found.
-    extra = [("", "...")] if match["key"] else []
-    return tuple(_walk(data, kind, [*steps, *extra]))
-
-
-def _walk(data: object, kind: object, steps: list[tuple[str, str]]) -> Iterator[str | int]:
-    trail: list[str | int] = []
-    here = data
-    for name, index in steps:
-        step = name or (index if index == "..." else int(index))
-        if step == "...":
-            if not isinstance(here, dict):
-                return
-            step = _culprit(data, trail, cast("dict[str, object]", here), kind)
-        if isinstance(step, str) and isinstance(here, dict):
-            here = cast("dict[str, object]", here).get(step)
-        elif isinstance(step, int) and isinstance(here, list):
-            here = cast("list[object]", here)[step]
-        else:
-            return
-        trail.append(step)
-        yield step
-
-
-def _culprit(data: object, trail: list[str | int], mapping: dict[str, object], kind: object) -> str:
-    """Find the first key that alone brings a complaint; it is the one msgspec met first."""
-    for key, value in mapping.items():
-        try:
-            msgspec.convert(_with_only(data, trail, {key: value}), cast("type[object]", kind))
-        except msgspec.ValidationError:
-            return key
-    return next(iter(mapping))
-
-
-def _with_only(data: object, trail: list[str | int], replacement: object) -> object:
-    """Return a copy of `data` in which the value at `trail` is replaced."""
-    if not trail:
-        return replacement
-    step, rest = trail[0], trail[1:]
-    if isinstance(data, dict):
-        mapping = cast("dict[str, object]", data)
-        return {**mapping, cast("str", step): _with_only(mapping[cast("str", step)], rest, replacement)}
-    items = list(cast("list[object]", data))
-    items[cast("int", step)] = _with_only(items[cast("int", step)], rest, replacement)
-    return items
-
-
 @cache
 def _type_of(kind: object) -> inspect.Type:
     return inspect.type_info(kind)
@@ -142,14 +121,14 @@ def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
     return tuple(name for struct in _structs_at(kind, path) for name in (f.encode_name for f in struct.fields))
 
 
-def _advice(kind: object, path: DataPath, *, of_key: bool) -> str | None:
+def _advice(kind: object, path: DataPath, *, of_key: bool, given: str) -> str | None:
     """Return what the model says about the value (or the key) at `path`: its description, or the choices."""
     if of_key:
         mappings = [option for option in _types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
         return next((found for option in mappings if (found := _description([option.key_type]))), None)
     described = _declared_at(kind, path)
     choices = [str(v) for option in described if isinstance(option, inspect.LiteralType) for v in option.values]
-    return _description(described) or (f"known: {', '.join(choices)}" if choices else None)
+    return _description(described) or (near_names(given, choices) if choices else None)
 
 
 def _declared_at(kind: object, path: DataPath) -> list[inspect.Type]:

@@ -61,7 +61,9 @@ SECTIONS = {
 Section = Literal[
     "joints", "poses", "dmps", "cart_dmps", "cart_offsets", "trajectories", "grippers", "detections", "records"
 ]
-Angles = Annotated[tuple[float, ...], Meta(min_length=1, description="Angles in radians")]
+Angles = Annotated[
+    tuple[float, ...], Meta(min_length=1, description="Angles in radians", extra_json_schema={"unit": "rad"})
+]
 
 
 class NamedAngles(Strict, frozen=True, kw_only=True):

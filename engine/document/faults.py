@@ -19,6 +19,7 @@ from msgspec import Meta
 
 from engine.document.conversion import Strict, convert
 from engine.document.duration import Duration, seconds
+from engine.document.path_pattern import PathPattern
 from engine.document.yaml_source import Source, load_source, parse_source
 from engine.errors import DocumentError, Position
 
@@ -26,10 +27,6 @@ FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]
 FAULT_KINDS: tuple[FaultKind, ...] = ("late", "hang", "error", "duplicate", "lost", "crash")
 _WHERE_AND_WHEN = ("at", "address", "request", "times", "probability")
 
-PathPattern = Annotated[
-    str,
-    Meta(min_length=1, description="A node path; `*` stands for any text without `/`, `**` for any number of parts"),
-]
 AddressPattern = Annotated[
     str,
     Meta(

@@ -6,10 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import msgspec
+
 from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.collection_pause import without_collection
 from engine.document.conversion import convert
 from engine.document.meaning import meaning_hash
+from engine.document.mistakes import MAX_MISTAKES
+from engine.document.partial import read_around
+from engine.document.recovery import Recovered, load_around, recover
 from engine.document.structure import require_structure
 from engine.document.yaml_source import Source, load_source, parse_source
 from engine.errors import DocumentError, Position
@@ -28,6 +33,18 @@ class CircularReference:
 
     def __str__(self) -> str:
         return " → ".join(file.name for file in (*self.chain, self.chain[0]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Survey:
+    """What there is to say of a document before it is checked.
+
+    `behavior` is None where nothing can be read. With mistakes it is only good for being checked: it has gaps.
+    """
+
+    behavior: Behavior | None
+    mistakes: tuple[DocumentError, ...] = ()
+    circles: tuple[CircularReference, ...] = ()
 
 
 def load_behavior(path: Path | str) -> Behavior:
@@ -71,29 +88,90 @@ def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     return behavior
 
 
-class _Reading:
-    """One pass over a document and its references."""
+@without_collection
+def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within: Path | None = None) -> Survey:
+    """Read a behavior with all its mistakes and those of the behaviors it refers to.
 
-    def __init__(self) -> None:
+    Args:
+        path: Its file.
+        text: What is read in its place, as it is being edited; references are read relative to `path`.
+        within: A folder; what a document with mistakes names outside of it is not looked at, and is a mistake.
+    """
+    file = Path(path)
+    try:
+        strict = _Reading()
+        source = parse_source(text, file=str(path)) if text is not None else load_source(file)
+        behavior = strict.build(source, file, ())
+        return Survey(behavior=behavior, circles=tuple(strict.circles))
+    except DocumentError as refusal:
+        first = refusal
+    around = _Reading(mistakes=[], within=within)
+    try:
+        recovered = recover(text, file=str(path)) if text is not None else load_around(file)
+        behavior = around.build_around(recovered, file, ())
+    except DocumentError as refusal:
+        known = around.mistakes if refusal in around.mistakes else [*around.mistakes, refusal]
+        return Survey(behavior=None, mistakes=tuple(known))
+    mistakes = tuple(around.mistakes[:MAX_MISTAKES] or [first])
+    return Survey(behavior=behavior, mistakes=mistakes, circles=tuple(around.circles))
+
+
+class _Reading:
+    """One pass over a document and its references; with a list for mistakes it goes around them."""
+
+    def __init__(self, *, mistakes: list[DocumentError] | None = None, within: Path | None = None) -> None:
+        self._within = within.resolve() if within is not None else None
         self.circles: list[CircularReference] = []
+        self.mistakes: list[DocumentError] = mistakes if mistakes is not None else []
+        self._goes_around = mistakes is not None
         self._done: dict[Path, Behavior] = {}
+        self._failed: set[Path] = set()
         self._expanded: dict[str, int] = {}
 
     def read(self, file: Path, chain: tuple[Path, ...]) -> Behavior:
         known = self._done.get(_identity(file))
         if known is not None:
             return known
-        behavior = self.build(load_source(file), file, chain)
+        if self._goes_around:
+            behavior = self.build_around(load_around(file), file, chain)
+        else:
+            behavior = self.build(load_source(file), file, chain)
         self._done[_identity(file)] = behavior
         return behavior
 
     def build(self, source: Source, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        document = convert(source, BehaviorDocument)
-        behavior = Behavior(document=document, file=file, meaning="", source=source)
+        behavior = Behavior(document=convert(source, BehaviorDocument), file=file, meaning="", source=source)
         require_structure(behavior)
+        return self._complete(behavior, file, chain)
+
+    def build_around(self, recovered: Recovered, file: Path, chain: tuple[Path, ...]) -> Behavior:
+        self.mistakes += recovered.mistakes
+        if recovered.source is None:
+            raise recovered.mistakes[0]
+        partial = read_around(recovered.source, file, recovered.gaps)
+        self.mistakes += partial.mistakes
+        if partial.behavior is None:
+            raise (*recovered.mistakes, *partial.mistakes)[0]
+        return self._complete(self._without_stray_cell(partial.behavior), file, chain)
+
+    def _without_stray_cell(self, behavior: Behavior) -> Behavior:
+        """Return a behavior that names no cell outside of the folder."""
+        if behavior.cell_file is None or not self._is_outside(behavior.cell_file):
+            return behavior
+        self._refuse_outside(str(behavior.document.cell), behavior.source.position(("cell",)))
+        return replace(behavior, document=msgspec.structs.replace(behavior.document, cell=None))
+
+    def _is_outside(self, file: Path) -> bool:
+        return self._within is not None and not _identity(file).is_relative_to(self._within)
+
+    def _refuse_outside(self, written: str, position: Position) -> None:
+        hint = "name a file of this project, relative to this document"
+        self._refuse(f"`{written}` leads out of the project", position, hint)
+
+    def _complete(self, behavior: Behavior, file: Path, chain: tuple[Path, ...]) -> Behavior:
         references = self._references(behavior, (*chain, _identity(file)))
         meanings = {written: referred.meaning for written, referred in references.items()}
-        meaning = meaning_hash(document, meanings)
+        meaning = meaning_hash(behavior.document, meanings)
         self._expanded[meaning] = self._count_expanded(behavior, meanings)
         return replace(behavior, references=references, meaning=meaning)
 
@@ -122,10 +200,32 @@ class _Reading:
                 continue
             if len(chain) >= MAX_CHAIN:
                 raise DocumentError(f"behaviors refer to one another more than {MAX_CHAIN} deep", where=position)
-            if not file.is_file():
-                raise DocumentError(f"there is no behavior file `{written}`", where=position, hint=f"looked for {file}")
-            references[written] = self.read(file, chain)
+            if self._is_outside(file):
+                self._refuse_outside(written, position)
+            elif not file.is_file():
+                self._refuse(f"there is no behavior file `{written}`", position, f"looked for {file}")
+            elif (referred := self._referred(file, chain)) is not None:
+                references[written] = referred
         return references
+
+    def _refuse(self, message: str, position: Position, hint: str) -> None:
+        error = DocumentError(message, where=position, hint=hint)
+        if not self._goes_around:
+            raise error
+        self.mistakes.append(error)
+
+    def _referred(self, file: Path, chain: tuple[Path, ...]) -> Behavior | None:
+        """Return a behavior that is referred to; None for one that is gone around, as nothing of it can be read."""
+        if _identity(file) in self._failed:
+            return None
+        try:
+            return self.read(file, chain)
+        except DocumentError as error:
+            if not self._goes_around:
+                raise
+            self._failed.add(_identity(file))
+            self.mistakes += [error] if error not in self.mistakes else []
+            return None
 
 
 def _identity(file: Path) -> Path:

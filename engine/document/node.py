@@ -15,6 +15,7 @@ from typing import Annotated, Literal, get_args
 
 from msgspec import Meta
 
+from engine.document.condition import Condition, read_condition
 from engine.document.conversion import Strict
 from engine.document.duration import Duration, seconds
 
@@ -50,6 +51,7 @@ Reference = Annotated[str, Meta(min_length=1, description="A behavior file, rela
 Expression = Annotated[str, Meta(min_length=1, description="An expression, `${…}`")]
 AutonomyLevel = Literal["off", "low", "high", "full"]
 Status = Literal["success", "failure", "running"]
+Count = Annotated[int, Meta(ge=1, description="For `at_least`: how many of these")]
 Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or more")]
 
 
@@ -109,31 +111,29 @@ class Machine(Strict, frozen=True, kw_only=True):
     userdata: dict[Key, object] = {}
 
 
-class Condition(Strict, frozen=True, kw_only=True):
-    """`outcome` is taken when every child in `when` has finished with the outcome named for it."""
-
-    outcome: str
-    when: Mapping[str, str]
-
-
 class Concurrency(Strict, frozen=True, kw_only=True):
-    """Children side by side; the first condition that holds decides the outcome."""
+    """Children side by side; the first condition that holds decides the outcome.
+
+    A condition asks for outcomes of children, all of them, or any `at_least` of them. Keys in `shared` have one value
+    for all children at any time; what a child writes to other keys is seen by the others once all have ended.
+    """
 
     states: Annotated[dict[NodeName, Node], Meta(min_length=1, description="The children, at least one")]
     conditions: tuple[
         Annotated[
-            dict[OutcomeName, Annotated[dict[str, str], Meta(min_length=1, description="`{child: outcome}`")]],
-            Meta(min_length=1, max_length=1, description="`{outcome: {child: outcome, …}}`"),
+            dict[OutcomeName, Annotated[dict[str, str | Count], Meta(min_length=1, description="`{child: outcome}`")]],
+            Meta(min_length=1, max_length=1, description="`{outcome: {child: outcome, …, at_least: number}}`"),
         ],
         ...,
     ]
     otherwise: str | None = None
     userdata: dict[Key, object] = {}
+    shared: tuple[Key, ...] = ()
 
     @property
     def rules(self) -> tuple[Condition, ...]:
         """The conditions in order of precedence."""
-        return tuple(Condition(outcome=name, when=when) for entry in self.conditions for name, when in entry.items())
+        return tuple(read_condition(name, when) for entry in self.conditions for name, when in entry.items())
 
 
 class ForEach(Strict, frozen=True, kw_only=True, rename={"item": "as"}):
@@ -171,11 +171,21 @@ class Parallel(Strict, frozen=True, kw_only=True):
     """Children ticked together; `policy` says whose success is its own: `all`, `one`, or those named.
 
     With `synchronise` a child that has succeeded is not run again while the others are at work.
+
+    With thresholds in place of a policy it succeeds when `success_count` children have (all, without it) and fails when
+    `failure_count` have failed (1, without it) or too few are left to succeed; a child that has ended is not run again.
     """
 
     children: Annotated[tuple[Node, ...], Meta(min_length=1, description="The children, at least one")]
     policy: Literal["all", "one"] | Annotated[tuple[str, ...], Meta(min_length=1)] = "all"
     synchronise: bool = True
+    success_count: Annotated[int, Meta(ge=1, description="How many children must succeed")] | None = None
+    failure_count: Annotated[int, Meta(ge=1, description="How many children must fail")] | None = None
+
+    @property
+    def counts(self) -> bool:
+        """Whether it has thresholds in place of a policy."""
+        return self.success_count is not None or self.failure_count is not None
 
 
 class Decorator(Strict, frozen=True, kw_only=True):
@@ -261,7 +271,8 @@ class Node(
     `autonomy` names for an outcome the level from which on it does not pass by itself any more;
     `resume` says what to do with the node after a crash: `rerun`, `ask`, or take an outcome.
     `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its place in paths.
-    `every` is how often a py_trees `behaviour` is ticked while it is RUNNING, 0.1 s without it.
+    `every` (in a tree) is how often a py_trees `behaviour` is ticked while it is RUNNING, 0.1 s without it,
+    and how often a check is asked again while it stands in front of a running action in a composite without memory.
     """
 
     state: str | None = None
@@ -309,11 +320,6 @@ class Node(
         if self.state is not None:
             return "state"
         return self.kinds[0]
-
-    @property
-    def every_s(self) -> float:
-        """How often a py_trees behaviour is ticked while it is RUNNING, in seconds."""
-        return seconds(self.every) if self.every is not None else 0.1
 
     @property
     def sequential(self) -> Machine | None:
@@ -382,6 +388,11 @@ class Node(
         said = self.state or self.behaviour or ""
         said = re.split(r"[.:]", said)[-1] or (PurePosixPath(self.behavior).stem if self.behavior else "")
         return re.sub(r"[^A-Za-z0-9_-]", "_", said)[:64] or (self.kinds or ("node",))[0]
+
+
+def shared_keys(node: Node) -> tuple[str, ...]:
+    """Return the keys that the branches of a concurrency container share; of another node none."""
+    return node.concurrency.shared if node.concurrency is not None else ()
 
 
 def _names(children: Iterable[Node]) -> list[str]:

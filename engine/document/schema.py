@@ -14,6 +14,7 @@ from engine.document.entries import EntriesDocument
 from engine.document.faults import FaultsDocument
 from engine.document.parameter import any_value
 from engine.document.project import ProjectDocument
+from engine.document.substitutes import SubstitutesDocument
 
 SCHEMA_FOLDER = Path(__file__).parent / "schemas"
 _MODELS = {
@@ -22,6 +23,7 @@ _MODELS = {
     "entries": EntriesDocument,
     "faults": FaultsDocument,
     "project": ProjectDocument,
+    "substitutes": SubstitutesDocument,
 }
 
 

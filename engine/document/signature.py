@@ -45,12 +45,18 @@ class StateSignature:
     inputs: Mapping[str, KeySignature]
     outputs: Mapping[str, KeySignature]
     instant: bool = False
+    observes: bool = False
     unwritten: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     state: type[State] = field(repr=False)
 
     def passed_on(self, output: str) -> str | None:
         """Return the parameter whose value an output repeats, as the class marks it; None where there is none."""
         return next((key.name for key in self.parameters.values() if key.schema.get("output") == output), None)
+
+    @property
+    def commands_hardware(self) -> bool:
+        """Whether its class leases anything while it runs."""
+        return self.state.resources is not State.resources
 
     @property
     def summary(self) -> str:
@@ -96,6 +102,7 @@ def _describe(state: type[State]) -> StateSignature:
         inputs=_inputs(state),
         outputs={key: _key(key, kind, required=True, default=None) for key, kind in state.outputs.items()},
         instant=state.instant,
+        observes=state.observes,
         unwritten=state.unwritten,
         state=state,
     )
@@ -115,7 +122,9 @@ def _default(found: msgspec.structs.FieldInfo) -> object:
 
 
 def _inputs(state: type[State]) -> dict[str, KeySignature]:
-    run = state.run
+    run = getattr(state, "run", None)
+    if run is None:
+        raise _broken(state, "it has no `run`", "add `async def run(self, ctx: Context) -> Outcome`")
     if not inspect.iscoroutinefunction(run):
         raise _broken(state, "its `run` is not a coroutine", "write `async def run(self, ctx) -> Outcome`")
     try:

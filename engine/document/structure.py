@@ -1,15 +1,21 @@
-"""Rules of a behavior document that types alone cannot say; the first breach is an error with its position."""
+"""Rules of a behavior document that types alone cannot say; each breach is an error with its position."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 from engine.document.behavior import Behavior
 from engine.document.cel_expression import RESERVED
-from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node, Parallel
+from engine.document.condition import AT_LEAST
+from engine.document.conversion import together
+from engine.document.duration import seconds
+from engine.document.mistakes import MAX_MISTAKES
+from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Concurrency, Node, Parallel
 from engine.errors import DocumentError
 from engine.nearness import near_names
 
+_SHORTEST_EVERY_S = 1e-3
 _CONTAINER_KEYS = {
     "with": "parameters go to states and behavior references",
     "in": "the children of a container read the keys around it directly",
@@ -17,159 +23,250 @@ _CONTAINER_KEYS = {
 }
 
 
+@dataclass(frozen=True, kw_only=True)
+class Breach:
+    """A rule that is broken: at the node `path`, or by what the behavior itself declares where that is empty.
+
+    Without what stands at `excess`, keys from the node inward, the rule is kept; None where the node cannot be
+    understood at all.
+    """
+
+    path: str
+    error: DocumentError
+    excess: tuple[str | int, ...] | None = ()
+
+
 def require_structure(behavior: Behavior) -> None:
     """Check kinds, places of keys and names.
 
     Raises:
-        DocumentError: the first breach; `where` is its position.
+        DocumentError: the first breach; `where` is its position, `others` are the others.
     """
-    _require_names(behavior)
+    errors = [breach.error for breach in breaches(behavior)]
+    if errors:
+        raise together(errors[:MAX_MISTAKES])
+
+
+def breaches(behavior: Behavior) -> Iterator[Breach]:
+    """Go through all breaches; what is inside a node that cannot be understood is left out."""
+    yield from _names(behavior)
     if behavior.root.transitions:
         where = behavior.key_position("root", "transitions")
-        raise DocumentError("the root has no transitions", where=where, hint="its outcomes are those of the behavior")
+        error = DocumentError("the root has no transitions", where=where, hint="its outcomes are those of the behavior")
+        yield Breach(path="root", error=error, excess=("transitions",))
     in_tree: dict[str, bool] = {"": False}
     for path, node in behavior.nodes():
         parent = path.rpartition("/")[0]
-        _require_one_kind(behavior, path, node)
-        if node.children:
-            _require_container_keys(behavior, path, node)
-        if node.concurrency is not None or node.foreach is not None:
-            _require_no_transitions(behavior, path, node)
-        if in_tree[parent]:
-            _require_tree_part(behavior, path, node)
-        else:
-            _require_no_tree_part(behavior, path, node)
-        # Inside a machine that is a leaf of a tree, machine rules hold again.
-        in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
-        _require_rounds(behavior, path, node)
-        _require_every(behavior, path, node)
+        if parent not in in_tree:
+            continue
+        kinds = _one_kind(behavior, path, node)
+        found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        yield from found
+        if all(breach.excess is not None for breach in found):
+            # Inside a machine that is a leaf of a tree, machine rules hold again.
+            in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
 
 
-def _require_every(behavior: Behavior, path: str, node: Node) -> None:
-    if node.every is not None and node.behaviour is None:
-        where = behavior.key_position(path, "every")
-        raise DocumentError("`every` goes with a `behaviour`", where=where, hint="only that is ticked without an event")
+def _of_node(behavior: Behavior, path: str, node: Node, *, in_tree: bool) -> Iterator[Breach]:
+    if node.children:
+        yield from _container_keys(behavior, path, node)
+    if node.concurrency is not None or node.foreach is not None:
+        yield from _no_transitions(behavior, path, node)
+    if node.concurrency is not None:
+        yield from _counts(behavior, path, node.concurrency)
+    yield from _tree_part(behavior, path, node) if in_tree else _no_tree_part(behavior, path, node)
+    yield from _rounds(behavior, path, node)
+    yield from _every(behavior, path, node, in_tree=in_tree)
 
 
-def _require_names(behavior: Behavior) -> None:
+def _every(behavior: Behavior, path: str, node: Node, *, in_tree: bool) -> Iterator[Breach]:
+    if node.every is None:
+        return
+    where = behavior.key_position(path, "every")
+    if not in_tree or (node.behaviour is None and node.kind not in KINDS):
+        hint = "a `remap` or `condition` has its own inside it"
+        error = DocumentError("`every` goes with a check or a `behaviour` in a tree", where=where, hint=hint)
+        yield Breach(path=path, error=error, excess=("every",))
+    elif seconds(node.every) < _SHORTEST_EVERY_S:
+        error = DocumentError("`every` is at least 1 ms", where=where, hint="100 ms is the usual")
+        yield Breach(path=path, error=error, excess=("every",))
+
+
+def _names(behavior: Behavior) -> Iterator[Breach]:
     document = behavior.document
     for key in ("parameters", "userdata"):
         for name in getattr(document, key):
             if name in RESERVED:
                 where = behavior.source.position((key, name), of_key=True)
-                raise DocumentError(f"`{name}` is a word of the expression language", where=where, hint="rename it")
+                error = DocumentError(f"`{name}` is a word of the expression language", where=where, hint="rename it")
+                yield Breach(path="", error=error, excess=(key, name))
     for name in document.userdata:
         if name in document.parameters:
             where = behavior.source.position(("userdata", name), of_key=True)
-            raise DocumentError(f"`{name}` is a parameter and a userdata key", where=where, hint="rename one of them")
+            error = DocumentError(f"`{name}` is a parameter and a userdata key", where=where, hint="rename one of them")
+            yield Breach(path="", error=error, excess=("userdata", name))
     for key in ("outcomes", "success"):
         names: tuple[str, ...] = getattr(document, key)
         known: set[str] = set()
         for index, name in enumerate(names):
             if name in known:
                 where = behavior.source.position((key, index))
-                raise DocumentError(f"`{name}` is repeated in `{key}`", where=where, hint="remove it")
+                error = DocumentError(f"`{name}` is repeated in `{key}`", where=where, hint="remove it")
+                yield Breach(path="", error=error)
             known.add(name)
 
 
-def _require_one_kind(behavior: Behavior, path: str, node: Node) -> None:
+def _one_kind(behavior: Behavior, path: str, node: Node) -> Breach | None:
     kinds = node.kinds
     if len(kinds) == 1:
-        return
-    if not kinds:
+        return None
+    if kinds:
+        where = behavior.key_position(path, kinds[1])
+        error = DocumentError(f"this node is {_list(kinds)} at once", where=where, hint="keep one of them")
+    else:
         where = behavior.key_position(path)
-        raise DocumentError("this node has no kind", where=where, hint=f"add one of {_list(KINDS)}")
-    where = behavior.key_position(path, kinds[1])
-    raise DocumentError(f"this node is {_list(kinds)} at once", where=where, hint="keep one of them")
+        error = DocumentError("this node has no kind", where=where, hint=f"add one of {_list(KINDS)}")
+    return Breach(path=path, error=error, excess=None)
 
 
-def _require_tree_part(behavior: Behavior, path: str, node: Node) -> None:
+def _tree_part(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     """Inside a tree nothing has transitions, and a target is a status."""
     for key in ("transitions", "autonomy"):
         if getattr(node, key) and (key == "transitions" or node.kind in TREE_KINDS):
             where = behavior.key_position(path, key)
-            raise DocumentError(f"a part of a tree has no `{key}`", where=where, hint="trees know success and failure")
+            hint = "trees know success and failure"
+            error = DocumentError(f"a part of a tree has no `{key}`", where=where, hint=hint)
+            yield Breach(path=path, error=error, excess=(key,))
     for key in WRAPPERS[1:]:
         wrapper = getattr(node, key)
         if wrapper is None:
             continue
         if wrapper.child is not None and wrapper.to is not None:
             where = behavior.key_position(path, key, "to")
-            raise DocumentError(f"`{key}` with a `child` has no `to`", where=where, hint="it fails; remove `to`")
+            error = DocumentError(f"`{key}` with a `child` has no `to`", where=where, hint="it fails; remove `to`")
+            yield Breach(path=path, error=error, excess=(key, "to"))
         if wrapper.child is None and wrapper.to not in TREE_OUTCOMES:
             where = behavior.position(path, key)
             hint = f"add `to: failure`, or give it a `child` to make it a decorator; it may be {_list(TREE_OUTCOMES)}"
-            raise DocumentError(f"`{key}` inside a tree needs a `to` that is a status", where=where, hint=hint)
+            error = DocumentError(f"`{key}` inside a tree needs a `to` that is a status", where=where, hint=hint)
+            yield Breach(path=path, error=error, excess=(key,))
     if node.on_error is not None and node.on_error not in TREE_OUTCOMES:
         where = behavior.position(path, "on_error")
-        raise DocumentError(
+        error = DocumentError(
             f"inside a tree there is no `{node.on_error}` to go to", where=where, hint=f"use {_list(TREE_OUTCOMES)}"
         )
+        yield Breach(path=path, error=error, excess=("on_error",))
     if node.kind in (*TREE_KINDS, *WRAPPERS):
-        _require_bare(behavior, path, node)
-    _require_policy(behavior, path, node)
+        yield from _bare(behavior, path, node)
+    yield from _policy(behavior, path, node)
 
 
-def _require_policy(behavior: Behavior, path: str, node: Node) -> None:
+def _policy(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     """A policy of a parallel names its children."""
     policy = node.parallel.policy if isinstance(node.parallel, Parallel) else ()
+    if isinstance(node.parallel, Parallel) and node.parallel.counts:
+        yield from _thresholds(behavior, path, node.parallel)
     for index, name in enumerate(() if isinstance(policy, str) else policy):
         if name not in node.children:
             where = behavior.position(path, "parallel", "policy", index)
-            raise DocumentError(f"there is no child `{name}` here", where=where, hint=near_names(name, node.children))
+            error = DocumentError(f"there is no child `{name}` here", where=where, hint=near_names(name, node.children))
+            yield Breach(path=path, error=error, excess=("parallel", "policy"))
 
 
-def _require_bare(behavior: Behavior, path: str, node: Node) -> None:
+def _thresholds(behavior: Behavior, path: str, group: Parallel) -> Iterator[Breach]:
+    """Thresholds can be reached, and stand in place of a policy."""
+    for key in ("success_count", "failure_count"):
+        count: int | None = getattr(group, key)
+        if count is not None and count > len(group.children):
+            where = behavior.position(path, "parallel", key)
+            hint = f"lower `{key}`"
+            error = DocumentError(f"there are only {len(group.children)} children", where=where, hint=hint)
+            yield Breach(path=path, error=error, excess=("parallel", key))
+    if group.policy != "all" or not group.synchronise:
+        key = "synchronise" if group.policy == "all" else "policy"
+        where = behavior.key_position(path, "parallel", key)
+        hint = "what has ended is not run again, and the counts say whose success is whose"
+        error = DocumentError(f"`{key}` does not go with thresholds", where=where, hint=hint)
+        yield Breach(path=path, error=error, excess=("parallel", key))
+
+
+def _counts(behavior: Behavior, path: str, container: Concurrency) -> Iterator[Breach]:
+    """A number in a condition is `at_least`, and no more than the children beside it."""
+    for index, entry in enumerate(container.conditions):
+        for outcome, when in entry.items():
+            children = sum(isinstance(due, str) for due in when.values())
+            for name, due in when.items():
+                if isinstance(due, str) or (name == AT_LEAST and due <= children):
+                    continue
+                keys = ("concurrency", "conditions", index, outcome, name)
+                where = behavior.position(path, *keys)
+                if name == AT_LEAST:
+                    message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
+                else:
+                    message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
+                yield Breach(path=path, error=DocumentError(message, where=where, hint=hint), excess=keys)
+
+
+def _bare(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     """A composite or decorator has nothing beside its kind."""
     for key in (*WRAPPERS, "on_error", "resume", "success"):
         if key != node.kind and getattr(node, key):
             where = behavior.key_position(path, key)
             hint = f"wrap it: `{key}: {{…, child: …}}`" if key in WRAPPERS else "remove it"
-            raise DocumentError(f"a `{node.kind}` of a tree has no `{key}`", where=where, hint=hint)
+            error = DocumentError(f"a `{node.kind}` of a tree has no `{key}`", where=where, hint=hint)
+            yield Breach(path=path, error=error, excess=(key,))
     if node.kind == "retry" and node.retry is not None and node.retry.outcomes:
         where = behavior.key_position(path, "retry", "outcomes")
         hint = "it tries again after FAILURE"
-        raise DocumentError("`retry` with a `child` has no `outcomes`", where=where, hint=hint)
+        error = DocumentError("`retry` with a `child` has no `outcomes`", where=where, hint=hint)
+        yield Breach(path=path, error=error, excess=("retry", "outcomes"))
 
 
-def _require_no_tree_part(behavior: Behavior, path: str, node: Node) -> None:
+def _no_tree_part(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     if node.kind in (*TREE_KINDS, *WRAPPERS):
         where = behavior.key_position(path, node.kind)
         hint = f"put it inside `tree:`, or use one of {_list(KINDS)}"
-        raise DocumentError(f"`{node.kind}` stands only inside a tree", where=where, hint=hint)
+        error = DocumentError(f"`{node.kind}` stands only inside a tree", where=where, hint=hint)
+        yield Breach(path=path, error=error, excess=None)
+        return
     for key in ("name", "success"):
         if getattr(node, key):
             where = behavior.key_position(path, key)
-            raise DocumentError(f"`{key}` of a node stands only inside a tree", where=where, hint="remove it")
+            error = DocumentError(f"`{key}` of a node stands only inside a tree", where=where, hint="remove it")
+            yield Breach(path=path, error=error, excess=(key,))
     for key in WRAPPERS[1:]:
         wrapper = getattr(node, key)
         if wrapper is not None and wrapper.to is None:
             where = behavior.position(path, key)
-            raise DocumentError("the key `to` is missing", where=where, hint=f"say where `{key}` leads")
+            error = DocumentError("the key `to` is missing", where=where, hint=f"say where `{key}` leads")
+            yield Breach(path=path, error=error, excess=(key,))
 
 
-def _require_rounds(behavior: Behavior, path: str, node: Node) -> None:
+def _rounds(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     rounds = node.foreach
     if rounds is not None and (rounds.items is None) == (rounds.times is None):
         where = behavior.key_position(path, "foreach")
-        raise DocumentError("a foreach has either `items` or `times`", where=where, hint="give one of them")
+        error = DocumentError("a foreach has either `items` or `times`", where=where, hint="give one of them")
+        yield Breach(path=path, error=error, excess=("foreach", "times") if rounds.times is not None else ())
 
 
-def _require_container_keys(behavior: Behavior, path: str, node: Node) -> None:
+def _container_keys(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     for key, value in (("with", node.parameters), ("in", node.inputs), ("out", node.outputs)):
         if value:
             where = behavior.key_position(path, key)
-            raise DocumentError(f"a {node.kind} container has no `{key}`", where=where, hint=_CONTAINER_KEYS[key])
+            error = DocumentError(f"a {node.kind} container has no `{key}`", where=where, hint=_CONTAINER_KEYS[key])
+            yield Breach(path=path, error=error, excess=(key,))
 
 
-def _require_no_transitions(behavior: Behavior, path: str, node: Node) -> None:
+def _no_transitions(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
     for name, child in node.children.items():
         if child.transitions:
             where = behavior.key_position(f"{path}/{name}", "transitions")
             rounds = node.foreach is not None
             hint = "its outcomes are used in `next`" if rounds else "its outcomes are used in `conditions`"
             beside = "is run round after round" if rounds else "runs side by side with others"
-            raise DocumentError(f"`{name}` {beside} and has no transitions", where=where, hint=hint)
+            error = DocumentError(f"`{name}` {beside} and has no transitions", where=where, hint=hint)
+            yield Breach(path=f"{path}/{name}", error=error, excess=("transitions",))
 
 
 def _list(names: Iterable[str]) -> str:

@@ -9,7 +9,6 @@ recursion, so hostile text costs no more than its size.
 
 from __future__ import annotations
 
-import math
 import re
 import stat
 from collections.abc import Callable, Iterator
@@ -20,6 +19,7 @@ from typing import NoReturn, Protocol, cast
 import msgspec
 import yaml
 
+from engine.document.core_schema import plain_scalar, shortened
 from engine.document.text_portions import TextPortions
 from engine.errors import DocumentError, Position
 
@@ -31,15 +31,7 @@ MAX_EXPRESSION_TEXT = 100_000
 """Characters of all texts with expressions in them together."""
 DataPath = tuple[str | int, ...]
 
-_INT = re.compile(r"[-+]?[0-9]+")
-_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
-_BASED = re.compile(r"0o[0-7]+|0x[0-9a-fA-F]+")
-_NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
-_WORDS: dict[str, bool | None] = {
-    **dict.fromkeys(("", "~", "null", "Null", "NULL")),
-    **dict.fromkeys(("true", "True", "TRUE"), True),
-    **dict.fromkeys(("false", "False", "FALSE"), False),
-}
+_OPENING = ("while parsing a flow", "while scanning a quoted scalar")
 _UNREADABLE = re.compile("[^\t\n\r\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff]")
 SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
 
@@ -79,22 +71,36 @@ class Source:
         return Position(file=file, line=place.line + 1, column=place.column + 1)
 
 
+class LineMistake(DocumentError):
+    """What is wrong is the block that begins on `line`, counted from 0; the text may be read without it."""
+
+    line: int = 0
+
+
 def load_source(path: Path) -> Source:
     """Read a YAML or JSON file.
 
     Raises:
         DocumentError: the file cannot be read or is not an acceptable document; `where` is the position.
     """
+    return parse_source(load_text(path), file=str(path))
+
+
+def load_text(path: Path) -> bytes:
+    """Read a file as far as a document may be long.
+
+    Raises:
+        DocumentError: it cannot be read; `where` is its begin.
+    """
     start = Position(file=str(path), line=1, column=1)
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise DocumentError("this is not a file", where=start, hint="give the path of a YAML or JSON file")
         with path.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
+            return stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise DocumentError(f"cannot read this file: {reason}", where=start, hint="check its path") from error
-    return parse_source(content, file=str(path))
 
 
 def parse_source(content: bytes | str, *, file: str) -> Source:
@@ -217,14 +223,18 @@ def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     except yaml.MarkedYAMLError as error:
         mark = cast("_Mark | None", error.problem_mark or error.context_mark)
         line, column = (mark.line, mark.column) if mark is not None else (0, 0)
-        raise _syntax_error(error, file, line, column, text) from None
+        refusal = _syntax_error(error, file, line, column, text)
+        # What is never closed shows only where something else begins.
+        begins = error.context_mark if (error.context or "").startswith(_OPENING) else None
+        refusal.line = begins.line if begins is not None else line
+        raise refusal from None
     except yaml.YAMLError as error:
         raise DocumentError(str(error).splitlines()[0], where=Position(file=file, line=1, column=1)) from None
     finally:
         parser.dispose()
 
 
-def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int, text: str) -> DocumentError:
+def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int, text: str) -> LineMistake:
     lines = text.split("\n", line + 1)
     here = lines[line][column : column + 1] if line < len(lines) else ""
     message = error.problem or "this is not YAML"
@@ -235,7 +245,7 @@ def _syntax_error(error: yaml.MarkedYAMLError, file: str, line: int, column: int
         message, hint = "a brace stands here without its partner", "put text with `${…}` in quotes"
     elif "mapping values are not allowed" in message:
         message, hint = "a second `:` on this line", "put the text in quotes"
-    return DocumentError(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
+    return LineMistake(message, where=Position(file=file, line=line + 1, column=column + 1), hint=hint)
 
 
 class _Builder:
@@ -269,7 +279,7 @@ class _Builder:
         elif kind is yaml.MappingEndEvent or kind is yaml.SequenceEndEvent:
             self._container, self._place, self._key = self._stack.pop()
         elif kind is yaml.AliasEvent:
-            self._refuse(event, f"the alias `*{event.anchor}` is not supported", "write the value out")
+            self._refuse_line(event, f"the alias `*{event.anchor}` is not supported", "write the value out")
         elif kind is yaml.DocumentStartEvent:
             self._start_document(event)
         return kind is yaml.StreamEndEvent
@@ -294,11 +304,11 @@ class _Builder:
         if self._nodes > MAX_NODES:
             self._refuse(event, f"the document has more than {MAX_NODES} values", "split it with behavior references")
         if event.anchor is not None:
-            self._refuse(
+            self._refuse_line(
                 event, f"the anchor `&{event.anchor}` is not supported", "write the value out where it is used"
             )
         if event.tag is not None:
-            self._refuse(event, f"the tag `{event.tag}` is not supported", "remove it")
+            self._refuse_line(event, f"the tag `{event.tag}` is not supported", "remove it")
         return event.start_mark
 
     def _scalar(self, event: _Event) -> None:
@@ -326,19 +336,21 @@ class _Builder:
     def _take_key(self, event: _Event, key: str, plain: bool) -> None:
         container = cast("dict[str, object]", self._container)
         if plain and (key == "" or key == "~"):
-            self._refuse(event, "a key is empty", "write a name before the `:`")
+            self._refuse_line(event, "a key is empty", "write a name before the `:`")
         if plain and key == "<<":
-            self._refuse(event, "the merge key `<<` is not supported", "write the keys out")
+            self._refuse_line(event, "the merge key `<<` is not supported", "write the keys out")
         if key in container:
             first = cast("dict[str | int, Place]", self._place.children)[key]
-            self._refuse(event, f"the key `{_short(key)}` is repeated; it is first on line {first.key_line + 1}")
+            self._refuse_line(
+                event, f"the key `{shortened(key)}` is repeated; it is first on line {first.key_line + 1}"
+            )
         mark = event.start_mark
         self._key = (key, mark.line, mark.column)
 
     def _open(self, event: _Event, container: dict[str, object] | list[object]) -> None:
         mark = self._count(event)
         if type(self._container) is dict and self._key is None:
-            self._refuse(event, "a key must be text, not a mapping or list", "put `${…}` and `{…}` in quotes")
+            self._refuse_line(event, "a key must be text, not a mapping or list", "put `${…}` and `{…}` in quotes")
         if len(self._stack) >= MAX_DEPTH:
             self._refuse(event, f"nested deeper than {MAX_DEPTH} levels", "split the document with behavior references")
         self.said = container
@@ -371,44 +383,15 @@ class _Builder:
         try:
             return plain_scalar(text)
         except ValueError as error:
-            self._refuse(event, str(error), "put it in quotes if it is text")
+            self._refuse_line(event, str(error), "put it in quotes if it is text")
+
+    def _refuse_line(self, event: _Event, message: str, hint: str | None = None) -> NoReturn:
+        """Refuse a value, without which the rest of the text may be read."""
+        mark = event.start_mark
+        where = Position(file=self._file, line=mark.line + 1, column=mark.column + 1)
+        refusal = LineMistake(message, where=where, hint=hint)
+        refusal.line = mark.line
+        raise refusal
 
     def _refuse(self, event: _Event, message: str, hint: str | None = None) -> NoReturn:
         _refuse(self._file, event.start_mark.line, event.start_mark.column, message, hint)
-
-
-def plain_scalar(text: str) -> bool | int | float | str | None:
-    """Return what unquoted text means in the core schema of YAML 1.2.
-
-    Raises:
-        ValueError: it is a number that is not finite or does not fit into 64 bits; says so.
-    """
-    first = text[:1]
-    if first in "~nNtTfF":
-        return _WORDS.get(text, text)
-    if first not in "+-.0123456789":
-        return text
-    if _INT.fullmatch(text):
-        return _integer(text, 10)
-    if _FLOAT.fullmatch(text):
-        number = float(text)
-        if not math.isfinite(number):
-            raise ValueError(f"{_short(text)} is too large for a number")
-        return number
-    if _BASED.fullmatch(text):
-        return _integer(text[2:], 8 if text[1] == "o" else 16)
-    if _NOT_FINITE.fullmatch(text):
-        raise ValueError(f"{text} is not a finite number")
-    return text
-
-
-def _integer(digits: str, base: int) -> int:
-    # Twenty-four places hold any 64-bit number with sign in octal; longer text is not worth converting.
-    number = int(digits, base) if len(digits) <= 24 else None
-    if number is None or not -(2**63) <= number < 2**63:
-        raise ValueError(f"{_short(digits)} does not fit into 64 bits")
-    return number
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:37]}…"

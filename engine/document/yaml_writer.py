@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import yaml
 
-from engine.document.yaml_source import plain_scalar
+from engine.document.core_schema import plain_scalar
 
 _LINE = 80
 """Characters up to which plain values stand on one line."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import cast
 
+from engine.document.condition import AT_LEAST
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Ends, Knowledge
 from engine.editing.outline import MACHINES, NAMED, Outline, Plain, Spot, leads
@@ -258,8 +259,12 @@ def _follow_when(when: Plain, names: dict[str, str | None]) -> None:
         return
     kept: Plain = {}
     for name, due in when.items():
-        to = names.get(name, name)
+        to = names.get(name, name) if isinstance(due, str) else name
         if to is not None:
             kept[to] = due
+    children = sum(isinstance(due, str) for due in kept.values())
+    count = kept.get(AT_LEAST)
+    if isinstance(count, int) and count > children:
+        del kept[AT_LEAST]
     when.clear()
     when.update(kept)

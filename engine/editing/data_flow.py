@@ -105,7 +105,7 @@ def _written(subject: Subject, placed: Placed) -> Iterator[tuple[str, KeyWriter]
 
 def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
     path, sites = read.placed.path, flow.sites
-    fact = (flow.behind if read.by == "collect" else flow.before).get(path)
+    fact = flow.fact_at(read)
     defined: Defined = "unreachable"
     sources: tuple[str, ...] = ()
     way = ""
@@ -113,7 +113,7 @@ def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
         undefined, known = fact & sites.undefined_bit(read.key), fact & sites.defined_bits(read.key)
         defined = "always" if not undefined else "maybe" if known else "never"
         sources = tuple(site.path for site in sites.places(read.key, known))
-        if undefined and known and with_way and read.by != "collect":
+        if undefined and known and with_way and read.by not in ("collect", "shared"):
             way = shown(route(flow, path, sites.undefined_bit(read.key)))
     return KeyReader(
         path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, way=way

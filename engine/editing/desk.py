@@ -51,7 +51,7 @@ class Desk:
             try:
                 draft = draft or Draft(text, file=str(file))
             except DocumentError as error:
-                return unread(text, error)
+                return unread(text, error, file=file, knowledge=knowledge)
             return self._put(draft, file, knowledge)
 
     def edit(

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
+from engine.cell_names import CellNameKind, cell_names
 from engine.check.subject import Catalogue
+from engine.document.cell import Cell
 from engine.document.loader import parse_behavior
 from engine.document.yaml_source import MAX_BYTES, parse_source
 from engine.editing.apply import Edited
@@ -69,6 +71,7 @@ class Documents:
         catalogue: The states by name.
         now_s: The wall clock, seconds since 1970.
         stored: The entries of open cells, by the file of the cell; where it knows none the seed counts.
+        cell: The cell that is open, of which names are offered.
     """
 
     def __init__(
@@ -78,9 +81,11 @@ class Documents:
         *,
         now_s: Callable[[], float] = time.time,
         stored: Stored = lambda _: None,
+        cell: Cell | None = None,
     ) -> None:
         self.catalogue = catalogue
         self._stored = stored
+        self._cell = cell
         self._project = project.resolve()
         self._versions = Versions(self._project / STATE_FOLDER / "versions", now_s=now_s)
         self._writing = threading.Lock()
@@ -96,6 +101,10 @@ class Documents:
         """Return the behaviors of the project as others may refer to them, sorted by id."""
         with self._writing:
             return referable_views(self._library)
+
+    def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
+        """Return the names that the open cell offers by kind, those that the check knows; none without a cell."""
+        return cell_names(self._cell).listed() if self._cell is not None else {}
 
     def file_of(self, document_id: str) -> Path:
         """Return where a document is, or would be.

@@ -107,8 +107,8 @@ class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
 
     For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes,
     and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
-    otherwise, userdata, items, times, as, index, next, collect, memory, policy, synchronise, after, status, running,
-    failure; and `order`, the names of all children in their new order.
+    otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count,
+    failure_count, after, status, running, failure; and `order`, the names of all children in their new order.
     """
 
     path: Path

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import msgspec
 
-from engine.check import Finding, check_behavior
-from engine.document.loader import parse_behavior
+from engine.check import Finding, check_survey
+from engine.document.loader import survey_behavior
 from engine.editing.draft import Draft
 from engine.editing.graph import DocumentInfo, DocumentNode, document_graph, info_of
 from engine.editing.knowledge import Knowledge
@@ -42,13 +42,15 @@ def examine(text: str, *, file: Path, knowledge: Knowledge) -> Examination:
     try:
         draft = Draft(text, file=str(file))
     except DocumentError as error:
-        return unread(text, error)
+        return unread(text, error, file=file, knowledge=knowledge)
     return checked(draw(draft, file=file, knowledge=knowledge), text, file=file, knowledge=knowledge)
 
 
-def unread(text: str, error: DocumentError) -> Examination:
-    """Return what is known of a text that cannot be read."""
-    return Examination(hash=hash_of(text), graph=None, document=None, findings=(_invalid(error),), checked=True)
+def unread(text: str, error: DocumentError, *, file: Path, knowledge: Knowledge) -> Examination:
+    """Return what is known of a text that cannot be drawn: what is wrong with it, this error at least."""
+    found = findings_of(text, file=file, knowledge=knowledge)
+    told = found if any(each.severity == "error" for each in found) else (_invalid(error), *found)
+    return Examination(hash=hash_of(text), graph=None, document=None, findings=told, checked=True)
 
 
 def draw(draft: Draft, *, file: Path, knowledge: Knowledge) -> Examination:
@@ -70,13 +72,17 @@ def _in_order(found: list[FindingView], graph: DocumentNode | None) -> tuple[Fin
     return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
 
 
+def findings_of(text: str, *, file: Path, knowledge: Knowledge) -> tuple[FindingView, ...]:
+    """Return what is wrong with a text as if it stood in `file`, in its order, without drawing it."""
+    found = _check(text, file, knowledge)
+    return tuple(sorted(found, key=lambda each: (each.line, each.column)))
+
+
 def _check(text: str, file: Path, knowledge: Knowledge) -> list[FindingView]:
-    try:
-        behavior = parse_behavior(text, file=file)
-    except DocumentError as error:
-        return [_invalid(error, of=file)]
-    entries = knowledge.stored(behavior.cell_file) if behavior.cell_file is not None else None
-    return [_view(finding, file) for finding in check_behavior(behavior, knowledge.catalogue, entries)]
+    survey = survey_behavior(file, text, within=knowledge.project)
+    cell = survey.behavior.cell_file if survey.behavior is not None else None
+    entries = knowledge.stored(cell) if cell is not None else None
+    return [_view(finding, file) for finding in check_survey(survey, file, knowledge.catalogue, entries)]
 
 
 def strays(draft: Draft, knowledge: Knowledge, file: Path) -> list[FindingView]:
@@ -116,15 +122,10 @@ def _is_inside(folder: Path, written: str, project: Path) -> bool:
         return False
 
 
-def _invalid(error: DocumentError, *, of: Path | None = None) -> FindingView:
-    where = error.where if isinstance(error.where, Position) else None
-    elsewhere = where is not None and of is not None and where.file != str(of)
-    here = where if where is not None and not elsewhere else Position(file="", line=1, column=1)
-    message = (
-        f"{Path(where.file).name}:{where.line}: {error.message}" if where is not None and elsewhere else error.message
-    )
+def _invalid(error: DocumentError) -> FindingView:
+    here = error.where if isinstance(error.where, Position) else Position(file="", line=1, column=1)
     return FindingView(
-        severity="error", code="invalid-document", message=message, path="",
+        severity="error", code="invalid-document", message=error.message, path="",
         line=here.line, column=here.column, hint=error.hint or "",
     )  # fmt: skip
 
@@ -135,7 +136,8 @@ def _view(finding: Finding, file: Path) -> FindingView:
         # Of a behavior that is referred to: the node that refers to it is what can be shown here.
         path = path.partition("/root")[0] or "root"
         message = f"{Path(position.file).name}:{position.line}: {message}"
-        position = Position(file=str(file), line=0, column=0)
+        line = 0 if finding.path else 1
+        path, position = path if finding.path else "", Position(file=str(file), line=line, column=line)
     return FindingView(
         severity=finding.severity, code=finding.code, message=message, path=path,
         line=position.line, column=position.column, hint=finding.hint or "",

@@ -64,6 +64,9 @@ _ORDER = (
     "on_error", "autonomy", "resume", "success", "every", "transitions",
 )  # fmt: skip
 """In which order the keys of a state are written."""
+_ORDER_INSIDE = (
+    "initial", "items", "times", "as", "index", "memory", "policy", "synchronise", "success_count", "failure_count",
+)  # fmt: skip
 
 
 def set_parameter(bench: Bench, edit: SetParameter) -> None:
@@ -196,9 +199,7 @@ def _set_inside(bench: Bench, spot: Spot, key: str, value: object) -> None:
     elif key in body:
         body[key] = graft(body[key], value)
     else:
-        _insert_in_order(
-            body, key, value, ("initial", "items", "times", "as", "index", "memory", "policy", "synchronise")
-        )
+        _insert_in_order(body, key, value, _ORDER_INSIDE)
 
 
 def _body(spot: Spot) -> Plain:

@@ -8,6 +8,7 @@ from typing import cast
 
 import msgspec
 
+from engine.document.condition import Condition
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Ends, Knowledge, rules, texts
 from engine.editing.outline import MACHINES, Outline, Plain, Spot
@@ -15,13 +16,6 @@ from engine.editing.syntax import Collection
 from engine.graph import GraphNode, GraphTransition
 
 _SHOWN_APART = frozenset(("states", "initial", "conditions", "otherwise", "userdata", "children", "child"))
-
-
-class Rule(msgspec.Struct, frozen=True, kw_only=True):
-    """One condition of a concurrency container: the outcome, and which child must have ended how."""
-
-    outcome: str
-    when: dict[str, str]
 
 
 class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
@@ -55,7 +49,7 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     every: object
     notes: str
     position: tuple[float, float] | None
-    rules: tuple[Rule, ...]
+    rules: tuple[Condition, ...]
     otherwise: str | None
     userdata: dict[str, object]
     settings: dict[str, object]
@@ -157,7 +151,7 @@ class _Drawing:
             every=data.get("every"),
             notes=_text(self._notes.get(spot.path)),
             position=_point(self._view.get(spot.path)),
-            rules=tuple(Rule(outcome=outcome, when=dict(when)) for outcome, when in _rules(spot)),
+            rules=tuple(_rules(spot)),
             otherwise=_optional(body.get("otherwise")) if spot.kind == "concurrency" else None,
             userdata=_mapping(body.get("userdata")),
             settings={key: value for key, value in body.items() if key not in _SHOWN_APART}
@@ -199,14 +193,12 @@ class _Drawing:
         return bisect_right(self._starts, offset) - 1
 
 
-def _rules(spot: Spot) -> list[tuple[str, dict[str, str]]]:
-    return [(outcome, dict(when)) for outcome, when in rules(spot)] if spot.kind == "concurrency" else []
+def _rules(spot: Spot) -> list[Condition]:
+    return rules(spot) if spot.kind == "concurrency" else []
 
 
 def _in_words(spot: Spot) -> tuple[str, ...]:
-    said = [
-        f"{outcome}: " + " and ".join(f"{name}={due}" for name, due in when.items()) for outcome, when in _rules(spot)
-    ]
+    said = [f"{rule.outcome}: {rule}" for rule in _rules(spot)]
     otherwise = spot.body.get("otherwise") if spot.kind == "concurrency" else None
     return (*said, *([f"{otherwise}: otherwise"] if otherwise else []))
 

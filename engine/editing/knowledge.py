@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
 from engine.check.entries import Entries
 from engine.check.subject import Catalogue
+from engine.document.condition import Condition, read_condition
 from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
 from engine.document.yaml_source import load_source
@@ -116,9 +117,9 @@ class Knowledge:
     def _of_concurrency(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
         found = rules(spot)
         otherwise = spot.body.get("otherwise")
-        named = [*(outcome for outcome, _ in found), *([otherwise] if isinstance(otherwise, str) else [])]
+        named = [*(rule.outcome for rule in found), *([otherwise] if isinstance(otherwise, str) else [])]
         good = {child.name: self.ends(outline, child, known=known).success for child in outline.children(spot)}
-        nominal = [outcome for outcome, when in found if all(due in good.get(name, ()) for name, due in when.items())]
+        nominal = [rule.outcome for rule in found if rule.asks_only_for(lambda name, due: due in good.get(name, ()))]
         return Ends(tuple(dict.fromkeys(named)), tuple(dict.fromkeys(nominal)))
 
     def _of_machine(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
@@ -143,14 +144,14 @@ class Knowledge:
         return Ends(tuple(outside), tuple(name for name in outside if name in reached))
 
 
-def rules(spot: Spot) -> list[tuple[str, Mapping[str, str]]]:
-    """Return the conditions of a concurrency container in order: outcome, and which child must end how."""
-    found: list[tuple[str, Mapping[str, str]]] = []
+def rules(spot: Spot) -> list[Condition]:
+    """Return the conditions of a concurrency container in order; nothing for another node."""
+    found: list[Condition] = []
     listed = spot.body.get("conditions")
     for entry in cast("list[object]", listed) if isinstance(listed, list) else ():
         for outcome, when in cast("Plain", entry).items() if isinstance(entry, dict) else ():
             if isinstance(when, dict):
-                found.append((outcome, {name: str(due) for name, due in cast("Plain", when).items()}))
+                found.append(read_condition(outcome, cast("Plain", when)))
     return found
 
 

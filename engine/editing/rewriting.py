@@ -225,6 +225,18 @@ class Rewriter:
         home = self._home_of(origin) if origin is not None else None
         return home if home is not None and not home[0].flow and isinstance(home[0].data, dict) == mapping else None
 
+    def _brings_comments(self, value: Plain) -> bool:
+        """Tell whether entries with comments beside them were moved into a new value."""
+        for each in _inside(value):
+            moved = self._moved(each, mapping=isinstance(value, dict))
+            if moved is not None:
+                text, member = moved[0].origin.text, moved[1]
+                if "#" in text[member.start : member.at] + text[member.value.end : member.stop]:
+                    return True
+            elif isinstance(each, dict | list) and self._brings_comments(cast("Plain", each)):
+                return True
+        return False
+
     def _home_of(self, origin: Collection) -> tuple[Collection, Member] | None:
         """Return the entry that a collection of a text was."""
         if not self._homes:
@@ -302,7 +314,7 @@ class Rewriter:
             text = self._fresh_flow(value, place)
             fits = place.column + len(text) <= WIDTH and "\n" not in text
             lines = has_node(value) or _lists_mappings(value)
-            if place.flow or (fits and (place.beside is True or not lines)):
+            if place.flow or (fits and (place.beside is True or not lines) and not self._brings_comments(value)):
                 return Written(text)
         source = self.sources.get(id(value))
         beside = _beside(source) if source is not None and _had_node(source) else None

@@ -118,10 +118,14 @@ class Versions:
 def write_whole(file: Path, text: str) -> None:
     """Write a file so that everybody sees either the old or the new one, also after a loss of power."""
     fresh = file.with_name(f".{file.name}.new")
-    with fresh.open("wb") as stream:
-        stream.write(text.encode("utf-8"))
-        stream.flush()
-        os.fsync(stream.fileno())
-    if file.exists():
-        fresh.chmod(file.stat().st_mode & 0o7777)
-    fresh.replace(file)
+    try:
+        with fresh.open("wb") as stream:
+            stream.write(text.encode("utf-8"))
+            stream.flush()
+            os.fsync(stream.fileno())
+        if file.exists():
+            fresh.chmod(file.stat().st_mode & 0o7777)
+        fresh.replace(file)
+    except OSError:
+        fresh.unlink(missing_ok=True)
+        raise

@@ -5,7 +5,6 @@
 """
 
 from engine.document.faults import Fault, Faults, FaultsDocument, load_faults, parse_faults
-from engine.faults.pattern import matches
 from engine.faults.port import FaultPort
 
-__all__ = ["Fault", "FaultPort", "Faults", "FaultsDocument", "load_faults", "matches", "parse_faults"]
+__all__ = ["Fault", "FaultPort", "Faults", "FaultsDocument", "load_faults", "parse_faults"]

@@ -19,7 +19,7 @@ from engine.faults.scene import Scene
 from engine.faults.sending import Sending, send
 from engine.recorder import Recorder
 from engine.skill import Action, Service
-from engine.skill_port import AttendingPort, Goal, SkillPort
+from engine.skill_port import AttendingPort, Goal, SkillPort, ToldEntries
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -118,6 +118,15 @@ class FaultPort:
             return await self._inner.next_message(topic, kind, holder=holder)
 
         return await self._read(topic, kind, holder, read)
+
+    def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call back at each new message of a topic; what goes wrong with it, goes wrong when it is read."""
+        return self._inner.watch(topic, callback)
+
+    @property
+    def entries(self) -> ToldEntries | None:
+        """Those of what is inside."""
+        return self._inner.entries
 
     async def _read(self, topic: str, kind: type[S], holder: Holder, read: Callable[[], Awaitable[S]]) -> S:
         again: S | None = self._again.pop((holder.branch, topic), None)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 
 from engine.document.faults import Failure, Fault
+from engine.document.path_pattern import compile_pattern
 from engine.errors import Position
-from engine.faults.pattern import compile_pattern
 
 
 class Rule:

@@ -5,7 +5,7 @@ happens to its file, the run goes on.
 """
 
 from engine.recording.description import Description
-from engine.recording.documents import Documents, collect_documents
+from engine.recording.documents import Documents, collect_documents, recorded_behavior, recorded_substitutes
 from engine.recording.finished_file import part_file, recovered_file
 from engine.recording.recording import RecordedEvent, Recording, load_recording
 from engine.recording.run_recording import DEFAULT_RATE_HZ, RecordingOrder, RunRecording
@@ -21,5 +21,7 @@ __all__ = [
     "collect_documents",
     "load_recording",
     "part_file",
+    "recorded_behavior",
+    "recorded_substitutes",
     "recovered_file",
 ]

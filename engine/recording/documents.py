@@ -6,14 +6,18 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 
 import msgspec
 
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell
+from engine.document.loader import load_behavior
+from engine.document.substitutes import Substitutes, parse_substitutes
 from engine.errors import RecordingError
 
 YAML_TYPE = "application/yaml"
+_SUBSTITUTES = ".substitutes.json"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +49,27 @@ class Documents:
         return folder / self.behavior
 
 
+def recorded_behavior(documents: Documents) -> Behavior:
+    """Return the behavior that was executed, with what stood in for its nodes.
+
+    Raises:
+        FlexcellError: the documents are damaged.
+    """
+    with TemporaryDirectory(prefix="flexcell-") as folder:
+        behavior = load_behavior(documents.unpack(Path(folder)))
+    return behavior.with_substitutes(recorded_substitutes(documents))
+
+
+def recorded_substitutes(documents: Documents) -> Substitutes | None:
+    """Return what stood in for nodes of a behavior that was executed, None for nothing.
+
+    Raises:
+        DocumentError: the document is damaged.
+    """
+    text = documents.texts.get(_SUBSTITUTES)
+    return parse_substitutes(text, file=_SUBSTITUTES) if text is not None else None
+
+
 def collect_documents(behavior: Behavior, cell: Cell | None = None) -> Documents:
     """Read what a run is made of: the behavior, all it refers to, the cell and its entries.
 
@@ -60,8 +85,12 @@ def collect_documents(behavior: Behavior, cell: Cell | None = None) -> Documents
     return Documents(
         behavior=behavior.file.resolve().relative_to(folder).as_posix(),
         cell=cell_file.relative_to(folder).as_posix() if cell_file is not None else "",
-        texts={file.relative_to(folder).as_posix(): text for file, text in texts.items()},
+        texts={**{file.relative_to(folder).as_posix(): text for file, text in texts.items()}, **_substitutes(behavior)},
     )
+
+
+def _substitutes(behavior: Behavior) -> dict[str, bytes]:
+    return {_SUBSTITUTES: behavior.substitutes.text} if behavior.substitutes is not None else {}
 
 
 def _texts(behavior: Behavior) -> Iterator[tuple[Path, bytes]]:

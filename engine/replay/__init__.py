@@ -5,6 +5,6 @@
 
 from engine.replay.difference import Difference
 from engine.replay.journaled import recording_of
-from engine.replay.replaying import ReplayReport, recorded_behavior, replay
+from engine.replay.replaying import ReplayReport, replay
 
-__all__ = ["Difference", "ReplayReport", "recorded_behavior", "recording_of", "replay"]
+__all__ = ["Difference", "ReplayReport", "recording_of", "replay"]

@@ -14,6 +14,7 @@ from engine.plan import Plan
 from engine.recording import RecordedEvent, Recording
 from engine.replay.comparison import Comparison, OrderByPath, WholeOrder
 from engine.replay.difference import Difference
+from engine.replay.entries import Entries
 from engine.replay.loop import ReplayLoop
 from engine.replay.operator import intervene, require_known
 from engine.replay.port import ReplayPort
@@ -80,7 +81,7 @@ class Attempt:
             until_s=self._story[-1].at_s + (_PATIENCE_S if self._exact else _REAL_PATIENCE_S),
             on_standstill=self._stand_still,
         )
-        self._port = ReplayPort(Requests(self._story), self._timetable)
+        self._port = ReplayPort(Requests(self._story), Entries(self._story, self._timetable), self._timetable)
         self._run = Run(
             self._plan,
             run=description.run,

@@ -92,6 +92,8 @@ class ReplayedGoal:
         if not self._finished:
             # A future for each who waits: one turn of the loop from the end to the state, as short as a timer's.
             await self._waiter(waiters)
+        elif self._due is not None and self._timetable.has_turns(self._due.place):
+            await asyncio.sleep(0)
 
     def _waiter(self, waiters: list[asyncio.Future[None]]) -> asyncio.Future[None]:
         waiter: asyncio.Future[None] = self._loop.create_future()

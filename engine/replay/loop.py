@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from asyncio import Handle
-from collections import deque
 from collections.abc import Callable
-from typing import cast
 
 from engine.clock import VirtualLoop
+from engine.ready_queue import ready_queue
 
 
 class ReplayLoop(VirtualLoop):
@@ -19,7 +17,7 @@ class ReplayLoop(VirtualLoop):
 
     def go_first(self, callback: Callable[[], object]) -> None:
         """Call back, and run what becomes ready by it before what is ready already."""
-        ready = cast("deque[Handle]", getattr(self, "_ready"))  # noqa: B009 - asyncio's own queue, of no public name
+        ready = ready_queue(self)
         before = len(ready)
         callback()
         woken = [ready.pop() for _ in range(len(ready) - before)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 import msgspec
@@ -10,12 +11,14 @@ import msgspec
 from engine.bus import GoalEnd, GoalStatus, Holder
 from engine.errors import BusError, FlexcellError
 from engine.event import Answered, GoalFinished
+from engine.nonfinite import with_nonfinite
+from engine.replay.entries import Entries
 from engine.replay.failure import error_of
 from engine.replay.goal import ReplayedGoal, wake
 from engine.replay.request import RecordedRequest, Requests
 from engine.replay.timetable import Timetable
 from engine.skill import Action, Service
-from engine.skill_port import Goal
+from engine.skill_port import Goal, ToldEntries
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -29,8 +32,9 @@ class ReplayPort:
     another one than recorded is for the comparison of events to find, which sees it first.
     """
 
-    def __init__(self, requests: Requests, timetable: Timetable) -> None:
+    def __init__(self, requests: Requests, entries: Entries, timetable: Timetable) -> None:
         self._requests = requests
+        self._entries = entries
         self._timetable = timetable
         self._over = False
         self.waiting: dict[str, str] = {}
@@ -86,6 +90,15 @@ class ReplayPort:
             raise
         return _typed(recorded.event.message, kind, topic)
 
+    def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Never call back: what was read is recorded, and what was not is not known."""
+        return lambda: None
+
+    @property
+    def entries(self) -> ToldEntries | None:
+        """When nodes were entered in the recording."""
+        return self._entries
+
     async def _until(self, recorded: RecordedRequest, place: int) -> None:
         ended_s = recorded.ended.at_s if recorded.ended is not None else recorded.sent_s
         await self._wait(place, self._timetable.time_for(recorded.sent_s, ended_s))
@@ -94,6 +107,8 @@ class ReplayPort:
         arrived: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         due = self._timetable.expect(place, at_s, lambda: wake(arrived))
         if arrived.done():
+            if self._timetable.has_turns(place):
+                await asyncio.sleep(0)
             return
         try:
             await arrived
@@ -126,6 +141,6 @@ def _goal_end(end: GoalFinished, kind: Any, address: str) -> GoalEnd[Any]:
 
 def _typed(value: object, kind: Any, where: str) -> Any:
     try:
-        return msgspec.convert(value, kind, str_keys=True)
+        return msgspec.convert(with_nonfinite(value), kind, str_keys=True)
     except msgspec.ValidationError as error:
         raise BusError(f"the recorded answer does not fit this version: {error}", where=where) from error

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from time import perf_counter
 
-from engine.document import Behavior, load_behavior
+from engine.document import Behavior
 from engine.event import Event
 from engine.plan import Catalogue, new_plan
-from engine.recording import Recording
+from engine.recording import Recording, recorded_behavior, recorded_substitutes
 from engine.replay.attempt import Attempt
 from engine.replay.difference import Difference
 from engine.replay.loop import ReplayLoop
@@ -48,7 +46,7 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
     """
     started_s = perf_counter()
     story = story_of(recording)
-    plan = new_plan(behavior or recorded_behavior(recording), catalogue)
+    plan = new_plan(_executed(recording, behavior), catalogue)
 
     def attempt(turns: Mapping[int, int]) -> Attempt:
         again = Attempt(recording, plan, story, turns)
@@ -67,12 +65,8 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
     )
 
 
-def recorded_behavior(recording: Recording) -> Behavior:
-    """Return the behavior as it was when the run was recorded.
-
-    Raises:
-        RecordingError: it is not in the recording.
-        DocumentError: this version cannot read it.
-    """
-    with tempfile.TemporaryDirectory(prefix="flexcell-replay-") as folder:
-        return load_behavior(recording.documents.unpack(Path(folder)))
+def _executed(recording: Recording, changed: Behavior | None) -> Behavior:
+    """Return what is run again: another version has the same substitutes, as nothing else was recorded."""
+    if changed is None:
+        return recorded_behavior(recording.documents)
+    return changed.with_substitutes(recorded_substitutes(recording.documents))

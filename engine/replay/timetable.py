@@ -80,6 +80,10 @@ class Timetable:
             return max(ended_s, now_s)
         return now_s + max(0.0, ended_s - sent_s)
 
+    def has_turns(self, place: int) -> bool:
+        """Tell whether what has this place comes some turns of the loop later than it might."""
+        return self._turns.get(place, 0) > 0
+
     def expect(self, place: int, at_s: float, deliver: Callable[[], object], *, late: bool = False) -> Due:
         """Hand something out at its place and time, perhaps at once; `deliver` must not record anything."""
         due = Due(place, at_s, deliver, late and self._turns.get(place) != NOT_LATE)
@@ -141,9 +145,8 @@ class Timetable:
 
     def _hand_out(self, due: Due) -> None:
         self._dues.remove(due)
-        turns = self._turns.get(due.place, 0)
-        if turns > 0:
-            self._hand_out_after(turns, due)
+        if self.has_turns(due.place):
+            self._hand_out_after(self._turns[due.place] - 1, due)
         else:
             self._loop.go_first(due.deliver)
 

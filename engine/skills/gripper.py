@@ -9,8 +9,10 @@ import msgspec
 from engine.messages import GripperState, Message
 from engine.skill import Action, Service
 
-Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the pads in metres")]
-FingerSpeed = Annotated[float, msgspec.Meta(gt=0.0, description="Speed of the opening in metres per second")]
+Width = Annotated[float, msgspec.Meta(ge=0.0, description="Opening between the pads", extra_json_schema={"unit": "m"})]
+FingerSpeed = Annotated[
+    float, msgspec.Meta(gt=0.0, description="Speed of the opening", extra_json_schema={"unit": "m/s"})
+]
 
 
 class GripperAction(Message, frozen=True, kw_only=True):

@@ -17,7 +17,10 @@ from engine.skills.motion import PoseMatch, Speed
 
 PlannerName = Annotated[
     str,
-    msgspec.Meta(description="`fast`, `stomp`, or a planner of OMPL such as `RRTConnect`, `RRT`, `PRM`, `KPIECE1`"),
+    msgspec.Meta(
+        description="`fast`, `stomp`, or a planner of OMPL such as `RRTConnect`, `RRT`, `PRM`, `KPIECE1`",
+        extra_json_schema={"cell_name": "planner"},
+    ),
 ]
 PlanningTime = Annotated[
     float, msgspec.Meta(gt=0.0, le=60.0, description="Longest search for a way", extra_json_schema={"unit": "s"})

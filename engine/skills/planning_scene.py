@@ -13,6 +13,12 @@ from engine.skill import Service
 FARTHEST_M = 1000.0
 """The distance of what is not there: infinity could not be written down."""
 
+CONTACT_M = 0.005
+"""How deep a part may come to be in what it is put down on, and over how much of the end of its way.
+
+Measured poses, slip in a hand and parts that lie on one another are exact to about this.
+"""
+
 
 class HeldPart(Message, frozen=True, kw_only=True):
     """A part that moves along with a link of an arm, at `pose` in the frame of that link."""
@@ -87,10 +93,11 @@ class ForgetOccupancy(Service[PlanningSceneState], frozen=True, kw_only=True):
 
 
 class TouchingPair(Message, frozen=True, kw_only=True):
-    """Two things that touch, by name."""
+    """Two things that touch, by name, and how deep they are in one another: the shortest way apart, in metres."""
 
     first: str
     second: str
+    depth_m: float = 0.0
 
 
 class CollisionReport(Message, frozen=True, kw_only=True):

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from engine.document.yaml_source import parse_source
+from engine.editing.notation import scalar_text
 from engine.errors import DocumentError, StoreError
 from engine.private_files import make_private_folder, open_private
 from engine.skills.teaching import Trigger
@@ -131,5 +132,5 @@ def _block(trigger: Trigger) -> str:
     shown = [name for name, value in fields.items() if name in _ALWAYS or value != defaults[name]]
     ordered = sorted(shown, key=lambda name: _ALWAYS.index(name) if name in _ALWAYS else len(_ALWAYS))
     # JSON's scalars are YAML's, and quoted text means the same to every reader.
-    lines = [f"{name}: {msgspec.json.encode(fields[name]).decode()}" for name in ordered]
+    lines = [f"{name}: {scalar_text(fields[name], json=True, flow=True)}" for name in ordered]
     return "\n".join(f"{_INDENT}{'- ' if at == 0 else '  '}{line}" for at, line in enumerate(lines))

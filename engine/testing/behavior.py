@@ -10,18 +10,19 @@ from typing import Protocol
 
 from engine.bus import SkillBus
 from engine.cell import OpenCell
-from engine.check import check_behavior
+from engine.check import check_behavior, require_sound
 from engine.clock import new_clock, run_virtual
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.faults import load_faults
-from engine.errors import DocumentError
 from engine.event import Event
 from engine.faults import FaultPort
+from engine.launch import require_simulation
 from engine.plan import Catalogue, new_plan
 from engine.recorder import Watcher
 from engine.run import Run, RunResult
 from engine.skill_port import BusPort
+from engine.testing.substituting import StandInFor, with_substitutes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +51,7 @@ class RunBehavior(Protocol):
         cell: Path | str | None = None,
         prepare: Callable[[SkillBus], object] | None = None,
         faults: Path | str | None = None,
+        substitutes: Path | str | Mapping[str, StandInFor] | None = None,
         watchers: Sequence[Watcher] = (),
     ) -> Ran:
         """Run a behavior to its end."""
@@ -67,6 +69,7 @@ def run_behavior(
     cell: Path | str | None = None,
     prepare: Callable[[SkillBus], object] | None = None,
     faults: Path | str | None = None,
+    substitutes: Path | str | Mapping[str, StandInFor] | None = None,
     watchers: Sequence[Watcher] = (),
 ) -> Ran:
     """Run a behavior file to its end in virtual time.
@@ -81,16 +84,22 @@ def run_behavior(
         cell: The cell to run it in; the one the behavior names by default.
         prepare: Puts fakes of a test on an empty bus; then no cell is opened.
         faults: A fault document.
+        substitutes: What stands in for some of its nodes: a substitutes document, or by path pattern an outcome, an
+            `Ending`, a list of these for one activation after the other, or a state class.
         watchers: Called with every event, such as those of a coverage.
 
     Raises:
         DocumentError: the behavior has errors, or was given what it does not take.
+        ControlError: it has substitutes, and a robot of the cell is real.
     """
     behavior = load_behavior(Path(file))
-    for finding in check_behavior(behavior, catalogue):
-        if finding.severity == "error":
-            raise DocumentError(finding.message, where=finding.position, hint=finding.hint)
+    given = load_cell(Path(cell)) if cell is not None else None
+    require_sound(check_behavior(behavior, catalogue, cell=given))
+    if substitutes is not None:
+        behavior = with_substitutes(behavior, substitutes)
     plan = new_plan(behavior, catalogue)
+    place = (given or _own_cell(behavior)) if prepare is None else None
+    require_simulation(plan, place)
     document = load_faults(Path(faults)) if faults is not None else None
     events: list[Event] = []
 
@@ -100,7 +109,7 @@ def run_behavior(
                 bus = await stack.enter_async_context(SkillBus(new_clock()))
                 prepare(bus)
             else:
-                opened = OpenCell(_cell(behavior, cell), seed=seed, store_path=str(store))
+                opened = OpenCell(place, seed=seed, store_path=str(store))
                 bus = (await stack.enter_async_context(opened)).bus
             run = Run(
                 plan,
@@ -118,6 +127,5 @@ def run_behavior(
     return Ran(result=run_virtual(main()), events=tuple(events))
 
 
-def _cell(behavior: Behavior, cell: Path | str | None) -> Cell | None:
-    file = Path(cell) if cell is not None else behavior.cell_file
-    return load_cell(file) if file is not None else None
+def _own_cell(behavior: Behavior) -> Cell | None:
+    return load_cell(behavior.cell_file) if behavior.cell_file is not None else None

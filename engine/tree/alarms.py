@@ -32,6 +32,11 @@ class Alarms:
         """Whether one has rung that no tick has followed yet."""
 
     @property
+    def timers(self) -> tuple[Timer, ...]:
+        """Those that are set."""
+        return tuple(self._running.values())
+
+    @property
     def due(self) -> bool:
         """Whether there is a reason to tick."""
         return self.rang or bool(self.again)

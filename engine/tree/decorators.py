@@ -67,9 +67,14 @@ class Cooldown(Decorator):
         self._alarms = alarms
         self._busy = False
 
+    @property
+    def cooling(self) -> bool:
+        """Whether it fails without asking its child."""
+        return self._alarms.pending(self.name)
+
     def tick(self) -> Iterator[Behaviour]:
         """Tick the child, or fail while cooling down."""
-        if not self._alarms.pending(self.name):
+        if not self.cooling:
             self._busy = True
             yield from super().tick()
             return

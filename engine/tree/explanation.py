@@ -10,10 +10,11 @@ from py_trees.common import Status
 from py_trees.decorators import Decorator, Inverter
 
 from engine.cause import under
+from engine.diagnosis import explain
 from engine.event import Cause
-from engine.node import explain
 from engine.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
 from engine.tree.leaf import TreeLeaf
+from engine.tree.parallel import CountingParallel
 from engine.tree.part import Part
 
 
@@ -35,6 +36,11 @@ def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
     because = reason(below, parts) if below is not None else None
     if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
         return under(f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path)
+    if isinstance(behaviour, CountingParallel):
+        said = (
+            f"{behaviour.failed} of {len(part.children)} failed, and {behaviour.success_count} must succeed; the first"
+        )
+        return under(said, because, where=part.path)
     if isinstance(behaviour, Retry) and behaviour.attempt > 1:
         return under(f"failed {behaviour.attempt} times", because, where=part.path)
     return because or Cause(message=f"{part.name} had failed before", where=part.path)

@@ -6,7 +6,7 @@ once at most for each `initialise`, also where py_trees, torn by an exception, w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
 from typing import Any, TypeVar
 
@@ -71,6 +71,11 @@ class Foreign:
             vars(inner)["update"] = partial(self._update, inner.update)
             vars(inner)["terminate"] = partial(self._terminate, inner, inner.terminate)
         vars(self.behaviour)["tick"] = self.tick
+
+    @property
+    def reads(self) -> Collection[str]:
+        """The userdata keys that it is shown."""
+        return self._plan.inputs.values()
 
     def set_up(self) -> None:
         """Let it and what it brings with it set up, once, before the first tick."""

@@ -21,7 +21,7 @@ from engine.tree.explanation import reason
 from engine.tree.foreign import Foreign
 from engine.tree.leaf import TreeLeaf, Turn
 from engine.tree.leaves import Leaves
-from engine.tree.parallel import Parallel
+from engine.tree.parallel import CountingParallel, Parallel, Thresholds
 from engine.tree.part import Part
 from engine.tree.place import Place
 from engine.tree.statuses import Statuses
@@ -50,6 +50,8 @@ class Growth:
     guards: list[Guard] = field(default_factory=list[Guard])
     foreign: dict[Behaviour, Foreign] = field(default_factory=dict[Behaviour, Foreign])
     statuses: Statuses = field(init=False)
+    reactive: bool = False
+    """Whether it holds a composite without memory, which asks again what has ended."""
     _rank: int = 0
 
     def __post_init__(self) -> None:
@@ -91,6 +93,7 @@ class Growth:
         children = [self.grow(child, place, caught=caught) for child in part.children]
         group = part.source.sequence or part.source.selector
         memory = group.memory if isinstance(group, nodes.Composite) else True
+        self.reactive = self.reactive or not memory
         if part.source.sequence is not None:
             return composites.Sequence(part.path, memory, children)
         return composites.Selector(part.path, memory, children)
@@ -101,14 +104,17 @@ class Growth:
         group = part.source.parallel
         written = group if isinstance(group, nodes.Parallel) else nodes.Parallel(children=())
         policy: ParallelPolicy.Base
-        if written.policy == "one":
+        if written.counts:
+            policy = Thresholds(written.success_count or len(children), written.failure_count or 1)
+        elif written.policy == "one":
             policy = ParallelPolicy.SuccessOnOne()
         elif written.policy == "all":
             policy = ParallelPolicy.SuccessOnAll(synchronise=written.synchronise)
         else:
             chosen = [node for node, child in zip(children, part.children, strict=True) if child.name in written.policy]
             policy = ParallelPolicy.SuccessOnSelected(chosen, synchronise=written.synchronise)
-        return Parallel(part.path, policy, children, places=places, outside=place, execution=self.execution)
+        kind = CountingParallel if written.counts else Parallel
+        return kind(part.path, policy, children, places=places, outside=place, execution=self.execution)
 
     def _foreign(self, part: Part, place: Place) -> Behaviour:
         plan = part.foreign

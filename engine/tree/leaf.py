@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from engine.node import Left
+from engine.node_exit import Left
 from engine.tree.leaves import Activation, Leaves
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
 from engine.tree.statuses import Statuses
+from engine.userdata import Scope
 
 
 class Turn(Behaviour):
@@ -54,6 +55,10 @@ class TreeLeaf(Behaviour):
         self.plan = plan
         self.left: Left | None = None
         """How it ended last."""
+        self.said = Status.INVALID
+        """How it ended when it was last run or observed."""
+        self.stale = False
+        """Whether it may end otherwise now."""
         self._place = place
         self._leaves = leaves
         self._turn = turn
@@ -82,8 +87,7 @@ class TreeLeaf(Behaviour):
             self.status = Status.RUNNING
         else:
             self._activation = None
-            self.left = left
-            self.status = self._status(left)
+            self._end(left)
             self._statuses.end(self)
         yield self
 
@@ -112,9 +116,21 @@ class TreeLeaf(Behaviour):
 
     def restore(self, left: Left) -> None:
         """Have ended so, in an activation that was read before."""
-        self.left = left
-        self.status = self._status(left)
+        self._end(left)
+        # Nobody knows what has changed meanwhile.
+        self.stale = self.plan.every_s is not None or bool(self.plan.reads)
 
-    def _status(self, left: Left) -> Status:
+    @property
+    def scope(self) -> Scope:
+        """Where it reads and writes at present."""
+        return self._place.scope
+
+    def status_of(self, left: Left) -> Status:
+        """Return what it means in the tree to end so."""
         succeeded = left.target == "success" if left.target is not None else left.outcome in self.plan.success
         return Status.SUCCESS if succeeded else Status.FAILURE
+
+    def _end(self, left: Left) -> None:
+        self.left = left
+        self.status = self.said = self.status_of(left)
+        self.stale = False

@@ -14,10 +14,10 @@ from functools import partial
 
 from engine.event import Answered, Called, Event
 from engine.execution import Execution
-from engine.node import Left, overdue
+from engine.node import overdue
+from engine.node_exit import Left
 from engine.node_path import inside
 from engine.preemption import preempt
-from engine.settle import settle
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
 
@@ -179,7 +179,7 @@ class Leaves:
             await asyncio.sleep(0)
             waited_s = 0.0
             while not task.done():
-                await settle(depth=self._path.count("/"))
+                await self._execution.settlement.settled(depth=self._path.count("/"))
                 if self._execution.suspensions.held(activation.path):
                     await self._execution.suspensions.until_free(activation.path)
                 elif task.done() or self._calls == 0 or waited_s >= CHECK_S:

@@ -1,8 +1,8 @@
-"""py_trees' Parallel with a userdata scope for each branch, merged in document order when it ends."""
+"""py_trees' Parallel with a userdata scope for each branch, merged in document order when it ends; with thresholds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from py_trees import composites
 from py_trees.behaviour import Behaviour
@@ -56,3 +56,61 @@ class Parallel(composites.Parallel):
         if new_status is not Status.INVALID:
             for place in self._places.values():
                 merge(place.scope, self._outside.scope, self._execution)
+
+
+class Thresholds(ParallelPolicy.Base):
+    """How many children must succeed, and how many must fail."""
+
+    def __init__(self, success_count: int, failure_count: int) -> None:
+        super().__init__(synchronise=True)
+        self.success_count = success_count
+        self.failure_count = failure_count
+
+
+class CountingParallel(Parallel):
+    """Its policy is `Thresholds`; children that have ended are not run again meanwhile.
+
+    This is ParallelNode of BehaviorTree.CPP 4: it fails as well when too few children are left to succeed.
+    """
+
+    @property
+    def success_count(self) -> int:
+        """How many children must succeed."""
+        return self._thresholds.success_count
+
+    @property
+    def _thresholds(self) -> Thresholds:
+        assert isinstance(self.policy, Thresholds)
+        return self.policy
+
+    @property
+    def failed(self) -> int:
+        """How many children have failed."""
+        return sum(child.status is Status.FAILURE for child in self.children)
+
+    @property
+    def verdict(self) -> Status:
+        """What follows from how the children stand."""
+        succeeded = sum(child.status is Status.SUCCESS for child in self.children)
+        if succeeded >= self.success_count:
+            return Status.SUCCESS
+        if self.failed >= self._thresholds.failure_count or len(self.children) - self.failed < self.success_count:
+            return Status.FAILURE
+        return Status.RUNNING
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Tick the children that have not ended, then judge."""
+        if self.status is not Status.RUNNING:
+            for child in self.children:
+                if child.status is not Status.INVALID:
+                    child.stop(Status.INVALID)
+            self.initialise()
+        for child in self.children:
+            if child.status not in (Status.SUCCESS, Status.FAILURE):
+                yield from child.tick()
+        self.current_child = self.children[-1]
+        verdict = self.verdict
+        if verdict is not Status.RUNNING:
+            self.stop(verdict)
+        self.status = verdict
+        yield self

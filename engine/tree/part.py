@@ -18,11 +18,15 @@ class LeafPlan:
 
     `success` names the outcomes that mean SUCCESS. A `check` commands no device: it may begin
     while others are still being stopped, and what it says at once counts in the same tick.
+    `reads` are the userdata keys that it depends on, None where that may be any; `every_s` is how
+    often it is asked again while it stands in front of what is at work, None for never by time.
     """
 
     node: Node
     success: frozenset[str]
     check: bool
+    reads: frozenset[str] | None
+    every_s: float | None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ from py_trees.behaviour import Behaviour as PyTreesBehaviour
 
 from engine.document import node as nodes
 from engine.document.behavior import Behavior
+from engine.document.duration import seconds
 from engine.document.expression import Template, compile_template
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.leaf import Leaf
@@ -16,6 +17,7 @@ from engine.nearness import near_names
 from engine.node import Node
 from engine.state_catalogue import Catalogue, find_behaviour
 from engine.tree.arguments import takes_name, wrong_arguments
+from engine.tree.decorators import WHERE_NOTHING_WAKES_S
 from engine.tree.part import ForeignPlan, LeafPlan, Part
 from engine.tree.tree import Tree
 
@@ -72,7 +74,13 @@ class _Planner:
                 hint = near_names(outcome, planned.work.outcomes)
                 raise DocumentError(f"`{name}` has no outcome `{outcome}`", where=where, hint=hint)
         success = frozenset(node.success) or planned.work.nominal
-        return LeafPlan(node=planned, success=success, check=not _commands(planned))
+        return LeafPlan(
+            node=planned,
+            success=success,
+            check=not _commands(planned),
+            reads=_reads(planned),
+            every_s=_every_s(node, planned),
+        )
 
     def _foreign(self, inside: str, node: nodes.Node) -> ForeignPlan:
         kind = self._class(inside, node.behaviour or "")
@@ -85,7 +93,7 @@ class _Planner:
             arguments=self._template(inside, "with", node.parameters),
             inputs=node.inputs,
             outputs=node.outputs,
-            every_s=node.every_s,
+            every_s=seconds(node.every) if node.every is not None else WHERE_NOTHING_WAKES_S,
         )
 
     def _class(self, inside: str, name: str) -> type[PyTreesBehaviour]:
@@ -112,6 +120,22 @@ def _commands(node: Node) -> bool:
         return True
     # A priority container holds whatever else is at work.
     return work.kind == "priority" or _any_commands(work.children.values())
+
+
+def _reads(node: Node) -> frozenset[str] | None:
+    """Return the userdata keys that a state depends on; None for a container, of which nobody looks."""
+    work = node.work
+    if not isinstance(work, Leaf):
+        return None
+    guard = node.guard.when.names if node.guard is not None else ()
+    return work.reads.union(guard)
+
+
+def _every_s(source: nodes.Node, planned: Node) -> float | None:
+    if source.every is not None:
+        return seconds(source.every)
+    observes = isinstance(planned.work, Leaf) and planned.work.state.observes
+    return WHERE_NOTHING_WAKES_S if observes else None
 
 
 def _any_commands(inside: Collection[Node]) -> bool:

@@ -14,12 +14,12 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 from py_trees.decorators import Decorator
 
-from engine.node import Left
+from engine.node_exit import Left
 from engine.tree.decorators import Condition, Cooldown, Remap, Repeat, Retry, Timeout
 from engine.tree.growth import Growth
 from engine.tree.history import Standing
 from engine.tree.leaf import TreeLeaf
-from engine.tree.parallel import Parallel
+from engine.tree.parallel import CountingParallel, Parallel
 
 _STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
 _FINAL = (Status.SUCCESS, Status.FAILURE)
@@ -91,6 +91,8 @@ class _Restoring:
     def _unread(self, node: Behaviour, standing: Standing) -> list[Behaviour]:
         """Return the children whose end a RUNNING part had not come to read."""
         ended = [child for child in node.children if child.status in _FINAL and self._order(child) > standing.over]
+        if isinstance(node, CountingParallel):
+            return ended if node.verdict is not Status.RUNNING else []
         if isinstance(node, composites.Parallel):
             failed = any(child.status is Status.FAILURE for child in ended)
             return ended if failed or isinstance(node.policy, ParallelPolicy.SuccessOnOne) else []

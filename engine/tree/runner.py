@@ -18,7 +18,6 @@ from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.execution import Execution
 from engine.node import log
 from engine.node_path import inside
-from engine.settle import settle
 from engine.state import Outcome
 from engine.tree.alarms import Alarms
 from engine.tree.blackboard import OwnBlackboard
@@ -30,6 +29,8 @@ from engine.tree.leaf import TreeLeaf
 from engine.tree.leaves import Activation, Leaves
 from engine.tree.part import Part
 from engine.tree.place import Place
+from engine.tree.polling import Polling
+from engine.tree.reactive import Reactive
 from engine.tree.restoring import Branches, restore
 from engine.userdata import Scope
 
@@ -70,6 +71,8 @@ class TreeRunner:
         self._alarms = Alarms(execution, self._news.set)
         self._growth = Growth(execution=execution, leaves=self._leaves, alarms=self._alarms, clear=self._clear)
         foreign = any(part.foreign is not None for part in root.walk())
+        self._polling = Polling(path, execution, lambda: (*self._alarms.timers, *self._reactive.timers))
+        self._reactive = Reactive(path, execution, growth=self._growth, polling=self._polling, wake=self._news.set)
         self._blackboard: AbstractContextManager[None] = OwnBlackboard() if foreign else nullcontext()
         self._watched = frozenset[str]()
         self._written: set[str] = set()
@@ -93,6 +96,7 @@ class TreeRunner:
         finally:
             recorder.unwatch(hear)
             self._alarms.close()
+            self._reactive.close()
             try:
                 await self._leaves.stop()
             finally:
@@ -134,6 +138,7 @@ class TreeRunner:
         tick_due = restore(root, self._growth, standings(self._history), self._branches)
         await self._leaves.go_on()
         self._alarms.begin()
+        self._reactive.follow(root)
         if root.status is Status.RUNNING and not tick_due:
             await self._wait()
 
@@ -146,6 +151,7 @@ class TreeRunner:
         self.ticks += 1
         seen = self._leaves.unread
         self._raise_error(seen)
+        self._count_polling()
         self._alarms.follow()
         self._news.clear()
         for guard in self._growth.guards:
@@ -163,6 +169,18 @@ class TreeRunner:
         self._alarms.begin()
         self._recent += (*self._leaves.begun, *self._alarms.again)
         self._leaves.begun.clear()
+        self._reactive.forget_answers()
+        self._reactive.follow(root)
+
+    def _count_polling(self) -> None:
+        """Count a tick that only a timer of the tree has made due; what a foreign behaviour counts nobody knows."""
+        if self._alarms.rang and not (self._leaves.unread or self._reactive.tick_due or self._growth.foreign):
+            self._polling.count(lambda: ", ".join(dict.fromkeys(map(self._short, self._recent))) or "its parts")
+        else:
+            self._polling.forget()
+
+    def _short(self, path: str) -> str:
+        return path.removeprefix(f"{self._path}/")
 
     def _advance(self, steps: Iterator[Behaviour]) -> Behaviour | None:
         with self._execution.counted(), self._blackboard:
@@ -182,14 +200,21 @@ class TreeRunner:
 
     async def _wait(self) -> None:
         """Return when there is a reason to tick, everything of this instant has played out, and nothing holds us."""
-        while not (self._alarms.due or self._leaves.unread or self._guard_has_changed()):
+        while not (self._is_due() or self._guard_has_changed()):
             self._news.clear()
-            await self._news.wait()
-        await settle(depth=self._path.count("/"))
+            if self._reactive.stale:
+                await self._reactive.ask(until=self._is_due, news=self._news)
+            else:
+                await self._news.wait()
+        await self._execution.settlement.settled(depth=self._path.count("/"))
         suspensions = self._execution.suspensions
         while suspensions.active and suspensions.held(self._path):
             await suspensions.until_free(self._path)
-            await settle(depth=self._path.count("/"))
+            self._reactive.forget_answers()
+            await self._execution.settlement.settled(depth=self._path.count("/"))
+
+    def _is_due(self) -> bool:
+        return self._alarms.due or bool(self._leaves.unread) or self._reactive.tick_due
 
     def _guard_has_changed(self) -> bool:
         """Tell whether a guard that was asked in the last tick would now say something else."""
@@ -203,6 +228,7 @@ class TreeRunner:
 
     def _hear(self, event: Event) -> None:
         self._leaves.hear(event)
+        self._reactive.hear(event)
         if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)
             self._news.set()
@@ -239,7 +265,7 @@ class TreeRunner:
             log(self._execution, self._path, f"clean-up failed: {describe(cause_of(error))}", level="error")
 
     def _endless(self, instants: int) -> StateError:
-        names = list(dict.fromkeys(path.removeprefix(f"{self._path}/") for path in self._recent))
+        names = list(dict.fromkeys(map(self._short, self._recent)))
         return StateError(
             f"ticked {instants} times in a row without waiting for anything, through {' → '.join(names)}",
             where=self._path,

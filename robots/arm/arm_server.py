@@ -13,6 +13,7 @@ from engine.messages import Pose, RobotDescription
 from engine.robot import DeviceStatus
 from robots.arm.arm_control import ArmControl
 from robots.arm.arm_status import StatusReport
+from robots.arm.carrying import CarryCheck
 from robots.arm.contact_motions import ContactMotions
 from robots.arm.direct_control import DirectControl
 from robots.arm.dmp_motions import DmpMotions
@@ -54,7 +55,8 @@ class ArmServer:
         gripper: The gripper, hand or magnet on the arm, if any; served and stopped together with it.
         outputs: The digital outputs of its controller, if any.
         tolerance: How closely the port must follow.
-        workspace: The space it shares with others; without one it has no collision-free motions.
+        workspace: The space it shares with others; without one it has no collision-free motions, and
+            nothing is known of what it holds.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class ArmServer:
             port=port,
             clock=clock,
             tolerance=tolerance or Tolerance(),
+            carry=CarryCheck(name, workspace) if workspace is not None else None,
         )
         self._gripper = gripper
         self._report = report = StatusReport(runner)

@@ -62,7 +62,7 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned(
+        trajectory = await runner.planned_carrying(
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
         return await follow_joints(runner, trajectory, handle)
@@ -83,7 +83,7 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned(
+        trajectory = await runner.planned_carrying(
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
         return await follow_tool(runner, trajectory, handle)

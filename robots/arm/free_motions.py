@@ -26,6 +26,7 @@ from engine.skills.planning import (
     PlanOptions,
 )
 from robots.arm.adapting import AdaptingMotion
+from robots.arm.carrying import CarryCheck
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.numbers import are_numbers
 from robots.arm.path_preview import Preview, sampled, tool_path
@@ -50,6 +51,7 @@ class FreeMotions:
         self._runner = runner
         self._workspace = workspace
         self._preview = Preview(runner)
+        self._carry = CarryCheck(runner.name, workspace)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills under the arm's name."""
@@ -147,6 +149,9 @@ class FreeMotions:
                 if patient and found.reason in MAY_PASS and not await onward.is_barred(start):
                     return found.message
                 raise found.error()
+            if self._workspace.lies(self._runner.name):
+                # Planners let it touch what it lies on, and might lead through that.
+                await self._carry.require_free(found.trajectory)
             if not adaptation.watch:
                 return found
             # Asked of who watches, so that he is there when the arm moves.

@@ -22,6 +22,7 @@ from engine.skills.jogging import (
     ToolJogFeedback,
 )
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
+from robots.arm.carrying import CarryCheck
 from robots.arm.followed import follow_joints, follow_tool
 from robots.arm.jog_guard import JogGuard, Row, ToJoints
 from robots.arm.jog_run import JogRun
@@ -140,6 +141,8 @@ class Jogging:
         trajectory = await planning
         if self._workspace is not None and rule.minded:
             await SceneCheck(self._runner.name, self._workspace, rule=rule).require_free(trajectory)
+            # The scene lets a part touch what it was taken from, however deep.
+            await CarryCheck(self._runner.name, self._workspace).require_free(trajectory)
         return trajectory
 
     async def _step_joints(self, goal: StepJoints, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:

@@ -14,10 +14,11 @@ from engine.bus import ActiveGoal
 from engine.cause import cause_of, describe
 from engine.cell_connection import CONNECT_AGAIN
 from engine.clock import Clock
-from engine.errors import GoalRejected, RobotError, SkillFailed
+from engine.errors import GoalRejected, PathBlocked, RobotError, SkillFailed
 from engine.messages import Pose, Quaternion, Vector3
 from engine.robot import DeviceStatus
 from engine.skills.arm_control import ArmMode
+from robots.arm.carrying import CarryCheck
 from robots.arm.loading import Loading
 from robots.arm.planner import ArmPlanner
 from robots.arm.tool_frames import WORLD, ToolFrames
@@ -25,7 +26,7 @@ from robots.attend import attend
 from robots.model.kinematics import ArmKinematics
 from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
-from robots.port import ArmPort, Array, Motion, MotionEnd, MotionReport, Stream, Tolerance
+from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, MotionReport, Stream, Tolerance
 from robots.port.settings import NO_FRAME
 
 T = TypeVar("T")
@@ -61,13 +62,22 @@ class MotionRunner:
     """
 
     def __init__(
-        self, *, name: str, model: RobotModel, base: Rigid, port: ArmPort, clock: Clock, tolerance: Tolerance
+        self,
+        *,
+        name: str,
+        model: RobotModel,
+        base: Rigid,
+        port: ArmPort,
+        clock: Clock,
+        tolerance: Tolerance,
+        carry: CarryCheck | None = None,
     ) -> None:
         self.name = name
         self.model = model
         self.port = port
         self.clock = clock
         self.tolerance = tolerance
+        self._carry = carry
         self._at_link = self._kinematics = ArmKinematics(model, base=base)
         self._tool: tuple[Vector3, Quaternion] = NO_FRAME
         self._planner = self._new_planner()
@@ -145,6 +155,8 @@ class MotionRunner:
         self._planning += 1
         try:
             planned = await plan(self.port.sample().desired_rad)
+        except PathBlocked as error:
+            raise GoalRejected("the arm cannot go there with what it holds", where=handle.address) from error
         except RobotError as error:
             # The refusal says it all: a second link with the same words would explain nothing.
             raise GoalRejected(error.message, where=handle.address, hint=error.hint) from None
@@ -161,6 +173,22 @@ class MotionRunner:
             raise GoalRejected("the arm was stopped while the motion was planned", where=handle.address)
         self.accept(handle)
         return planned
+
+    async def planned_carrying(
+        self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[JointTrajectory]]
+    ) -> JointTrajectory:
+        """Plan a way that nobody looks for, as `planned` does; reject the goal where what the arm holds is in its way.
+
+        Without a planning scene nothing is known of what it holds.
+        """
+
+        async def checked(start: Array) -> JointTrajectory:
+            trajectory = await plan(start)
+            if self._carry is not None:
+                await self._carry.require_free(trajectory)
+            return trajectory
+
+        return await self.planned(handle, checked)
 
     async def loaded(self) -> None:
         """Return when inverse kinematics can be asked without a delay; who reads the status learns of the wait."""

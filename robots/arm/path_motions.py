@@ -43,7 +43,7 @@ class PathMotions:
 
     async def _joint_trap_vel(self, goal: JointTrapVel, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
         runner = self._runner
-        trajectory = await runner.planned(
+        trajectory = await runner.planned_carrying(
             handle, lambda start: runner.planner.to_joints(start, np.array(goal.joints), speed=goal.speed)
         )
         return await follow_joints(runner, trajectory, handle)
@@ -80,5 +80,5 @@ class PathMotions:
     ) -> CartMotionResult:
         runner = self._runner
         target = runner.target(pose, handle)
-        trajectory = await runner.planned(handle, lambda start: plan(start, target))
+        trajectory = await runner.planned_carrying(handle, lambda start: plan(start, target))
         return await follow_tool(runner, trajectory, handle)

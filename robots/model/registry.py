@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
+from engine.document.cell import RobotEntry
 from engine.errors import CellError
 from engine.nearness import near_names
 from robots.model.composition import compose
@@ -60,6 +62,30 @@ def robot_model(
     return _composed(arm, tool, calibration, coupled_joints, changed)
 
 
+def model_of_entry(entry: RobotEntry, resolve: Callable[[str], Path]) -> RobotModel:
+    """Return the model of a robot as a cell document writes it, without a tool where it names none.
+
+    Args:
+        entry: What the document says of the robot.
+        resolve: Opens the document's paths (`Cell.resolve`).
+
+    Raises:
+        CellError: no such model, its description is not installed, or it has no such option.
+        DocumentError: a document of a folder, or the calibration file, is wrong.
+    """
+    return robot_model(
+        model_place(entry.model, resolve),
+        gripper=model_place(entry.gripper.model, resolve) if entry.gripper is not None else None,
+        calibration=resolve(entry.calibration) if entry.calibration is not None else None,
+        coupled_joints=entry.coupled_joints,
+    )
+
+
+def model_place(written: str, resolve: Callable[[str], Path]) -> str:
+    """Return the name of a built-in model as it is, and the path of a folder as one that can be opened."""
+    return str(resolve(written)) if _is_folder(written) else written
+
+
 # `changed` makes an edited folder another model: who works on one need not start anew.
 @lru_cache(maxsize=64)
 def _composed(
@@ -88,12 +114,16 @@ def _changed_ns(path: Path | None) -> int:
 
 
 def _folder(name: str, directory: Path, file: str, what: str) -> Path:
-    if name.startswith(".") or "/" in name:
+    if _is_folder(name):
         return Path(name)
     known = _names(directory, file)
     if name not in known:
         raise CellError(f"no {what} is called {name}", where=name, hint=near_names(name, known))
     return directory / name
+
+
+def _is_folder(name: str) -> bool:
+    return name.startswith(".") or "/" in name
 
 
 def _names(directory: Path, file: str) -> tuple[str, ...]:

@@ -66,6 +66,13 @@ def shape_of(geometry: Any) -> Shape:
             )
 
 
+def corners_of(geometry: Any) -> Array:
+    """Return the corners of the box around a geometry of coal, along its own axes, shape (8, 3)."""
+    geometry.computeLocalAABB()
+    ends = np.array([geometry.aabb_local.min_, geometry.aabb_local.max_])
+    return np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+
+
 def placement(pose: Rigid) -> Any:
     """Return pinocchio's transform."""
     return pin.SE3(pose.rotation, pose.xyz)

@@ -13,7 +13,7 @@ import numpy as np
 from robots.model.rigid import Rigid
 from robots.planning.allowed import may_touch_each
 from robots.planning.arm_shapes import arm_shapes
-from robots.planning.coal_shapes import pin, placement
+from robots.planning.coal_shapes import corners_of, pin, placement
 from robots.planning.motion_bound import motion_bound
 from robots.planning.pair_checks import PairChecks
 from robots.planning.ready_shapes import ReadyShape, ready_shape
@@ -85,6 +85,7 @@ class ExactChecker:
         wanted = [(int(pair.first), int(pair.second)) for pair in base.geometry.collisionPairs]
         wanted += self._attach(among.held)
         own = len(self._names)
+        self._held = range(len(base.links), own)
         wanted += self._surround(among.outside)
         allowed = may_touch_each(scene, self._names[:own], self._names)
         pairs = [pair for pair in wanted if not allowed[pair]]
@@ -134,6 +135,17 @@ class ExactChecker:
     def looked_at(self) -> frozenset[frozenset[str]]:
         """The pairs of names that must not touch."""
         return frozenset(frozenset(pair) for checks in self.checks for pair in checks.pairs)
+
+    def held_points(self, joints: Array) -> Array:
+        """Return the corners of the boxes around everything that the arm holds, at `joints` (n,), shape (points, 3)."""
+        data = self._solver.createData()
+        pin.forwardKinematics(self._solver, data, joints)
+        found = [np.empty((0, 3))]
+        for index in self._held:
+            shape = self._geometry.geometryObjects[index]
+            at = data.oMi[shape.parentJoint] * shape.placement
+            found.append(corners_of(shape.geometry) @ at.rotation.T + at.translation)
+        return np.vstack(found)
 
     def depth(self, joints: Array, pair: frozenset[str]) -> float:
         """Return how deep two things, by name, are in one another at `joints`, shape (n,), metres; negative apart."""

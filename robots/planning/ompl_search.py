@@ -12,23 +12,6 @@ from robots.planning.problem import FREE
 from robots.planning.search import Budget, Search, Task
 from robots.port import Array
 
-OMPL_PLANNERS = (
-    "RRTConnect",
-    "RRT",
-    "RRTstar",
-    "InformedRRTstar",
-    "PRM",
-    "PRMstar",
-    "KPIECE1",
-    "BKPIECE1",
-    "LBKPIECE1",
-    "BITstar",
-)
-"""Planners of OMPL that its Python package offers and that can be told to stop at the first way."""
-
-UNBOUND = ("SBL", "EST", "BIEST", "TRRT", "BITRRT", "STRIDE", "PDST", "LAZYPRM")
-"""Planners of OMPL that its Python package does not offer, in capitals."""
-
 _THREADED = ("PRM", "PRMstar")
 _RANGE_RAD = 1.0
 _ENOUGH = 1e9

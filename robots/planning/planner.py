@@ -14,16 +14,17 @@ from engine.nearness import near_names
 from engine.sensing import OccupancyGrid
 from engine.skills.planning_scene import FARTHEST_M, CollisionReport, TouchingPair
 from robots.model.robot_model import RobotModel
+from robots.planning.carry_check import checked_carry
 from robots.planning.ends import Ends, checked_ends, checked_joints
 from robots.planning.exact_checker import ExactChecker
 from robots.planning.fast_search import exact_checks_of, fast_search, shortened, taught, warm, with_room_for
 from robots.planning.given_way import confirmed_way
 from robots.planning.kernels import blocked_at
-from robots.planning.ompl_search import OMPL_PLANNERS, UNBOUND, ompl_search
+from robots.planning.ompl_search import ompl_search
+from robots.planning.planner_names import FAST, PLANNERS, STOMP, UNBOUND
 from robots.planning.problem import FREE, Problem
 from robots.planning.request import (
-    FAST,
-    STOMP,
+    CarryRequest,
     LookRequest,
     Plan,
     PlanAnswer,
@@ -45,9 +46,6 @@ from robots.planning.way_check import OwnWays, checked_way
 from robots.planning.world_arrays import Names, problem_of, voxels_alone, with_voxels
 from robots.port import Array, JointTrajectory
 from robots.sim.scene import ArmPlacement
-
-PLANNERS = (FAST, STOMP, *OMPL_PLANNERS)
-"""All planners by name."""
 
 _Result = TypeVar("_Result")
 
@@ -131,6 +129,10 @@ class ScenePlanner:
         prepared = self.prepared(request.scene, request.arm, margin_m=request.margin_m, occupancy=request.occupancy)
         return checked_way(request, prepared.checker, prepared.problem, self._own_ways)
 
+    def check_carry(self, request: CarryRequest) -> WayCheck:
+        """Return where what an arm holds would touch something first on a trajectory; raises as `check_way` does."""
+        return checked_carry(request, robot=self._robot)
+
     def look(self, request: LookRequest) -> CollisionReport:
         """Return what an arm touches in a configuration and how near it is to what it must not touch.
 
@@ -143,7 +145,10 @@ class ScenePlanner:
         joints = checked_joints(request.joints_rad, checker)
         nearest = checker.clearance(joints)
         return CollisionReport(
-            touching=tuple(TouchingPair(first=a, second=b) for a, b in checker.colliding_pairs(joints)),
+            touching=tuple(
+                TouchingPair(first=a, second=b, depth_m=max(0.0, checker.depth(joints, frozenset((a, b)))))
+                for a, b in checker.colliding_pairs(joints)
+            ),
             distance_m=min(nearest.distance_m, FARTHEST_M),
             nearest=nearest.pair,
         )

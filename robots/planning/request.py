@@ -10,10 +10,9 @@ import numpy as np
 from engine.errors import RobotError
 from engine.messages import Pose, Vector3
 from engine.sensing import OccupancyGrid
+from robots.planning.planner_names import FAST
 from robots.planning.scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
-
-FAST, STOMP = "fast", "stomp"
 
 Reason = Literal[
     "start_in_collision",
@@ -172,6 +171,17 @@ class WayRequest(msgspec.Struct, frozen=True, kw_only=True):
     from_s: float
     occupancy: OccupancyGrid | None = None
     margin_m: float = 0.0
+
+
+class CarryRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether what an arm holds would touch anything on the whole of `way`; see `carry_check` for what it may touch.
+
+    The scene does not allow what the held parts touch by lying on it.
+    """
+
+    scene: PlanningScene
+    arm: str
+    way: SampledWay
 
 
 class WayCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):

@@ -6,19 +6,18 @@ import asyncio
 import socket
 import subprocess
 from collections.abc import Callable
-from typing import Protocol, Self
+from typing import Self
 
 import msgspec
 
 from engine.child_process import how_it_ended, start_child
-from engine.clock import Clock
 from engine.errors import CellError, RobotError
 from engine.skills.planning_scene import CollisionReport
-from robots.planning.planner import ScenePlanner
-from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
+from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
 from robots.planning.worker_messages import (
     Answered,
     Ask,
+    AskCarry,
     AskLook,
     AskPlan,
     AskWay,
@@ -38,73 +37,6 @@ _START_S = 300.0
 _OVERDUE_S = 5.0
 # What a request that is no search may take.
 _LOOK_S = 1.0
-INLINE_CHECK_S = 2e-5
-"""What a check counts as in virtual time: 50,000 a second, as many as a slow machine does."""
-PLAN_FIXED_S = 0.004
-"""What of an answer in virtual time does not depend on the checks: both ends, timing, both ways to the process."""
-LOOK_FIXED_S = 0.002
-"""What a check of a way, or a look, takes in virtual time, both ways to the process among it."""
-
-
-class PlanService(Protocol):
-    """Who answers planning requests on an event loop. All of them raise as `plan` does."""
-
-    async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none.
-
-        Raises:
-            CellError: the scene has no such arm, or something in it is wrong.
-            RobotError: the planning process ended; the next request finds a new one.
-        """
-        ...
-
-    async def check_way(self, request: WayRequest) -> WayCheck:
-        """Return where an arm that follows a trajectory would touch something first."""
-        ...
-
-    async def look(self, request: LookRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to what it must not touch."""
-        ...
-
-
-class InlinePlanner:
-    """Plans on the loop itself, by effort instead of by the clock: for virtual time, where answers must repeat.
-
-    With a clock, answers come after the time that their counted work stands for: `PLAN_FIXED_S` and what
-    all checks take, or `LOOK_FIXED_S`. Without one no time passes.
-    """
-
-    def __init__(self, clock: Clock | None = None) -> None:
-        self._clock = clock
-        self._planner = ScenePlanner(check_s=INLINE_CHECK_S)
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_error: object) -> None:
-        return None
-
-    async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none. Raises CellError as `PlanService` says."""
-        answer = self._planner.plan(request)
-        await self._pass(PLAN_FIXED_S + self._planner.effort_s)
-        return answer
-
-    async def check_way(self, request: WayRequest) -> WayCheck:
-        """Return where an arm that follows a trajectory would touch something first. Raises CellError."""
-        found = self._planner.check_way(request)
-        await self._pass(LOOK_FIXED_S)
-        return found
-
-    async def look(self, request: LookRequest) -> CollisionReport:
-        """Return what an arm touches in a configuration and how near it is to the rest. Raises CellError."""
-        found = self._planner.look(request)
-        await self._pass(LOOK_FIXED_S)
-        return found
-
-    async def _pass(self, time_s: float) -> None:
-        if self._clock is not None:
-            await self._clock.sleep(time_s)
 
 
 class PlanningWorker:
@@ -167,15 +99,22 @@ class PlanningWorker:
 
     async def check_way(self, request: WayRequest) -> WayCheck:
         """Return where an arm that follows a trajectory would touch something first. Raises as `plan` does."""
-        found = await self._answer(lambda number: AskWay(number=number, request=request), _LOOK_S)
-        assert isinstance(found, Answered)
-        assert isinstance(found.answer, WayCheck)
-        return found.answer
+        return await self._checked(lambda number: AskWay(number=number, request=request))
+
+    async def check_carry(self, request: CarryRequest) -> WayCheck:
+        """Return where what an arm holds would touch something first on a trajectory. Raises as `plan` does."""
+        return await self._checked(lambda number: AskCarry(number=number, request=request))
 
     async def look(self, request: LookRequest) -> CollisionReport:
         """Return what an arm touches in a configuration and how near it is to the rest. Raises as `plan` does."""
         found = await self._answer(lambda number: AskLook(number=number, request=request), _LOOK_S)
         assert isinstance(found, Reported)
+        return found.answer
+
+    async def _checked(self, make: Callable[[int], Ask]) -> WayCheck:
+        found = await self._answer(make, _LOOK_S)
+        assert isinstance(found, Answered)
+        assert isinstance(found.answer, WayCheck)
         return found.answer
 
     async def _answer(self, make: Callable[[int], Ask], time_s: float) -> Answered | Reported:
@@ -256,11 +195,6 @@ class PlanningWorker:
 
     def _how_it_ended(self) -> str:
         return how_it_ended(self._process, what=_WHAT)
-
-
-def plan_service(clock: Clock) -> InlinePlanner | PlanningWorker:
-    """Return who plans under a clock: inline in virtual time, else a process; to be entered with `async with`."""
-    return InlinePlanner(clock) if clock.virtual else PlanningWorker()
 
 
 _Answer = Answered | Reported | Failed

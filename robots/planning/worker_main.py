@@ -19,6 +19,7 @@ from robots.planning.scene import PlanningScene, SceneArm
 from robots.planning.worker_messages import (
     Answered,
     Ask,
+    AskCarry,
     AskLook,
     AskPlan,
     AskWay,
@@ -50,7 +51,7 @@ class _Mailbox:
             self._read()
         return self._waiting.popleft()
 
-    def quick_ones(self) -> list[AskWay | AskLook]:
+    def quick_ones(self) -> list[AskWay | AskCarry | AskLook]:
         """Return the requests that take milliseconds, reading what has arrived meanwhile; they are not waiting then."""
         while select.select([self._connection], [], [], 0.0)[0]:
             self._read()
@@ -115,6 +116,8 @@ def _answer(planner: ScenePlanner, mailbox: _Mailbox, ask: Ask) -> FromWorker:
                 return Answered(number=number, answer=planner.plan(request, cancelled=is_withdrawn))
             case AskWay(number=number, request=request):
                 return Answered(number=number, answer=planner.check_way(request))
+            case AskCarry(number=number, request=request):
+                return Answered(number=number, answer=planner.check_carry(request))
             case AskLook(number=number, request=request):
                 return Reported(number=number, answer=planner.look(request))
     except FlexcellError as error:

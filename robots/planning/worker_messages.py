@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from engine.skills.planning_scene import CollisionReport
-from robots.planning.request import LookRequest, Plan, PlanRequest, Refusal, WayCheck, WayRequest
+from robots.planning.request import CarryRequest, LookRequest, Plan, PlanRequest, Refusal, WayCheck, WayRequest
 
 
 class AskPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
@@ -22,6 +22,13 @@ class AskWay(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
     request: WayRequest
 
 
+class AskCarry(msgspec.Struct, frozen=True, kw_only=True, tag="carry"):
+    """Check what is held on this way."""
+
+    number: int
+    request: CarryRequest
+
+
 class AskLook(msgspec.Struct, frozen=True, kw_only=True, tag="look"):
     """Look at this configuration."""
 
@@ -36,7 +43,7 @@ class Withdraw(msgspec.Struct, frozen=True, kw_only=True, tag="withdraw"):
 
 
 class Answered(msgspec.Struct, frozen=True, kw_only=True, tag="answered"):
-    """The answer to `AskPlan` or `AskWay`."""
+    """The answer to `AskPlan`, `AskWay` or `AskCarry`."""
 
     number: int
     answer: Plan | Refusal | WayCheck
@@ -62,6 +69,6 @@ class Ready(msgspec.Struct, frozen=True, kw_only=True, tag="ready"):
     """The process has loaded and compiled everything."""
 
 
-Ask = AskPlan | AskWay | AskLook
+Ask = AskPlan | AskWay | AskCarry | AskLook
 ToWorker = Ask | Withdraw
 FromWorker = Answered | Reported | Failed | Ready

@@ -10,6 +10,7 @@ import msgspec
 from engine.document.cell import CellDocument, Fixture, RobotEntry
 from engine.document.cell_senses import Person
 from engine.errors import CellError
+from robots.model.registry import model_place
 from robots.sim.jitter import jittered
 from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, Scene
 
@@ -63,14 +64,11 @@ def _fixture(name: str, fixture: Fixture) -> FixtureBody:
 
 
 def _arm(name: str, robot: RobotEntry, resolve: Resolve) -> ArmPlacement:
-    def where(model: str) -> str:
-        return str(resolve(model)) if model.startswith(".") or "/" in model else model
-
     placement = ArmPlacement(
         name=name,
-        model=where(robot.model),
+        model=model_place(robot.model, resolve),
         base=robot.base.pose(),
-        gripper=where(robot.gripper.model) if robot.gripper is not None else None,
+        gripper=model_place(robot.gripper.model, resolve) if robot.gripper is not None else None,
         calibration=str(resolve(robot.calibration)) if robot.calibration is not None else None,
         coupled_joints=robot.coupled_joints,
     )

@@ -28,6 +28,8 @@ class LiveMap:
         self._told: tuple[int, str] = (0, "")
         self.latest: OccupancyGrid | None = None
         self.required = 0
+        self.starting = False
+        """Whether the cameras are still being started."""
         self.lost_reason = ""
         """Why no images come, in words; empty while they could."""
 
@@ -37,7 +39,7 @@ class LiveMap:
         if self.lost_reason:
             return self.lost_reason
         if self.latest is None:
-            return "the cameras have not seen anything yet"
+            return "the cameras are still starting" if self.starting else "the cameras have not seen anything yet"
         age_s = self._now_s() - self._looked_at_s
         if math.isinf(age_s):
             return "the cameras have not seen anything since the cell was brought back to an earlier state"

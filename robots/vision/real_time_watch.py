@@ -39,6 +39,7 @@ class RealTimeWatch(CellWatch):
 
     async def __aenter__(self) -> Self:
         self.status = DeviceStatus.CONNECTED
+        self.map.starting = True
         # In the background: the process takes seconds to start, and most of what a cell does needs no cameras.
         self._task = asyncio.get_running_loop().create_task(self._watch(), name="cameras")
         return self
@@ -60,14 +61,21 @@ class RealTimeWatch(CellWatch):
             try:
                 await self._process.start(self.sight)
                 self.say_how(self._process.words)
+                self._has_started()
                 self.begin_anew()
                 self.status = DeviceStatus.READY
                 await self._look_on()
             except FlexcellError as error:
                 self._process.end()
+                self._has_started()
                 pause_s = _FIRST_PAUSE_S if self.status is DeviceStatus.READY else min(2.0 * pause_s, _LONGEST_PAUSE_S)
                 self.fail(str(error))
                 await asyncio.sleep(pause_s)
+
+    def _has_started(self) -> None:
+        """Say that it is up, or has failed: from now on what is missing is missing for another reason."""
+        self.map.starting = False
+        self.map.tell()
 
     async def _look_on(self) -> None:
         """Look whenever it is time to; raises RobotError once the process is lost."""

@@ -28,6 +28,11 @@ class OccupancySource(Protocol):
         """Why `latest` must not be trusted, in words: no image yet, cameras lost. Empty while it may be."""
         ...
 
+    @property
+    def starting(self) -> bool:
+        """Whether what takes the images is still being started, so that none can have come."""
+        ...
+
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
         """Call `callback` whenever the revision of `latest` or `stale_reason` has changed, until unsubscribed.
 

@@ -68,6 +68,11 @@ class CellWatch:
         """Why the map must not be trusted."""
         return self.map.stale_reason
 
+    @property
+    def starting(self) -> bool:
+        """Whether there is no map only because the cameras are still being started."""
+        return self.map.starting
+
     def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
         """Call `callback` whenever the revision or the stale reason has changed."""
         return self.map.subscribe(callback)

@@ -12,11 +12,11 @@ from engine.errors import SkillFailed
 from engine.nearness import near_names
 from engine.shapes import Obstacle, Solid
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
+from robots.model.link_names import link_names
 from robots.model.rigid import Rigid
 from robots.planning.scene import AttachedPart, NamePair, PlanningScene, SceneArm
 from robots.workspace.claims import Row, with_claims
 from robots.workspace.held_parts import Held, HeldMemo, LetGo, LetGoMemo
-from robots.workspace.link_names import link_names
 from robots.workspace.nearby import PARTED_M, TOUCHING_M, near_held, near_lying
 from robots.workspace.placed_things import PlacedThings
 from robots.workspace.seen import Look, Seen
@@ -90,6 +90,26 @@ class LiveScene:
         own = msgspec.structs.replace(scene.arm(arm), joints_rad=())
         scene = msgspec.structs.replace(scene, arms=tuple(own if a.name == arm else a for a in scene.arms))
         return with_claims(scene, self._claims_before(arm))
+
+    def holds(self, arm: str) -> bool:
+        """Return whether an arm held something when it was looked at last."""
+        return any(one.part.arm == arm for one in self._held.values())
+
+    def lies(self, arm: str) -> bool:
+        """Return whether something that an arm held has not yet parted from what it was taken from."""
+        return any(one.part.arm == arm and one.touches for one in self._held.values())
+
+    def carry_for(self, arm: str) -> PlanningScene | None:
+        """Return the scene as what `arm` holds meets it, None where it holds nothing.
+
+        What the held parts lie on is not allowed in it: that is for who knows where they are to go.
+        """
+        if not self.holds(arm):
+            return None
+        held = {name: one for name, one in self._held.items() if one.part.arm == arm}
+        lying = {(name, other) for name, one in held.items() for other in one.touches}.difference(self._ruled())
+        scene = self.scene_for(arm)
+        return msgspec.structs.replace(scene, allowed=tuple(pair for pair in scene.allowed if pair not in lying))
 
     def whole(self) -> PlanningScene:
         """Return the scene with all arms where they are noticed."""
@@ -266,9 +286,12 @@ class LiveScene:
     def _attached(self) -> tuple[AttachedPart, ...]:
         return tuple(one.part for one in self._held.values())
 
-    def _allowed(self) -> tuple[NamePair, ...]:
+    def _ruled(self) -> list[NamePair]:
         pairs = [pair for pair in self._base.allowed if frozenset(pair) not in self._rules]
-        pairs += [(first, second) for first, second, allowed in self._rules.values() if allowed]
+        return pairs + [(first, second) for first, second, allowed in self._rules.values() if allowed]
+
+    def _allowed(self) -> tuple[NamePair, ...]:
+        pairs = self._ruled()
         pairs += [(name, other) for name, held in self._held.items() for other in sorted(held.touches)]
         pairs += [(name, link) for name, gone in self._let_go.items() for link in sorted(gone.links)]
         return tuple(dict.fromkeys(pairs))

@@ -5,38 +5,14 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
-from typing import Any, Protocol
 
 from engine.clock import Clock
 from engine.errors import FlexcellError
 from engine.skills.planning_scene import CollisionReport
-from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
+from robots.planning.plan_service import PlanService, plan_service
+from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
 
 _log = logging.getLogger("flexcell.workspace")
-
-
-class PlanService(Protocol):
-    """What the services of `robots.planning.worker` answer; those say when they raise CellError and RobotError."""
-
-    async def __aenter__(self) -> Any:
-        """Start."""
-        ...
-
-    async def __aexit__(self, *error: object) -> None:
-        """End."""
-        ...
-
-    async def plan(self, request: PlanRequest) -> PlanAnswer:
-        """Return a confirmed way, or why there is none."""
-        ...
-
-    async def check_way(self, request: WayRequest) -> WayCheck:
-        """Return where a way is blocked."""
-        ...
-
-    async def look(self, request: LookRequest) -> CollisionReport:
-        """Return what an arm touches."""
-        ...
 
 
 class Planners:
@@ -49,7 +25,7 @@ class Planners:
 
     def __init__(self, clock: Clock, make: Callable[[Clock], PlanService] | None = None) -> None:
         self._clock = clock
-        self._make = make or _worker
+        self._make = make or plan_service
         self._services: dict[str, PlanService] = {}
         self._starting: asyncio.Task[None] | None = None
         self._closed = False
@@ -65,6 +41,10 @@ class Planners:
     async def confirm_way(self, request: WayRequest) -> WayCheck:
         """Return where a way that was planned just now is blocked: who planned it knows it and answers sooner."""
         return await self._service("plans").check_way(request)
+
+    async def check_carry(self, request: CarryRequest) -> WayCheck:
+        """Return where what an arm holds would touch something on a way."""
+        return await self._service("watch").check_carry(request)
 
     async def look(self, request: LookRequest) -> CollisionReport:
         """Return what an arm touches."""
@@ -100,10 +80,3 @@ class Planners:
         if service is None:
             service = self._services[name] = self._make(self._clock)
         return service
-
-
-def _worker(clock: Clock) -> PlanService:
-    # Compilers and coal are loaded by who needs them only.
-    from robots.planning.worker import plan_service
-
-    return plan_service(clock)

@@ -40,6 +40,8 @@ LOOK_S = 0.05
 """How often the cell is looked at while somebody watches."""
 
 _FRESH_S = 3.0
+_STARTED_S = 120.0
+"""How long the cameras may take to start: on a new machine everything is compiled first."""
 
 Watcher = Callable[[frozenset[str]], None]
 _log = logging.getLogger("flexcell.workspace")
@@ -104,6 +106,22 @@ class Workspace:
         self._take_in(live)
         return live.scene_for(arm)
 
+    def holds(self, arm: str) -> bool:
+        """Whether an arm holds something that the scene knows of; what it has just lost may still count."""
+        if self._live is None:
+            return any(memo.part.arm == arm for memo in self._early_memo.held)
+        return self._live.holds(arm)
+
+    def lies(self, arm: str) -> bool:
+        """Whether what an arm holds has not yet parted from what it was taken from; `ready` has been awaited."""
+        return self._scene().lies(arm)
+
+    def carry_scene_for(self, arm: str) -> PlanningScene | None:
+        """Return the scene as what `arm` holds meets it at this moment, None where it holds nothing."""
+        live = self._scene()
+        self._take_in(live)
+        return live.carry_for(arm)
+
     async def ready(self) -> None:
         """Return when the scene is there, without holding up the loop."""
         async with self._making:
@@ -125,7 +143,7 @@ class Workspace:
             self._occupancy.release()
 
     async def fresh(self) -> None:
-        """Return when the occupancy may be trusted; `require` was called.
+        """Return when the occupancy may be trusted; `require` was called. Cameras that are still starting have time.
 
         Raises:
             RobotError: it may not be, for too long; the message says why.
@@ -136,6 +154,10 @@ class Workspace:
         news = asyncio.Event()
         unsubscribe = source.subscribe(news.set)
         try:
+            async with asyncio.timeout(_STARTED_S):
+                while source.starting and source.stale_reason:
+                    await news.wait()
+                    news.clear()
             async with asyncio.timeout(_FRESH_S):
                 while source.stale_reason:
                     await news.wait()
@@ -300,6 +322,8 @@ class Workspace:
         )
 
     async def _attach(self, request: AttachPart) -> PlanningSceneState:
+        # Every motion from now on is looked at; the first one need not wait for who looks.
+        self.planners.begin()
         return await self._changed(lambda live: live.attach(request.part, request.robot, request.link), {request.part})
 
     async def _detach(self, request: DetachPart) -> PlanningSceneState:

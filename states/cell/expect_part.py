@@ -15,6 +15,7 @@ from engine.messages import FramePoses, Vector3
 from engine.nearness import near_names
 from engine.state import Context, Outcome, State
 from states.frames import FRAMES_TOPIC, PARTS_TOPIC, part_in_world
+from states.scene.naming import PartName
 
 Pair = tuple[float, float]
 Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
@@ -46,9 +47,11 @@ class ExpectPart(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("there", "elsewhere")
     success: ClassVar[tuple[str, ...]] = ("there",)
 
-    part: Annotated[str, Meta(min_length=1, description="Name of the part in the cell")]
+    part: PartName
     region: Annotated[Region | None, Meta(description="Where its centre shall lie, in the world frame")] = None
-    frame: Annotated[str, Meta(description="Frame of the cell that it shall lie at")] = ""
+    frame: Annotated[
+        str, Meta(description="Frame of the cell that it shall lie at", extra_json_schema={"cell_name": "frame"})
+    ] = ""
     tolerance_m: Annotated[
         float, Meta(gt=0, description="Greatest distance from the frame", extra_json_schema={"unit": "m"})
     ] = 0.05

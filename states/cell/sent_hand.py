@@ -14,7 +14,9 @@ from engine.state import Context, Outcome
 CELL = "cell"
 """Where people are asked on the bus."""
 
-PersonName = Annotated[str, Meta(min_length=1, description="Name of the person in the cell")]
+PersonName = Annotated[
+    str, Meta(min_length=1, description="Name of the person in the cell", extra_json_schema={"cell_name": "person"})
+]
 Wait = Annotated[bool, Meta(description="Whether to go on only when the hand is there, or at once")]
 
 

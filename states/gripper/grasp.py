@@ -73,5 +73,5 @@ class Grasp(State, frozen=True, kw_only=True):
         return Cause(
             message=f"{ended}, pressing with {result.force_n:.1f} N",
             where=address,
-            because=Cause(message=result.reason or "nothing is held and the gripper gave no reason", where=address),
+            because=Cause(message=result.reason, where=address) if result.reason else None,
         )

@@ -6,7 +6,9 @@ from typing import Annotated
 
 from msgspec import Meta
 
-GripperName = Annotated[str, Meta(min_length=1, description="The arm that carries the gripper")]
+GripperName = Annotated[
+    str, Meta(min_length=1, description="The arm that carries the gripper", extra_json_schema={"cell_name": "gripper"})
+]
 
 
 def gripper_address(arm: str) -> str:

@@ -6,7 +6,9 @@ from typing import Annotated
 
 from msgspec import Meta
 
-HandName = Annotated[str, Meta(min_length=1, description="The arm that carries the hand")]
+HandName = Annotated[
+    str, Meta(min_length=1, description="The arm that carries the hand", extra_json_schema={"cell_name": "hand"})
+]
 Percent = Annotated[
     float, Meta(ge=0, le=100, description="How far to close, 0 open to 100 closed", extra_json_schema={"unit": "%"})
 ]

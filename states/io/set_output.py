@@ -22,10 +22,23 @@ class SetOutput(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("set", "failed")
     success: ClassVar[tuple[str, ...]] = ("set",)
 
-    robot: Annotated[str, Meta(min_length=1, description="The robot whose controller has the output")]
+    robot: Annotated[
+        str,
+        Meta(
+            min_length=1,
+            description="The robot whose controller has the output",
+            extra_json_schema={"cell_name": "robot"},
+        ),
+    ]
     value: On
-    output: OutputNumber | None = None
-    device: Annotated[Use | None, Meta(description="What the cell says hangs on one of its outputs")] = None
+    output: Annotated[OutputNumber, Meta(extra_json_schema={"cell_name": "output", "of": "robot"})] | None = None
+    device: Annotated[
+        Use | None,
+        Meta(
+            description="What the cell says hangs on one of its outputs",
+            extra_json_schema={"cell_name": "output", "of": "robot"},
+        ),
+    ] = None
 
     def __post_init__(self) -> None:
         if (self.output is None) == (self.device is None):

@@ -18,6 +18,7 @@ class CheckHeld(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "magnet.CheckHeld"
     outcomes: ClassVar[tuple[str, ...]] = ("held", "lost")
     success: ClassVar[tuple[str, ...]] = ("held",)
+    observes: ClassVar[bool] = True
 
     magnet: MagnetName
     part: PartLabel = ""

@@ -6,7 +6,9 @@ from typing import Annotated
 
 from msgspec import Meta
 
-MagnetName = Annotated[str, Meta(min_length=1, description="The arm that carries the magnet")]
+MagnetName = Annotated[
+    str, Meta(min_length=1, description="The arm that carries the magnet", extra_json_schema={"cell_name": "magnet"})
+]
 
 
 def magnet_address(arm: str) -> str:

@@ -22,6 +22,8 @@ from states.scene.naming import CELL
 _ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
 _TRIES = 8
 """With so many configurations of the arm at most a pose is tried."""
+_TOLD_M = 0.001
+"""From here on it is told how deep two things would be in one another."""
 _SAME_RAD = 1.5
 """A joint that turns farther on the straight way is in another configuration at its other end."""
 
@@ -96,7 +98,7 @@ class Approach:
 
     async def _in_front_of(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | Ended:
         report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
-        pairs = [f"{pair.first} with {pair.second}" for pair in report.touching if not self.expected(pair)]
+        pairs = [_in_words(pair) for pair in report.touching if not self.expected(pair)]
         if pairs:
             return Ended("blocked", Cause(message=f"there, {', '.join(pairs)} would touch", where=self.robot))
         in_front = await self._beside(ctx, moved(pose, self.out_m), joints)
@@ -114,3 +116,8 @@ class Approach:
             return found
         words = f"the straight way would turn a joint by {turned:.2f} rad"
         return Ended("unreachable", Cause(message=words, where=self.robot))
+
+
+def _in_words(pair: TouchingPair) -> str:
+    deep = f" ({pair.depth_m * 1000:.0f} mm deep)" if pair.depth_m >= _TOLD_M else ""
+    return f"{pair.first} with {pair.second}{deep}"

@@ -15,7 +15,11 @@ from states.magnet.check_held import CheckHeld as MagnetCheckHeld
 from states.magnet.off import Off as MagnetOff
 
 ToolKind = Annotated[
-    Literal["gripper", "magnet", "hand"], Meta(description="What holds: two fingers, a magnet, or a hand of one motor")
+    Literal["gripper", "magnet", "hand"],
+    Meta(
+        description="What holds: two fingers, a magnet, or a hand of one motor",
+        extra_json_schema={"cell_name": "tool", "of": "robot"},
+    ),
 ]
 
 

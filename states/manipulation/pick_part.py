@@ -34,17 +34,27 @@ from states.scene.naming import PartName
 
 PART = "part"
 """The frame of the part, in `grasp`."""
-FROM_ABOVE = PoseTarget(xyz=(0.0, 0.0, 0.0), xyzw=(1.0, 0.0, 0.0, 0.0), frame=PART)
+
+
+class GraspTarget(PoseTarget, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A pose of the tool centre point in the frame `part`, or in any other that the cell shows."""
+
+    frame: Annotated[str, Meta(extra_json_schema={"cell_name": "frame", "or": [PART]})] = "world"
+
+
+FROM_ABOVE = GraspTarget(xyz=(0.0, 0.0, 0.0), xyzw=(1.0, 0.0, 0.0, 0.0), frame=PART)
 _FAILED = {"failed": "failed"}
+_STILL_DOWN = ("missed", "unreachable", "blocked")
+"""The ends of closing and lifting after which the part stands where it stood, or is lost."""
 
 
 class PickPart(State, frozen=True, kw_only=True):
     """Open the tool, move free of collisions in front of the part, straight in, close, lift, and look what is held.
 
     Where the part is now is asked when the state runs. While it is held, ways are planned with it. `missed` when
-    the tool does not hold it, closed or lifted: then the tool is open and the arm back in front; or when there is no
-    such part. `unreachable` when the arm cannot get there, `blocked` when something is in the way; the reason is
-    written as `reason`.
+    the tool does not hold it, closed or lifted, or when there is no such part. `unreachable` when the arm cannot get
+    there or lift it, `blocked` when something is in the way, of the part too when it is lifted. The reason is written
+    as `reason`. A tool that has closed is open again then, and the arm back in front.
     """
 
     state_name: ClassVar[str] = "manipulation.PickPart"
@@ -57,7 +67,8 @@ class PickPart(State, frozen=True, kw_only=True):
     part: PartName
     tool: ToolKind = "gripper"
     grasp: Annotated[
-        PoseTarget, Meta(description="Tool centre point at the part: `{xyz, xyzw, frame}` with frame `part` or another")
+        GraspTarget,
+        Meta(description="Tool centre point at the part: `{xyz, xyzw, frame}` with frame `part` or another"),
     ] = FROM_ABOVE
     turns: Annotated[int, Meta(ge=1, le=8, description="In how many turns about the tool's z the grasp is as good")] = 1
     approach: Direction = None
@@ -101,7 +112,7 @@ class PickPart(State, frozen=True, kw_only=True):
         if isinstance(grasp, Ended):
             return grasp
         ended = await self._close(ctx) or await self._lift(ctx, approach, grasp)
-        if ended is not None and ended.outcome == "missed":
+        if ended is not None and ended.outcome in _STILL_DOWN:
             return await self._let_go(ctx) or await approach.straight_out(ctx, grasp) or ended
         return ended
 

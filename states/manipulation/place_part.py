@@ -12,7 +12,7 @@ from engine.messages import Pose, Vector3
 from engine.pose_algebra import composed, inverse
 from engine.skills.motion import ForwardKinematics, Speed
 from engine.skills.planning import Margin, Patience
-from engine.skills.planning_scene import TouchingPair
+from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
 from states.manipulation.approach import Approach
@@ -20,7 +20,7 @@ from states.manipulation.holding import ToolKind, letting_go, still_holding, too
 from states.manipulation.steps import Ended, Step, go_through
 from states.manipulation.straight import Direction, LineSpeed, Way, way_out
 from states.motion.set_load import SetLoad
-from states.motion.target import NO_OFFSET, PoseTarget, RobotName, resolve_pose
+from states.motion.target import NO_OFFSET, RobotName, ShownPoseTarget, resolve_pose
 from states.scene.detach import Detach
 from states.scene.naming import PartName
 
@@ -30,9 +30,10 @@ _FAILED = {"failed": "failed"}
 class PlacePart(State, frozen=True, kw_only=True):
     """Move free of collisions over the place, straight down, open the tool, and straight back.
 
-    With `target_of: part` the part itself comes to stand at the target, however the tool holds it. `missed` when
-    the part was lost on the way, `unreachable` and `blocked` as in `manipulation.PickPart`; then the arm still
-    holds it. The arm knows of no load afterwards.
+    With `target_of: part` the part itself comes to stand at the target, however the tool holds it. It may touch what
+    it is put down on over the last 5 mm of its way; where it would come deeper, or touch anything before, it is
+    `blocked` with both names before that. `missed` when the part was lost on the way, `unreachable` and `blocked` as
+    in `manipulation.PickPart`; then the arm still holds it. The arm knows of no load afterwards.
     """
 
     state_name: ClassVar[str] = "manipulation.PlacePart"
@@ -43,7 +44,7 @@ class PlacePart(State, frozen=True, kw_only=True):
 
     robot: RobotName
     part: PartName
-    target: Annotated[PoseTarget, Meta(description="Where to: `{xyz, xyzw, frame}`, or `{entry: name}`")]
+    target: Annotated[ShownPoseTarget, Meta(description="Where to: `{xyz, xyzw, frame}`, or `{entry: name}`")]
     target_of: Annotated[
         Literal["tool", "part"], Meta(description="What comes to stand at `target`: tool centre point or part")
     ] = "tool"
@@ -106,12 +107,14 @@ class PlacePart(State, frozen=True, kw_only=True):
             line_speed_m_s=self.line_speed_m_s,
             margin_m=self.margin_m,
             patience_s=self.patience_s,
-            expected=self._meant_to_touch,
+            expected=self._stands_on,
             kind=self.state_name,
         )
 
-    def _meant_to_touch(self, pair: TouchingPair) -> bool:
-        return self.part in (pair.first, pair.second)
+    def _stands_on(self, pair: TouchingPair) -> bool:
+        """Tell whether a pair is the part and what it stands on: no link of an arm, and no deeper than contact is."""
+        other = pair.second if pair.first == self.part else pair.first
+        return self.part in (pair.first, pair.second) and "/" not in other and pair.depth_m <= CONTACT_M
 
     def _letting_go(self) -> list[Step]:
         return [

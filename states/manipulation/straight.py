@@ -10,7 +10,7 @@ from engine.messages import Pose, Vector3
 from engine.pose_algebra import along, rotated
 from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context
-from states.failed_goal import goal_cause
+from states.failed_goal import goal_cause, is_path_blocked
 from states.manipulation.steps import Ended
 from states.motion.line_time import line_duration_s
 from states.motion.target import NO_OFFSET, PoseTarget, pose_label
@@ -39,7 +39,10 @@ def way_out(tool: Pose, frame: Pose, direction: Vector3 | None, distance_m: floa
 
 
 async def go_straight(ctx: Context, robot: str, pose: Pose, *, speed_m_s: float, kind: str) -> Ended | None:
-    """Move the tool on a straight line; None when it is there."""
+    """Move the tool on a straight line; None when it is there.
+
+    `blocked` where what the arm holds would touch something before the end of the line.
+    """
     start = await ctx.call(ForwardKinematics(), to=robot)
     goal = CartLinTask(pose=pose, duration_s=line_duration_s(start, pose, speed_m_s=speed_m_s))
     end = await ctx.perform(goal, to=robot)
@@ -47,4 +50,6 @@ async def go_straight(ctx: Context, robot: str, pose: Pose, *, speed_m_s: float,
         return None
     what = f"{robot} did not go straight to {pose_label(PoseTarget(xyz=pose.xyz), NO_OFFSET)}"
     cause = goal_cause(what, goal, end, to=robot, where=ctx.path, kind=kind)
+    if is_path_blocked(end):
+        return Ended("blocked", cause)
     return Ended("unreachable" if end.status == "rejected" else "failed", cause)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from engine.cause import outwards
 from engine.event import Cause
 from engine.skills.planning import FreeMotionResult
 from engine.state import ActionEnd
 
 
 def reason_of(cause: Cause) -> str:
-    """Return what lies below the outermost link of a chain, in one line."""
-    below = [link.message for link in cause.chain()][1:]
-    return " because ".join(below) or cause.message
+    """Return what lies below the outermost link of a chain in one line, what was measured first."""
+    below = [link.message for link in outwards(cause)[:-1]]
+    return ", so ".join(below) or cause.message
 
 
 def stayed_blocked(end: ActionEnd[FreeMotionResult]) -> bool:

@@ -28,7 +28,13 @@ class Guide(State, frozen=True, kw_only=True):
 
     robot: RobotName
     duration_s: LongestGuide | None = None
-    record: Annotated[str, Meta(description="Name of the entry that is written; nothing is recorded without")] = ""
+    record: Annotated[
+        str,
+        Meta(
+            description="Name of the entry that is written; nothing is recorded without",
+            extra_json_schema={"new_entry": "trajectory"},
+        ),
+    ] = ""
     sample_s: Period = 0.01
     damping: Looseness = 0.1
 

@@ -15,7 +15,14 @@ from engine.skills.entries import WriteEntry
 from engine.state import Context, Outcome, State
 from states.motion.target import RobotName
 
-Recording = Annotated[str, Meta(min_length=1, description="Name of the recorded motion, an entry of kind `trajectory`")]
+Recording = Annotated[
+    str,
+    Meta(
+        min_length=1,
+        description="Name of the recorded motion, an entry of kind `trajectory`",
+        extra_json_schema={"entry": "trajectory"},
+    ),
+]
 
 
 class LearnJointDmp(State, frozen=True, kw_only=True):
@@ -32,7 +39,14 @@ class LearnJointDmp(State, frozen=True, kw_only=True):
 
     robot: RobotName
     recording: Recording
-    save_as: Annotated[str, Meta(min_length=1, description="Name of the entry of kind `dmp` that is written")]
+    save_as: Annotated[
+        str,
+        Meta(
+            min_length=1,
+            description="Name of the entry of kind `dmp` that is written",
+            extra_json_schema={"new_entry": "dmp"},
+        ),
+    ]
     kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 lets the fit decide")] = 0
 
     async def run(self, ctx: Context) -> Outcome:
@@ -61,7 +75,14 @@ class LearnCartDmp(State, frozen=True, kw_only=True):
 
     robot: RobotName
     recording: Recording
-    save_as: Annotated[str, Meta(min_length=1, description="Name of the entry of kind `cart_dmp` that is written")]
+    save_as: Annotated[
+        str,
+        Meta(
+            min_length=1,
+            description="Name of the entry of kind `cart_dmp` that is written",
+            extra_json_schema={"new_entry": "cart_dmp"},
+        ),
+    ]
     kernels: Annotated[dmp.Kernels, Meta(description="Number of kernels; 0 lets the fit decide")] = 0
 
     async def run(self, ctx: Context) -> Outcome:

@@ -17,7 +17,9 @@ from engine.skills.entries import ReadEntry
 from engine.state import Context
 from engine.store.kinds import Joints, read_as
 
-RobotName = Annotated[str, Meta(min_length=1, description="The arm that moves")]
+RobotName = Annotated[
+    str, Meta(min_length=1, description="The arm that moves", extra_json_schema={"cell_name": "robot"})
+]
 Offset = Annotated[
     Vector3, Meta(description="Added to the target, along the axes of the world", extra_json_schema={"unit": "m"})
 ]
@@ -41,7 +43,10 @@ class EntryTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
     ]
 
 
-JointTarget = EntryTarget | Annotated[tuple[float, ...], Meta(min_length=1)]
+JointTarget = (
+    EntryTarget
+    | Annotated[tuple[float, ...], Meta(min_length=1, extra_json_schema={"unit": "rad", "joints_of": "robot"})]
+)
 """Joint angles in radians in the arm's order, or `{entry: name}` of kind `joints`."""
 
 
@@ -49,13 +54,19 @@ class PoseTarget(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
     """A pose of the tool centre point, metres and x y z w in `frame`; or the entry of kind `pose` of a name."""
 
     entry: Annotated[str, Meta(description="Name of the entry in the store", extra_json_schema={"entry": "pose"})] = ""
-    xyz: Vector3 | None = None
+    xyz: Annotated[Vector3, Meta(extra_json_schema={"unit": "m"})] | None = None
     xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
-    frame: str = "world"
+    frame: Annotated[str, Meta(extra_json_schema={"cell_name": "arm_frame"})] = "world"
 
     def __post_init__(self) -> None:
         if bool(self.entry) == (self.xyz is not None):
             raise ValueError("give either `entry` or `xyz` with `xyzw`")
+
+
+class ShownPoseTarget(PoseTarget, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A pose that may be given in the frame of any body that the cell shows, such as a part or a link of an arm."""
+
+    frame: Annotated[str, Meta(extra_json_schema={"cell_name": "frame"})] = "world"
 
 
 def joints_label(target: JointTarget) -> str:

@@ -10,7 +10,7 @@ from engine.skills.planning_scene import AttachPart
 from engine.state import Context, Outcome, State
 from states.asked import asked
 from states.motion.target import RobotName
-from states.scene.naming import CELL, PartName
+from states.scene.naming import CELL, CarriedName
 
 
 class Attach(State, frozen=True, kw_only=True):
@@ -23,9 +23,15 @@ class Attach(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("attached", "failed")
     success: ClassVar[tuple[str, ...]] = ("attached",)
 
-    part: PartName
+    part: CarriedName
     robot: RobotName
-    link: Annotated[str, Meta(description="The link that holds it; the tool's by default")] = ""
+    link: Annotated[
+        str,
+        Meta(
+            description="The link that holds it; the tool's by default",
+            extra_json_schema={"cell_name": "link", "of": "robot"},
+        ),
+    ] = ""
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the cell."""

@@ -7,7 +7,7 @@ from typing import ClassVar
 from engine.skills.planning_scene import DetachPart
 from engine.state import Context, Outcome, State
 from states.asked import asked
-from states.scene.naming import CELL, PartName
+from states.scene.naming import CELL, CarriedName
 
 
 class Detach(State, frozen=True, kw_only=True):
@@ -17,7 +17,7 @@ class Detach(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("detached", "failed")
     success: ClassVar[tuple[str, ...]] = ("detached",)
 
-    part: PartName
+    part: CarriedName
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the cell."""

@@ -11,7 +11,7 @@ from engine.shapes import Obstacle
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State
 from states.asked import asked
-from states.scene.naming import CELL, ObstacleName
+from states.scene.naming import CELL, NewObstacleName
 from states.scene.solid import Lengths, ShapeName, shape_of
 
 
@@ -25,7 +25,7 @@ class PutObstacle(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("put", "failed")
     success: ClassVar[tuple[str, ...]] = ("put",)
 
-    name: ObstacleName
+    name: NewObstacleName
     shape: ShapeName = "box"
     size_m: Lengths
     at: Annotated[Placement, Meta(description="Where its centre is in the world: `{xyz, rpy}`")]

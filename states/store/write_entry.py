@@ -27,7 +27,7 @@ class WriteEntry(State, frozen=True, kw_only=True):
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"conflict": ("revision",)}
 
     kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
-    name: Annotated[str, Meta(description="Name of the entry")]
+    name: Annotated[str, Meta(description="Name of the entry", extra_json_schema={"new_entry_of": "kind"})]
 
     async def run(self, ctx: Context, *, value: dict[str, object], expected_revision: int | None = None) -> Outcome:
         """Write; a value the store refuses is an error."""

@@ -32,8 +32,21 @@ class Detect(State, frozen=True, kw_only=True):
         "failed": ("detections", "pose", "label"),
     }
 
-    camera: Annotated[str, Meta(min_length=1, description="Name of the camera; it needs `detect` in the cell")]
-    label: Annotated[str, Meta(description="What to look for; anything where it is empty")] = ""
+    camera: Annotated[
+        str,
+        Meta(
+            min_length=1,
+            description="Name of the camera; it needs `detect` in the cell",
+            extra_json_schema={"cell_name": "detector"},
+        ),
+    ]
+    label: Annotated[
+        str,
+        Meta(
+            description="What to look for; anything where it is empty",
+            extra_json_schema={"cell_name": "label", "of": "camera"},
+        ),
+    ] = ""
     minimal_score: Score = 0.5
 
     async def run(self, ctx: Context) -> Outcome:

@@ -8,13 +8,14 @@ import pytest
 
 from engine.journal import encode_event_log
 from tests.behaviors.application import Application, shipped_cell
+from tests.tiers import nightly
 
 
 @pytest.mark.parametrize(
     ("name", "cell"),
     [
-        ("pick_and_place", "ur10"),
-        ("plate_transfer", "irb4600"),
+        nightly("pick_and_place", "ur10"),
+        nightly("plate_transfer", "irb4600"),
         ("plate_transfer_shared", "irb4600_shared"),
         ("test_cylinder", "servo_arm"),
     ],

@@ -208,7 +208,7 @@ async def test_the_catalogue_has_states_containers_and_behaviors(client: Editing
     assert [each["id"] for each in catalogue["behaviors"]] == [SHIFT_ID]
     kinds = [each["kind"] for each in catalogue["containers"]]
     assert kinds[:2] == ["machine", "concurrency"]
-    assert catalogue["entries"] == []
+    assert (catalogue["entries"], catalogue["names"]) == ([], {})
 
 
 @pytest.mark.parametrize(

@@ -190,6 +190,18 @@ def test_what_the_opened_list_points_at_is_shown_before_it_is_taken(browser: Bro
         expect(page.get_by_label("Preview of aside")).to_have_count(0)
 
 
+def test_a_field_offers_the_names_that_the_cell_has(browser: Browser, site: TeachSite) -> None:
+    """Those that the check knows: the robots for an arm, to be chosen by the keyboard."""
+    with editing(browser, site, "turn") as page:
+        robot = page.get_by_role("combobox", name="robot", exact=True)
+        robot.focus()
+        robot.press("ArrowDown")
+        expect(robot.locator("xpath=..").get_by_role("option")).to_have_text(["left", "right"])
+        robot.press("ArrowDown")
+        robot.press("Enter")
+        expect(robot).to_have_value("right")
+
+
 def test_what_an_arm_cannot_do_is_said_in_words(browser: Browser, site: TeachSite) -> None:
     """Too far away for the arm that the behavior has by default; of more joints than another arm has."""
     with editing(browser, site, "over") as page:

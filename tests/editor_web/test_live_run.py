@@ -139,14 +139,14 @@ def test_the_log_is_bounded() -> None:
     assert (len(live.log), live.log[0].seq) == (LOG_LINES, 11)
 
 
-def test_a_cause_chain_is_told_from_the_outside_in() -> None:
+def test_a_cause_chain_is_told_from_the_inside_out() -> None:
     """All links, in order."""
     cause = Cause(message="outer", where="root/a", kind="A", because=Cause(message="inner", where="arm", kind="B"))
     line = log_line(exited(1, "root/a", "failed", cause=cause), duration_s=1.5)
     assert (line.level, line.text) == ("error", "ended with failed after 1.50 s")
     assert line.causes == (
-        CauseLine(message="outer", where="root/a", kind="A"),
         CauseLine(message="inner", where="arm", kind="B"),
+        CauseLine(message="outer", where="root/a", kind="A"),
     )
 
 

@@ -122,7 +122,7 @@ def test_what_is_wrong_with_a_parameter_stands_at_its_field(visit: Visit, site: 
 
 
 def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> None:
-    """Down to the root cause."""
+    """From what was measured on."""
     site.backend.step_s = 0.05
     with visit(address(SINGLE.id)) as page:
         page.get_by_label("Part").fill("hca_1")
@@ -131,7 +131,7 @@ def test_a_failure_is_marked_and_its_causes_unfold(visit: Visit, site: Site) -> 
         expect(node(page, "root/grasp").locator(".exit.is-taken")).to_have_text("failed")
         expect(page.locator(".page-head .badge")).to_have_text("finished: failed")
         page.get_by_role("log").get_by_role("button", name="3 causes").last.click()
-        expect(page.locator(".causes li").last).to_contain_text("no contact on either pad")
+        expect(page.locator(".causes li").first).to_contain_text("no contact on either pad")
 
 
 def test_a_broken_document_shows_where_and_cannot_be_started(visit: Visit) -> None:

@@ -7,6 +7,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from engine.state import Context, Outcome, State
+from states.flow.decide import Decide
+from states.flow.log import Log
+from states.flow.set_value import SetValue
+from states.flow.wait import Wait
 
 
 class Give(State, frozen=True, kw_only=True):
@@ -167,3 +171,5 @@ class Stray(State, frozen=True, kw_only=True):
 CATALOGUE: dict[str, type[State]] = {
     state.state_name: state for state in (Give, Count, Hang, Raise, Mutate, Write, Use, Stubborn, Deaf, Messy, Stray)
 }
+WITH_FLOW = {**CATALOGUE, **{state.state_name: state for state in (Decide, Log, SetValue, Wait)}}
+"""Also what ships to hold a behavior together."""

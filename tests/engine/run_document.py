@@ -13,7 +13,7 @@ from engine.document import parse_behavior
 from engine.event import Entered, Event, Exited, Logged
 from engine.plan import Plan, new_plan
 from engine.run import Run, RunResult
-from tests.engine.fake_states import CATALOGUE
+from tests.engine.fake_states import WITH_FLOW
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ HEAD = "flexcell: 1\nname: test\noutcomes: [good, bad]\nsuccess: [good]\n"
 def plan_of(text: str) -> Plan:
     """Plan a document; text without `flexcell:` gets a head with outcomes good and bad."""
     body = dedent(text)
-    return new_plan(parse_behavior(body if "flexcell:" in body else HEAD + body, file="test.yaml"), CATALOGUE)
+    return new_plan(parse_behavior(body if "flexcell:" in body else HEAD + body, file="test.yaml"), WITH_FLOW)
 
 
 def run_document(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import math
 import threading
 import time
@@ -154,3 +155,22 @@ def test_a_task_left_behind_is_cancelled_with_its_cleanup() -> None:
 
     run_virtual(leaver())
     assert cleaned == [True]
+
+
+def test_what_ignores_its_end_does_not_hold_up_the_loop(caplog: pytest.LogCaptureFixture) -> None:
+    """It is named; what main returned is not lost."""
+
+    async def deaf() -> None:
+        while True:
+            with contextlib.suppress(asyncio.CancelledError):
+                await asyncio.sleep(3600.0)
+
+    left: list[asyncio.Task[None]] = []
+
+    async def main() -> int:
+        left.append(asyncio.create_task(deaf(), name="deaf one"))
+        await asyncio.sleep(1.0)
+        return 5
+
+    assert run_virtual(main()) == 5
+    assert "closed over deaf one, which does not end when it is cancelled" in caplog.text

@@ -43,6 +43,24 @@ def test_the_first_entry_that_holds_preempts_the_others() -> None:
     assert "left ended with c" in [link.message for link in told.result.cause.chain()]
 
 
+def test_as_many_as_an_entry_asks_for_end_the_others() -> None:
+    """Two of three have succeeded at t=2; the third is preempted and cleans up."""
+    told = run_document("""
+        root:
+          concurrency:
+            states:
+              one: {state: test.Give, with: {outcome: a, after_s: 2.0}}
+              two: {state: test.Give, with: {outcome: a, after_s: 1.0}}
+              three: {state: test.Hang, with: {cleanup_s: 3.0}}
+            conditions: [{good: {one: a, two: a, three: a, at_least: 2}}]
+            otherwise: bad
+    """)
+    assert told.story[4:] == [
+        "-root/two a", "-root/one a", "!root/three cleaned up", "-root/three preempted", "-root good",
+    ]  # fmt: skip
+    assert (told.result.duration_s, told.result.cause) == (pytest.approx(5.0), None)
+
+
 def test_what_finishes_at_one_instant_is_decided_in_document_order() -> None:
     """Both end at t=1; the first entry wins though the other child was listed first."""
     conditions = "[{good: {right: b}}, {bad: {left: a}}]"

@@ -12,9 +12,10 @@ from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
 from engine.errors import ControlError, DocumentError, JournalError
 from engine.journal import Journal, NullJournal, list_runs, read_origin
-from engine.launch import new_origin, new_run, plan_resume
+from engine.launch import new_origin, new_run, plan_resume, require_names
 from engine.plan import Plan, new_plan
 from engine.recorded_run import read_run
+from engine.registry import load_states
 from engine.supervision import Supervision
 from tests.engine.fake_states import CATALOGUE
 
@@ -157,3 +158,25 @@ async def test_a_run_that_is_driven_here_is_not_resumed(outer: Path) -> None:
             with pytest.raises(ControlError, match=f"process {os.getpid()} drives this run"):
                 plan_resume(found, plan, catalogue=CATALOGUE)
             await run.execute()
+
+
+def test_a_run_that_names_what_its_cell_lacks_is_refused(tmp_path: Path) -> None:
+    """With the value that it is given, and the position where it is used."""
+    (tmp_path / "cell.yaml").write_text(
+        "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\n"
+        "robots: {left: {model: servo_arm, gripper: {model: servo_claw}}}\n",
+        encoding="utf-8",
+    )
+    file = tmp_path / "b.yaml"
+    file.write_text(
+        "flexcell: 1\nname: b\noutcomes: [done]\nparameters: {arm: {type: string, default: left}}\n"
+        "root: {machine: {initial: a, states: {a: {state: gripper.Open, with: {gripper: '${arm}'}, "
+        "transitions: {opened: done, failed: done}}}}}\n",
+        encoding="utf-8",
+    )
+    cell, behavior = load_cell(tmp_path / "cell.yaml"), load_behavior(file)
+    require_names(behavior, load_states(), cell, {"arm": "left"})
+    with pytest.raises(DocumentError, match="has no robot with a gripper `lft`") as refused:
+        require_names(behavior, load_states(), cell, {"arm": "lft"})
+    assert str(refused.value.where).endswith("b.yaml:5:80")
+    assert refused.value.hint == "did you mean left?"

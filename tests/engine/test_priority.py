@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from engine.event import Exited
+from engine.event import Entered, Exited
 from tests.engine.control.operate import operate
 from tests.engine.run_document import run_document
 
@@ -109,3 +109,5 @@ def test_priorities_with_timeouts_entered_at_one_instant_take_turns(timed: tuple
         text += branch.format(name=name, timeout=timeout, retry=retry)
     told = run_document(text + "    conditions: [{good: {left: out, right: out}}]\n    otherwise: bad\n")
     assert (told.result.outcome, told.result.duration_s) == ("good", pytest.approx(6.0))
+    entered = [event.path for event in told.events if isinstance(event, Entered) and event.path.endswith("/one")]
+    assert entered == ["root/left/first/one", "root/right/first/one"]

@@ -14,7 +14,7 @@ CELL = """
 flexcell: 1
 cell: bench
 store: {kind: sqlite, path: STORE, seed: ../entries.yaml}
-robots: {}
+parts: {plate: {shape: box, size_m: [0.1, 0.1, 0.01], mass_kg: 0.1}}
 """
 BEHAVIOR = """
 flexcell: 1
@@ -35,7 +35,7 @@ ID = "behaviors/move.yaml"
 
 
 async def test_an_entry_that_was_taught_is_not_missing_in_the_editor(tmp_path: Path) -> None:
-    """And missing again when it is deleted; without the cell open, the seed counts."""
+    """And missing again when it is deleted; without the cell open, the seed counts. What the cell has is offered."""
     (tmp_path / "behaviors" / "cells").mkdir(parents=True)
     (tmp_path / "behaviors" / "entries.yaml").write_text("flexcell: 1\njoints: {home: [0]}\n")
     file = tmp_path / "behaviors" / "cells" / "bench.yaml"
@@ -55,5 +55,8 @@ async def test_an_entry_that_was_taught_is_not_missing_in_the_editor(tmp_path: P
             ):
                 if change is not None:
                     await change
-                found.append([each.code for each in session.documents.examine(ID, BEHAVIOR).findings])
+                codes = [each.code for each in session.documents.examine(ID, BEHAVIOR).findings]
+                found.append([code for code in codes if code == "missing-entry"])
+            offered = session.documents.offered()
     assert found == [["missing-entry"], [], ["missing-entry"]]
+    assert (offered["part"], offered["robot"]) == (("plate",), ())

@@ -22,6 +22,7 @@ from engine.document import parse_behavior
 from engine.document.cell import load_cell
 from engine.document.entries import load_entries
 from engine.document.faults import parse_faults
+from engine.document.substitutes import parse_substitutes
 from engine.registry import load_states
 from engine.skills.entries import WriteEntry
 from engine.teaching import load_triggers
@@ -33,11 +34,12 @@ EXAMPLES = ROOT / "docs" / "how-to" / "examples"
 PAGES = [ROOT / "README.md", *(ROOT / "docs/concepts").glob("*.md"), *(ROOT / "docs/how-to").glob("*.md")]
 CELL = ROOT / "behaviors" / "cells" / "dual_panda.yaml"
 BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS = "\nroot:", "\nrobot:", "\nfaults:", "\nbreakpoints:"
+SUBSTITUTES = "\nsubstitutes:"
 TRIGGERS = "\ntriggers:"
 TAGS = "\ntags:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:")
 STORES = ("store:",)
-PARTS_OF_TREES = ("condition:", "behaviour:")
+PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:")
 SHOWN = {
     f"{page.relative_to(ROOT)}-{number}": text
     for page in sorted(PAGES)
@@ -114,6 +116,11 @@ def test_a_part_of_a_tree_is_sound(text: str) -> None:
     assert [str(each) for each in check_behavior(behavior, load_states()) if each.severity == "error"] == []
 
 
+@shown(holding=SUBSTITUTES)
+def test_substitutes_are_taken(text: str) -> None:
+    assert parse_substitutes(text, file="example.yaml").document.substitutes
+
+
 @shown(holding=FAULTS)
 def test_faults_are_taken(text: str) -> None:
     assert len(parse_faults(text, file="faults.yaml").document.faults) == text.count("\n  - ")
@@ -142,7 +149,7 @@ def test_entries_are_taken_with_their_tags(tmp_path: Path, text: str) -> None:
 
 def test_every_example_is_of_a_kind_that_is_tried() -> None:
     """A new kind of example comes with its test."""
-    kinds = (BEHAVIOR, ROBOT, FAULTS, BREAKPOINTS, TRIGGERS, TAGS)
+    kinds = (BEHAVIOR, ROBOT, FAULTS, SUBSTITUTES, BREAKPOINTS, TRIGGERS, TAGS)
     begun = (*PARTS_OF_CELLS, *STORES, *PARTS_OF_TREES)
     unknown = [n for n, text in SHOWN.items() if not text.startswith(begun) and not any(kind in text for kind in kinds)]
     assert unknown == []

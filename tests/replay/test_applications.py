@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from engine.document import load_behavior
-from engine.recording import load_recording
-from engine.replay import recorded_behavior
+from engine.recording import load_recording, recorded_behavior
 
 FOLDER = Path(__file__).parent
 BEHAVIORS = FOLDER.parents[1] / "behaviors"
@@ -33,7 +32,8 @@ def test_the_recording_is_small_and_that_of_the_present_behavior(
     assert file.stat().st_size < 150_000
     recording = load_recording(file)
     again = f"make it again: python tests/replay/make_recordings.py {name}"
-    assert recorded_behavior(recording).meaning == load_behavior(BEHAVIORS / folder / f"{name}.yaml").meaning, again
+    behavior = load_behavior(BEHAVIORS / folder / f"{name}.yaml")
+    assert recorded_behavior(recording.documents).meaning == behavior.meaning, again
     assert (recording.description.clock, recording.description.seed) == ("virtual", 1)
     documents = {f"{folder}/{name}.yaml", f"cells/{cell}.yaml", f"entries/{entries}.yaml"}
     assert documents <= set(recording.documents.texts)

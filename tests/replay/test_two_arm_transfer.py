@@ -13,8 +13,7 @@ import sys
 from pathlib import Path
 
 from engine.document import load_behavior
-from engine.recording import load_recording
-from engine.replay import recorded_behavior
+from engine.recording import load_recording, recorded_behavior
 from tests.engine.cli.command import flexcell
 
 FOLDER = Path(__file__).parent
@@ -63,7 +62,7 @@ def test_one_changed_transition_is_caught_with_its_path_and_both_sides(tmp_path:
 def test_the_recording_is_small_and_that_of_the_present_behavior() -> None:
     assert RECORDING.stat().st_size < 300_000
     recording = load_recording(RECORDING)
-    assert recorded_behavior(recording).meaning == load_behavior(BEHAVIOR).meaning, AGAIN
+    assert recorded_behavior(recording.documents).meaning == load_behavior(BEHAVIOR).meaning, AGAIN
     assert (recording.description.clock, recording.description.seed) == ("virtual", 1)
     assert sorted(recording.documents.texts) == [
         "cells/dual_panda.yaml",

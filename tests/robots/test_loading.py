@@ -11,7 +11,16 @@ PROGRAM = "import sys, {module}; print([name for name in ('numba', 'eaik', 'scip
 
 
 @pytest.mark.parametrize(
-    "module", ["robots.model.inverse_kinematics", "robots.arm", "robots.sim.simulated_cell", "editor_web.server"]
+    "module",
+    [
+        "robots.model.inverse_kinematics",
+        "robots.arm",
+        "robots.sim.simulated_cell",
+        "editor_web.server",
+        # On the event loop of the engine, at the first request.
+        "robots.planning.worker",
+        "robots.vision.worker",
+    ],
 )
 def test_importing_loads_only_what_every_program_needs(module: str) -> None:
     """Only a request does."""

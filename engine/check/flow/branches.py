@@ -13,6 +13,7 @@ from engine.check.flow.effect import Effect, either
 from engine.check.flow.graph import Way
 from engine.check.flow.site import Sites
 from engine.check.subject import Placed
+from engine.document.node import shared_keys
 
 Ways = Mapping[str, Sequence[Way]]
 
@@ -22,10 +23,10 @@ def concurrency_ends(
 ) -> dict[str, int]:
     """Return what holds at each end of a concurrency container."""
     container = placed.node.concurrency
-    branches = _Branches(children, ways, entry)
+    branches = _Branches(children, ways, entry, shared=sites.all_bits(shared_keys(placed.node)) & ~sites.undefined)
     ends: dict[str, int] = {}
     for rule in container.rules if container is not None else ():
-        ends[rule.outcome] = ends.get(rule.outcome, 0) | branches.merged(rule.when)
+        ends[rule.outcome] = ends.get(rule.outcome, 0) | branches.merged(rule.when if rule.needs_all else {})
     if container is not None and container.otherwise is not None:
         ends[container.otherwise] = ends.get(container.otherwise, 0) | branches.all_ended(sites)
     return ends
@@ -49,11 +50,13 @@ def parallel_ends(placed: Placed, children: Sequence[Placed], ways: Ways, entry:
 class _Branches:
     """The branches that write anything, and what they may write.
 
-    A site belongs to one branch, so what a branch may write can be taken out of what all may.
+    A site belongs to one branch, so what a branch may write can be taken out of what all may. `shared` are the bits of
+    keys that the branches share: any of them may have written those last.
     """
 
-    def __init__(self, children: Sequence[Placed], ways: Ways, entry: int) -> None:
+    def __init__(self, children: Sequence[Placed], ways: Ways, entry: int, *, shared: int = 0) -> None:
         self._entry = entry
+        self._shared = shared
         self._ways = {
             child.name: ways[child.path] for child in children if any(way.effect.keys for way in ways[child.path])
         }
@@ -68,7 +71,7 @@ class _Branches:
         for name in named:
             effect = self._ended(name, ended[name])
             # What branches behind it may write comes after what it has certainly written.
-            fact = fact & ~((effect.kill | effect.defines) & ~self._later[name]) | effect.gen
+            fact = fact & ~((effect.kill | effect.defines) & ~self._later[name] & ~self._shared) | effect.gen
         return fact
 
     def all_ended(self, sites: Sites) -> int:
@@ -76,7 +79,8 @@ class _Branches:
         fact = self._entry
         for ways in self._ways.values():
             fact = either(way.effect for way in ways).after(fact, sites)
-        return fact
+        # Of a shared key nobody knows who wrote last.
+        return fact | self._entry & self._shared
 
     @cached_property
     def _perhaps(self) -> Mapping[str, int]:

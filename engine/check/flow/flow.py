@@ -12,9 +12,11 @@ from collections.abc import Iterable, Sequence
 from engine.check.flow.branches import concurrency_ends, parallel_ends
 from engine.check.flow.effect import NOTHING, Effect, either, summary, together, writing
 from engine.check.flow.graph import Graph, Way, machine_graph, tree_graph
+from engine.check.flow.read import Read
 from engine.check.flow.rounds import collecting, foreach_facts
 from engine.check.flow.site import Origin, Sites
 from engine.check.subject import Placed, Subject, diversions, leaf_success
+from engine.document.node import shared_keys
 
 BEHAVIOR = ""
 """The path of what the behavior itself declares: its parameters and its initial userdata."""
@@ -62,12 +64,22 @@ class Flow:
     def enter(self, placed: Placed, fact: int) -> int:
         """Return what holds where a container begins when `fact` holds before it."""
         own = self.own_keys(placed.path)
-        if not own:
+        shared = self.sites.all_bits(shared_keys(placed.node))
+        if not own and not shared:
             return fact
         found = fact & ~self.sites.all_bits(own)
         for key, origin in _declared(placed):
             found |= self.sites.add(key, origin, placed.path, key)
+        for child in self.subject.children(placed) if shared else ():
+            # A branch may meet it at any time as another one wrote it.
+            effect = self.anywhere[child.path]
+            found |= (effect.gen | effect.fresh) & shared
         return found
+
+    def fact_at(self, read: Read) -> int | None:
+        """Return what holds where a key is read; None where nobody gets to."""
+        facts = {"collect": self.behind, "shared": self.inside}.get(read.by, self.before)
+        return facts.get(read.placed.path)
 
     def solve(self, placed: Placed, children: Sequence[Placed], entry: int) -> tuple[dict[int, int], dict[str, int]]:
         """Return what holds before each child, by number, and at each end, when `entry` holds before a container."""

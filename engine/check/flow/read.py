@@ -12,7 +12,7 @@ from engine.document.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 
-By = Literal["input", "mapped", "expression", "collect"]
+By = Literal["input", "mapped", "expression", "collect", "shared"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,7 +20,8 @@ class Read:
     """One key that a node reads.
 
     `input`: the state's input key of the same name. `mapped`: through `in:`. `expression`: a name
-    in a `${…}`. `collect`: at the end of a round of a foreach. `keys` lead to the value in the
+    in a `${…}`. `collect`: at the end of a round of a foreach. `shared`: by the branches of a concurrency
+    container. `keys` lead to the value in the
     document, from the node inward. A read that is not `required` is left out where there is no value.
     """
 
@@ -42,6 +43,9 @@ def reads(subject: Subject) -> Iterator[Read]:
         if placed.node.foreach is not None:
             for key in placed.node.foreach.collect:
                 yield Read(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
+        if placed.node.concurrency is not None:
+            for index, key in enumerate(placed.node.concurrency.shared):
+                yield Read(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
 
 
 def expressions(subject: Subject, placed: Placed) -> Iterator[tuple[tuple[str | int, ...], Template]]:

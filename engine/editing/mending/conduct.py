@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from engine.editing.edit import SetField
-from engine.editing.mending.fix import Fix, Place, near
+from engine.editing.mending.fix import Fix, Place, is_slip, near
 
 
 def constant_guard(place: Place) -> Iterator[Fix]:
     """Remove a guard that is always open."""
     if "guard" in place.spot.data and place.finding.message.endswith("open"):
-        yield Fix(title="Remove the guard", edits=(SetField(path=place.spot.path, field="guard"),))
+        yield Fix(title="Remove the guard", edits=(SetField(path=place.spot.path, field="guard"),), sure=True)
 
 
 def idle_retry(place: Place) -> Iterator[Fix]:
@@ -36,4 +36,4 @@ def bad_resume(place: Place) -> Iterator[Fix]:
     known = ("rerun", "ask", *place.bench.ends(place.spot).outcomes)
     for right in dict.fromkeys((*near(place.names[0], known), "ask")):
         edit = SetField(path=place.spot.path, field="resume", value=right)
-        yield Fix(title=f"Resume with `{right}`", edits=(edit,))
+        yield Fix(title=f"Resume with `{right}`", edits=(edit,), sure=is_slip(place.names[0], right, known))

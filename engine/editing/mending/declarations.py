@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from engine.editing.edit import SetDocument
-from engine.editing.mending.fix import Fix, Place, mapping, near, strings, without
+from engine.editing.mending.fix import Fix, Place, is_slip, mapping, near, strings, without
 
 
 def unused_parameter(place: Place) -> Iterator[Fix]:
@@ -27,7 +27,9 @@ def unknown_success(place: Place) -> Iterator[Fix]:
     for right in near(wrong, outcomes):
         if right not in good:
             changed = [right if each == wrong else each for each in good]
-            yield Fix(title=f"Write `{right}` instead of `{wrong}`", edits=(SetDocument(changes={"success": changed}),))
+            edit = SetDocument(changes={"success": changed})
+            title = f"Write `{right}` instead of `{wrong}`"
+            yield Fix(title=title, edits=(edit,), sure=is_slip(wrong, right, outcomes))
     rest = [each for each in good if each != wrong]
     yield Fix(title=f"Remove `{wrong}` from `success`", edits=(SetDocument(changes={"success": rest or None}),))
     edit = SetDocument(changes={"outcomes": [*outcomes, wrong]})

@@ -14,16 +14,23 @@ from engine.editing.outline import MACHINES, Plain, Spot
 from engine.library import FindingView
 
 _NAMES = re.compile(r"`([^`]*)`")
+_SHORTEST = 4
+"""Letters of a name below which one slip makes another word of it."""
 MOST = 5
 """So many fixes of a finding are offered at most."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fix:
-    """Edits that would mend a finding; `title` says all that they do."""
+    """Edits that would mend a finding; `title` says all that they do.
+
+    A fix is `sure` where it only writes what was evidently meant, or takes away what has no effect: it may be made
+    without asking. All others are for a person to choose.
+    """
 
     title: str
     edits: tuple[AnyEdit, ...]
+    sure: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +76,23 @@ def named(finding: FindingView) -> tuple[str, ...]:
 def near(name: str, known: Iterable[str], *, most: int = 3) -> list[str]:
     """Return the known names that a mistyped one may mean, the nearest first."""
     return difflib.get_close_matches(name, sorted(set(known)), n=most, cutoff=0.6)
+
+
+def is_slip(written: str, meant: str, known: Iterable[str]) -> bool:
+    """Tell whether a name is evidently a mistyped other one: one slip away from it, and from no other known name."""
+    return _is_near(written, meant) and not any(each != meant and _is_near(written, each) for each in known)
+
+
+def _is_near(written: str, meant: str) -> bool:
+    a, b = (name.lower().replace("-", "_") for name in (written, meant))
+    if a == b:
+        return True
+    if len(min(a, b, key=len)) < _SHORTEST or [c for c in a if c.isdigit()] != [c for c in b if c.isdigit()]:
+        return False  # `left_1` is not `left_2`, and `a` not `b`
+    begin = next((i for i, (one, other) in enumerate(zip(a, b, strict=False)) if one != other), min(len(a), len(b)))
+    rest, other = a[begin:], b[begin:]
+    swapped = rest[:2] == other[1::-1] and len(other) > 1 and rest[2:] == other[2:]
+    return swapped or other in (rest[1:], f"{other[:1]}{rest[1:]}", f"{other[:1]}{rest}")
 
 
 def mapping(value: object) -> Plain:

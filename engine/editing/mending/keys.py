@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from engine.document.signature import KeySignature
 from engine.editing.edit import SetDocument, SetField
-from engine.editing.mending.fix import Fix, Place, mapping, near, renamed, without
+from engine.editing.mending.fix import Fix, Place, is_slip, mapping, near, renamed, without
 
 _BEGINNINGS: Mapping[str, object] = {"number": 0, "integer": 0, "string": "", "boolean": False, "array": []}
 
@@ -24,11 +24,12 @@ def unknown_output(place: Place) -> Iterator[Fix]:
 def _remapped(place: Place, section: str, known: Iterable[str]) -> Iterator[Fix]:
     if len(place.names) < 2:
         return
-    name, given = place.names[1], place.section(section)
-    for right in near(name, known):
+    name, given, names = place.names[1], place.section(section), tuple(known)
+    for right in near(name, names):
         if right not in given:
             edit = SetField(path=place.spot.path, field=section, value=renamed(given, name, right))
-            yield Fix(title=f"Write `{right}` instead of `{name}`", edits=(edit,))
+            title = f"Write `{right}` instead of `{name}`"
+            yield Fix(title=title, edits=(edit,), sure=is_slip(name, right, names))
     edit = SetField(path=place.spot.path, field=section, value=without(given, name))
     yield Fix(title=f"Remove `{name}` from `{section}`", edits=(edit,))
 
@@ -40,10 +41,12 @@ def undefined(place: Place) -> Iterator[Fix]:
         return
     given = place.section("in")
     mapped = next((name for name, of in given.items() if of == key), key)
-    for right in near(key, _defined(place)):
+    defined = _defined(place)
+    for right in near(key, defined):
         if right != key:
             edit = SetField(path=place.spot.path, field="in", value={**given, mapped: right})
-            yield Fix(title=f"Read `{right}` instead of `{key}`", edits=(edit,))
+            title = f"Read `{right}` instead of `{key}`"
+            yield Fix(title=title, edits=(edit,), sure=key in given.values() and is_slip(key, right, defined))
     yield from _declared(place, key, mapped)
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import cast
 
 from engine.document.yaml_source import load_source
 from engine.editing.edit import AnyEdit, ClearParameter, SetDocument, SetField, SetParameter
-from engine.editing.mending.fix import Fix, Place, mapping, near
+from engine.editing.mending.fix import Fix, Place, is_slip, mapping, near
 from engine.editing.outline import Plain
 from engine.errors import DocumentError
 
@@ -16,8 +17,10 @@ _PLAIN = ("number", "integer", "string", "boolean")
 
 def unknown_state(place: Place) -> Iterator[Fix]:
     """Run a state that there is."""
-    for right in near(place.names[0], place.bench.knowledge.catalogue):
-        yield Fix(title=f"Run `{right}`", edits=(SetField(path=place.spot.path, field="state", value=right),))
+    wrong, known = place.names[0], place.bench.knowledge.catalogue
+    for right in near(wrong, known):
+        edit = SetField(path=place.spot.path, field="state", value=right)
+        yield Fix(title=f"Run `{right}`", edits=(edit,), sure=is_slip(wrong, right, known))
 
 
 def unknown(place: Place) -> Iterator[Fix]:
@@ -26,10 +29,11 @@ def unknown(place: Place) -> Iterator[Fix]:
         return
     name, given = place.names[1], place.section("with")
     clear = ClearParameter(path=place.spot.path, name=name)
-    for right in near(name, schemas_of(place)):
+    known = schemas_of(place)
+    for right in near(name, known):
         if right not in given:
             put = SetParameter(path=place.spot.path, name=right, value=given.get(name))
-            yield Fix(title=f"Give it to `{right}`", edits=(clear, put))
+            yield Fix(title=f"Give it to `{right}`", edits=(clear, put), sure=is_slip(name, right, known))
     yield Fix(title=f"Remove `{name}`", edits=(clear,))
 
 
@@ -41,7 +45,7 @@ def missing(place: Place) -> Iterator[Fix]:
     schema = schemas_of(place).get(name, {})
     declared = mapping(place.bench.draft.data.get("parameters"))
     if name in declared:
-        yield _given(place, name, f"${{{name}}}")
+        yield replace(_given(place, name, f"${{{name}}}"), sure=True)
     else:
         yield from _handed_on(place, name, schema, declared)
     for value in _likely(schema):
@@ -107,7 +111,8 @@ def bad(place: Place) -> Iterator[Fix]:
     if isinstance(value, str) and isinstance(choices, list):
         known = [each for each in cast("list[object]", choices) if isinstance(each, str)]
         for right in near(value, known) or known[:3]:
-            yield Fix(title=f"Set `{name}` to `{right}`", edits=(SetParameter(path=path, name=name, value=right),))
+            edit = SetParameter(path=path, name=name, value=right)
+            yield Fix(title=f"Set `{name}` to `{right}`", edits=(edit,), sure=is_slip(value, right, known))
     if "default" in schema:
         yield Fix(title=f"Leave `{name}` at its default", edits=(ClearParameter(path=path, name=name),))
 

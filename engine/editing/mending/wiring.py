@@ -15,7 +15,7 @@ from engine.editing.edit import (
     SetInitial,
     SetTransition,
 )
-from engine.editing.mending.fix import Fix, Place, mapping, near, renamed, strings
+from engine.editing.mending.fix import Fix, Place, is_slip, mapping, near, renamed, strings
 from engine.editing.outline import Plain
 
 
@@ -30,7 +30,8 @@ def unconnected(place: Place) -> Iterator[Fix]:
         )
         return
     for target in _targets(place, outcome):
-        yield Fix(title=f"Connect `{outcome}` to `{target}`", edits=(_lead(place, outcome, target),))
+        sure = target == outcome and target in place.leaving
+        yield Fix(title=f"Connect `{outcome}` to `{target}`", edits=(_lead(place, outcome, target),), sure=sure)
 
 
 def _targets(place: Place, outcome: str) -> list[str]:
@@ -75,15 +76,18 @@ def unknown_outcome(place: Place) -> Iterator[Fix]:
     for right in near(outcome, known):
         edit = _replaced(place, name, outcome, right)
         if edit is not None:
-            yield Fix(title=f"Write `{right}` instead of `{outcome}`", edits=(edit,))
+            title = f"Write `{right}` instead of `{outcome}`"
+            yield Fix(title=title, edits=(edit,), sure=is_slip(outcome, right, known))
 
 
 def _other_outcome(place: Place, outcome: str) -> Iterator[Fix]:
     target = place.section("transitions").get(outcome)
-    for right in near(outcome, place.bench.ends(place.spot).outcomes):
+    known = place.bench.ends(place.spot).outcomes
+    for right in near(outcome, known):
         if right not in place.section("transitions") and isinstance(target, str):
-            clear = ClearTransition(path=place.spot.path, outcome=outcome)
-            yield Fix(title=f"Connect `{right}` instead of `{outcome}`", edits=(clear, _lead(place, right, target)))
+            edits = (ClearTransition(path=place.spot.path, outcome=outcome), _lead(place, right, target))
+            title = f"Connect `{right}` instead of `{outcome}`"
+            yield Fix(title=title, edits=edits, sure=is_slip(outcome, right, known))
     yield _disconnected(place, outcome)
 
 
@@ -144,7 +148,8 @@ def unknown_target(place: Place) -> Iterator[Fix]:
         if place.spot.data.get("on_error") == target:
             edits.append(SetField(path=place.spot.path, field="on_error", value=right))
         if edits:
-            yield Fix(title=f"Lead to `{right}` instead of `{target}`", edits=tuple(edits))
+            title = f"Lead to `{right}` instead of `{target}`"
+            yield Fix(title=title, edits=tuple(edits), sure=is_slip(target, right, known))
     if place.machine is not None and place.machine.parent is None:
         listed = strings(place.bench.draft.data.get("outcomes"))
         yield Fix(
@@ -157,7 +162,8 @@ def missing_initial(place: Place) -> Iterator[Fix]:
     """Begin with a child that there is."""
     names = [child.name for child in place.bench.outline.children(place.spot)]
     for name in dict.fromkeys((*near(place.names[0], names), *names)):
-        yield Fix(title=f"Begin with `{name}`", edits=(SetInitial(path=place.spot.path, child=name),))
+        sure = len(names) == 1 or is_slip(place.names[0], name, names)
+        yield Fix(title=f"Begin with `{name}`", edits=(SetInitial(path=place.spot.path, child=name),), sure=sure)
 
 
 def unreachable(place: Place) -> Iterator[Fix]:
@@ -183,7 +189,7 @@ def unknown_child(place: Place) -> Iterator[Fix]:
     for right in near(name, names):
         rules = _rules(place, lambda when, right=right: renamed(when, name, right))
         edit = SetField(path=place.spot.path, field="conditions", value=rules)
-        yield Fix(title=f"Write `{right}` instead of `{name}`", edits=(edit,))
+        yield Fix(title=f"Write `{right}` instead of `{name}`", edits=(edit,), sure=is_slip(name, right, names))
 
 
 def uncovered(place: Place) -> Iterator[Fix]:

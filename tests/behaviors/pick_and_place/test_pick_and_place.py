@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
+import re
 from pathlib import Path
 
 import pytest
 
-from tests.behaviors.application import Application, causes, changed_cell, shipped_cell, without_parts
+from engine.bus import Holder
+from engine.cell import OpenCell
+from engine.event import Entered, Event, Exited
+from engine.run import Run
+from engine.skills.gripper import GripperOpen
+from tests.behaviors.application import BEHAVIORS, Application, causes, changed_cell, shipped_cell, without_parts
 from tests.behaviors.stopping import stop_in
 from tests.tiers import nightly
 
@@ -84,3 +91,49 @@ def test_stopped_in_mid_motion_the_arm_rests_and_keeps_the_payload(tmp_path: Pat
     assert result.status == "stopped"
     assert stopped.greatest_last_speed_rad_s < REST_RAD_S
     assert stopped.last("payload").xyz[2] > 0.055
+
+
+CARRY = """      approach_place:
+        tree:
+          sequence:
+            memory: false
+            children:
+              - {state: gripper.CheckHeld, with: {gripper: arm, part: payload}}
+              - state: motion.MovePose
+                name: carry
+                with: {robot: arm, target: {entry: approach_place}, speed: "${speed}"}
+        transitions: {success: place, failure: missed}
+"""
+INTO_S = 1.0
+
+
+async def _lose(run: Run, cell: OpenCell) -> None:
+    """Open the fingers while the payload is on its way, a second after it has set out."""
+    set_out = asyncio.get_running_loop().create_future()
+    run.watch(lambda event: _tell(event, set_out))
+    await set_out
+    await cell.bus.clock.sleep(INTO_S)
+    await cell.bus.send_goal(GripperOpen(), to="arm/gripper", holder=Holder(run.id, "root/lose")).result()
+
+
+def _tell(event: Event, set_out: asyncio.Future[None]) -> None:
+    if isinstance(event, Entered) and event.path.endswith("/carry"):
+        set_out.set_result(None)
+
+
+def test_a_payload_that_is_lost_on_the_way_is_not_carried_on(tmp_path: Path) -> None:
+    """A check in front of the motion watches over it: the arm brakes as soon as the fingers are empty."""
+    text = (BEHAVIORS / BEHAVIOR).read_text(encoding="utf-8")
+    watched = re.sub(r"(?m)^      approach_place:\n(?:        .*\n)+", lambda _: CARRY, text, count=1)
+    assert CARRY in watched
+    (tmp_path / "watched.yaml").write_text(watched, encoding="utf-8")
+    lost = Application(behavior=str(tmp_path / "watched.yaml"), cell=shipped_cell("ur10"), meanwhile=_lose)
+    result = lost.run(tmp_path)
+    assert result.outcome == "missed"
+    assert "arm lost part payload: the fingers are" in causes(result).replace("; ", ": ")
+    at_s = {type(each): each.time_s for each in lost.log if getattr(each, "path", "").endswith("/carry")}
+    assert at_s[Exited] - at_s[Entered] == pytest.approx(INTO_S, abs=0.5)
+    ends = [each for each in lost.log if isinstance(each, Exited) and each.path.endswith("/carry")]
+    assert [each.preempted for each in ends] == [True]
+    assert lost.last("payload").xyz[2] < 0.1
+    assert lost.greatest_last_speed_rad_s < REST_RAD_S

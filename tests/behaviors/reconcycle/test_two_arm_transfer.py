@@ -27,6 +27,7 @@ from engine.run import Run, RunResult
 from robots.port import Array
 from robots.sim.cell_model import ArmIndices, build_cell
 from robots.sim.cell_scene import scene_of
+from tests.tiers import nightly
 
 mujoco: Any = import_module("mujoco")
 
@@ -156,7 +157,12 @@ def test_a_part_too_heavy_to_lift_fails_by_name_and_not_by_time(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    "parameters", [{"speed": 1.0, "line_speed_m_s": 0.4}, {"force_n": 70.0}, {"speed": 0.05, "line_speed_m_s": 0.05}]
+    "parameters",
+    [
+        {"speed": 1.0, "line_speed_m_s": 0.4},
+        nightly({"force_n": 70.0}),
+        nightly({"speed": 0.05, "line_speed_m_s": 0.05}),
+    ],
 )
 def test_the_extremes_of_the_parameters_work(tmp_path: Path, parameters: dict[str, object]) -> None:
     """Fast, hard, slow."""

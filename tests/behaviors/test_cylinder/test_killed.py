@@ -16,6 +16,7 @@ from benchmarks.crash_trial import Trial
 from engine.event import Exited
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import events_in, run_id_in
+from tests.tiers import nightly
 
 ROOT = Path(__file__).parents[3]
 BEHAVIOR = "behaviors/test_cylinder/test_cylinder.yaml"
@@ -35,7 +36,7 @@ def test_it_ends_with_the_cylinder_in_its_rack_wherever_it_is_killed(tmp_path: P
 
 @pytest.mark.parametrize(
     ("stage", "event"),
-    [("root/pick/grip", 33), ("root/water/rinse", 71)],
+    [nightly("root/pick/grip", 33), ("root/water/rinse", 71)],
 )
 def test_flexcell_resume_goes_on_in_the_stage_it_was_killed_in(tmp_path: Path, stage: str, event: int) -> None:
     """No stage that had ended is done again, and none is left out."""

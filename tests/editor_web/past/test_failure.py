@@ -46,18 +46,18 @@ def failure(text: str) -> tuple[Failure, tuple[Event, ...]]:
 
 
 def test_an_error_is_traced_to_the_node_that_raised_it() -> None:
-    """The way down to it, the causes with the node's own error last, and the moment."""
+    """The way down to it, the causes with the node's own error first, and the moment."""
     found, _ = failure(DEEP)
     assert (found.path, found.time_s, found.text) == ("root/inner/broken", 2.0, "division by zero")
     assert [step.path for step in found.steps] == ["root", "root/inner", "root/inner/broken"]
-    assert found.links[-1].kind == "ZeroDivisionError"
+    assert found.links[0].kind == "ZeroDivisionError"
     assert found.around[-1].path == "root/inner/broken"
 
 
 def test_an_outcome_that_means_failure_is_traced_to_the_node_that_had_it() -> None:
     """Without any error in it."""
     found, _ = failure(BY_OUTCOME)
-    assert (found.path, found.time_s, found.text) == ("root/check", 2.0, "root ended with bad")
+    assert (found.path, found.time_s, found.text) == ("root/check", 2.0, "check ended with c")
     assert [step.text for step in found.steps] == ["ended with bad", "ended with c"]
 
 

@@ -157,6 +157,7 @@ def _parts(draw: st.DrawFn, depth: int) -> TreePart:
             synchronise=draw(st.none() | st.booleans()),
             **more,
         ),
+        lambda: parallel(*draw(children), success_count=1, failure_count=draw(st.none() | st.just(1)), **more),
         lambda: inverter(draw(inner), **more),
         lambda: one_shot(draw(inner), policy=draw(st.sampled_from([None, "completion", "success"])), **more),
         lambda: repeat(draw(inner), times=draw(st.integers(1, 5)), **more),

@@ -94,7 +94,8 @@ class _Maker:
         for _ in range(self._draw(st.integers(0, 2))):
             some = self._draw(st.lists(st.sampled_from(names), min_size=1, unique=True))
             when = {name: self._draw(st.sampled_from(drawn[name].outcomes)) for name in some}
-            conditions.append({self._draw(st.sampled_from(LABELS)): when})
+            count = {"at_least": self._draw(st.integers(1, len(some)))} if self._draw(st.booleans()) else {}
+            conditions.append({self._draw(st.sampled_from(LABELS)): {**when, **count}})
         container = {"states": states, "conditions": conditions, "otherwise": "x", "userdata": self.userdata()}
         outcomes = tuple(dict.fromkeys([*(next(iter(rule)) for rule in conditions), "x"]))
         good = [next(iter(rule)) for rule in conditions]

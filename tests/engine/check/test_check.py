@@ -485,6 +485,16 @@ CASES: dict[str, list[Case]] = {
             says="left: reached, right: failed",
         ),
         Case(
+            good=PARALLEL.replace(
+                "{done: {left: reached, right: reached}}", "{done: {left: reached, right: reached, at_least: 1}}"
+            ).replace("      - {failed: {right: failed}}\n", ""),
+            old="at_least: 1",
+            new="at_least: 2",
+            path="root",
+            at="conditions:",
+            says="left: reached, right: failed",
+        ),
+        Case(
             good=PARALLEL,
             old="right: {state",
             new="right: {timeout: {after: 1 s, to: late}, state",
@@ -625,6 +635,21 @@ def test_many_children_are_covered_without_counting_all_combinations() -> None:
     assert [f.code for f in found] == ["uncovered-combination"]
     assert "c7: failed" in found[0].message
     assert time.process_time() - start < 2.0
+
+
+def test_counts_are_covered_without_counting_all_combinations() -> None:
+    """Any thirty of forty, or eleven that are not among them: all but no combination; twelve leave one open."""
+    names = [f"c{i}" for i in range(40)]
+    children = "".join(f"      {name}: {{state: arm.Move, with: {{robot: {name}}}}}\n" for name in names)
+    rules = "".join(
+        f"      - {{{end}: {{{', '.join(f'{name}: {due}' for name in names)}, at_least: {count}}}}}\n"
+        for end, due, count in (("done", "reached", 30), ("failed", "failed", 11))
+    )
+    text = f"{HEADER}root:\n  concurrency:\n    states:\n{children}    conditions:\n{rules}"
+    assert check_behavior(parse_behavior(text, file="x.yaml"), CATALOGUE) == ()
+    found = check_behavior(parse_behavior(text.replace("at_least: 11", "at_least: 12"), file="x.yaml"), CATALOGUE)
+    assert {finding.code for finding in found} <= {"uncovered-combination", "combinations-not-checked"}
+    assert found[0].message.count("failed") == 11
 
 
 def test_a_search_that_would_take_too_long_is_said_to_be_incomplete() -> None:

@@ -165,6 +165,39 @@ def test_branches_that_write_or_read_one_key_get_in_each_others_way() -> None:
     assert said_of(own) == []
 
 
+SHARED = """
+    userdata: {count: 0}
+    root:
+      concurrency:
+        shared: [count]
+        states:
+          a: {state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}}
+          b: {state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}}
+        conditions: [{good: {a: done, b: done}}]
+"""
+
+
+def test_shared_keys_are_meant_to_be_written_by_branches_and_read_by_others() -> None:
+    assert said_of(SHARED) == []
+    own = SHARED.replace("userdata: {count: 0}", "").replace("shared:", "userdata: {count: 0}\n        shared:")
+    assert said_of(own) == []
+
+
+def test_a_shared_key_is_defined_around_the_branches() -> None:
+    said = said_of(SHARED.replace("userdata: {count: 0}", ""))
+    assert set(said) == {"maybe-undefined-key root", "maybe-undefined-key root/a", "maybe-undefined-key root/b"}
+    assert said_of(SHARED.replace("shared: [count]", "shared: [count, cuont]")) == ["undefined-key root"]
+
+
+def test_what_a_branch_shares_may_be_of_another_kind_for_the_others() -> None:
+    """Without `shared` the reader has the number of the beginning."""
+    adding = '{state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}}'
+    text = SHARED.replace(f"b: {adding}", "%s").replace('value: "${count + 1}"', "value: [1]")
+    reads = "b: {state: flow.Wait, with: {duration_s: '${count}'}}"
+    assert said_of(text % reads) == ["maybe-type-mismatch root/b"]
+    assert said_of(text.replace("shared: [count]", "") % reads) == ["sibling-read root/b"]
+
+
 def test_a_parallel_of_a_tree_has_branches_too() -> None:
     """The same rules hold there."""
     text = """

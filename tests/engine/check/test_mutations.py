@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from engine.check import CODES, check_file
+from engine.cli.check import findings_of
 from engine.document import load_source
 from engine.registry import load_states
 from tests.engine.check.data_states import CATALOGUE as DATA_STATES
@@ -106,6 +107,10 @@ def test_a_document_with_anything_in_it_gives_findings_and_no_exception(
             document, path, how, data.draw(VALUES | NODES if how == "replace" else st.sampled_from(["x", "k"]))
         )
     folder = tmp_path_factory.mktemp("mutated")
+    for name in ("cells", "entries"):
+        (folder.parent / name).mkdir(exist_ok=True)
+        for shipped in (ROOT / "behaviors" / name).glob("*.yaml"):
+            (folder.parent / name / shipped.name).write_bytes(shipped.read_bytes())
     (folder / "part.yaml").write_text(json.dumps(data.draw(behaviors())), encoding="utf-8")
     file = folder / "main.json"
     file.write_text(json.dumps(document), encoding="utf-8")
@@ -113,3 +118,27 @@ def test_a_document_with_anything_in_it_gives_findings_and_no_exception(
     assert {finding.code for finding in findings} <= set(CODES)
     assert all(finding.position.line >= 1 for finding in findings)
     assert findings == check_file(file, CATALOGUE)
+
+
+CELLS = [
+    cast("dict[str, Any]", load_source(file).data)
+    for folder in ("cells", "entries")
+    for file in sorted((ROOT / "behaviors" / folder).glob("*.yaml"))
+]
+ODD: st.SearchStrategy[Any] = VALUES | st.sampled_from(["panda", "./x", "../x/y", {"kind": "x"}, [1e300] * 3, -400])
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(st.data())
+def test_a_cell_with_anything_in_it_gives_findings_and_no_exception(tmp_path_factory: Any, data: st.DataObject) -> None:
+    """Up to three changes to a cell, or to entries, that come with the project."""
+    document = data.draw(st.sampled_from(CELLS))
+    for _ in range(data.draw(st.integers(1, 3))):
+        path = data.draw(st.sampled_from(places(document)))
+        how = data.draw(st.sampled_from(["replace", "replace", "remove", "rename"]))
+        document = changed(document, path, how, data.draw(ODD if how == "replace" else st.sampled_from(["x", "k"])))
+    file = tmp_path_factory.mktemp("mutated") / "cell.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    findings = findings_of(file, CATALOGUE)
+    assert {finding.code for finding in findings} <= set(CODES)
+    assert all(finding.position.line >= 1 for finding in findings)

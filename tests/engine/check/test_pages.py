@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from engine.check import CODES, Finding, check_file
+from engine.check import CODES, Finding
+from engine.cli.check import findings_of
 from engine.registry import load_states
 
 PAGES = Path(__file__).resolve().parents[3] / "docs" / "findings"
@@ -39,7 +40,7 @@ def found_in(folder: Path, of: Page, title: str) -> tuple[Finding, ...]:
             (folder / name).write_text(content, encoding="utf-8")
     file = folder / "behavior.yaml"
     file.write_text(of.examples[title], encoding="utf-8")
-    return check_file(file, CATALOGUE)
+    return findings_of(file, CATALOGUE)
 
 
 def test_every_finding_has_a_page_and_every_page_a_finding() -> None:

@@ -147,3 +147,26 @@ def test_a_cell_that_cannot_be_read_is_told_beside_everything_else(tmp_path: Pat
 def test_states_mark_the_fields_that_name_entries(state: type[State], kind: str) -> None:
     """With the kind that they read."""
     assert entry_fields(read_signature(state).parameters["target"].type) == {("entry",): kind}
+
+
+def test_an_entry_that_the_behavior_writes_itself_is_not_missing(tmp_path: Path) -> None:
+    """Recorded, learned from and followed in one run; a mistyped recording is told, although its name stands alone."""
+    main = """
+    cell: cell.yaml
+    root:
+      machine:
+        initial: guide
+        states:
+          guide: {state: motion.Guide, with: {robot: left, record: led}, transitions: {finished: learn, failed: bad}}
+          learn:
+            state: motion.LearnJointDmp
+            with: {robot: left, recording: %s, save_as: swing}
+            transitions: {learned: follow, failed: bad}
+          follow:
+            state: motion.FollowJointDmp
+            with: {robot: left, dmp: {entry: swing}}
+            transitions: {reached: good, failed: bad}
+    """
+    assert findings_in_files(tmp_path, main=main % "led", cell=CELL, entries=ENTRIES) == ()
+    (found,) = findings_in_files(tmp_path, main=main % "lad", cell=CELL, entries=ENTRIES)
+    assert (found.code, found.path, found.hint) == ("missing-entry", "root/learn", "did you mean led?")

@@ -27,6 +27,8 @@ root:
 CELL = """flexcell: 1
 cell: bench
 store: {kind: sqlite, path: bench.db, seed: entries.yaml}
+world: {kind: mujoco}
+robots: {left: {model: servo_arm}}
 """
 
 
@@ -42,7 +44,7 @@ def folder(tmp_path: Path) -> Path:
 def _teach(file: Path) -> None:
     async def teach() -> None:
         async with SqliteStore.open(file, inline=True) as store:
-            await store.put("joints", "left_taught", {"joints": [0.0] * 7})
+            await store.put("joints", "left_taught", {"joints": [0.0, 0.0]})
 
     run_virtual(teach())
 

@@ -86,6 +86,45 @@ def test_children_that_a_parallel_runs_again_until_all_succeed_at_once_are_told(
     assert said_of(f"{HEAD}parallel: [{wait}, {later}]\n") == []
 
 
+def test_thresholds_that_no_child_can_reach_are_told() -> None:
+    """Of three that only succeed none fails; what stands behind it in a selector is never asked."""
+    wait = "{state: flow.Wait, name: w%s, with: {duration_s: 1}}"
+    three = ", ".join(wait % number for number in range(3))
+    parallel = f"{{parallel: {{success_count: 2, failure_count: 2, children: [{three}]}}}}"
+    assert said_of(f"{HEAD}selector: [{parallel}, {LOG}]\n") == ["unreachable-node root/selector/Log"]
+    may_fail = parallel.replace(wait % 0, DECIDE).replace(wait % 1, f"{{inverter: {{child: {DECIDE}}}}}")
+    assert said_of(f"{HEAD}selector: [{may_fail}, {LOG}]\n") == []
+
+
+def test_a_check_that_nothing_asks_again_is_told() -> None:
+    """It stands there to watch over a motion, which no tick interrupts."""
+    motion = "{state: motion.MoveJoints, with: {robot: left, target: [0, -0.4, 0, -2.2, 0, 1.8, 0.8]}}"
+    reactive = "%s: {memory: false, children: [%s, " + motion + "]}\n"
+    scene = "{state: scene.Check, with: {robot: left}}"
+    held = "{state: gripper.CheckHeld, with: {gripper: left}}"
+    told = "unwatched-check root/sequence/Check"
+    assert said_of(f"{HEAD}{reactive % ('sequence', scene)}") == [told]
+    assert said_of(f"{HEAD}{reactive % ('selector', scene)}") == [told.replace("sequence", "selector")]
+    assert said_of(f"{HEAD}{reactive % ('sequence', f'{{inverter: {{child: {scene}}}}}')}") == [
+        "unwatched-check root/sequence/inverter/Check"
+    ]
+    assert said_of(f"{HEAD}{reactive % ('sequence', f'{scene[:-1]}, every: 1 s}}')}") == []
+    for watched in (held, DECIDE):
+        assert said_of(f"{HEAD}{reactive % ('sequence', watched)}") == []
+    assert said_of(f"{HEAD}sequence: [{scene}, {motion}]\n") == []
+
+
+def test_a_period_that_is_never_used_is_told() -> None:
+    """At an action, at what nothing stands behind, and where there is memory."""
+    every = ", every: 1 s}"
+    held = "{state: gripper.CheckHeld, with: {gripper: left}" + every
+    motion = "{state: motion.MoveJoints, with: {robot: left, target: [0, -0.4, 0, -2.2, 0, 1.8, 0.8]}" + every
+    told = "idle-every root/sequence/%s"
+    assert said_of(f"{HEAD}sequence: [{held}, {LOG}]\n") == [told % "CheckHeld"]
+    assert said_of(f"{HEAD}sequence: {{memory: false, children: [{LOG}, {held}]}}\n") == [told % "CheckHeld"]
+    assert said_of(f"{HEAD}sequence: {{memory: false, children: [{held}, {motion}]}}\n") == [told % "MoveJoints"]
+
+
 def test_an_end_that_never_occurs_need_not_be_connected() -> None:
     """A tree that only succeeds is connected with `success`; to connect `failure` as well does no harm."""
     tree = "{tree: {sequence: [{state: flow.Wait, with: {duration_s: 1}}]}, transitions: {success: good%s}}"

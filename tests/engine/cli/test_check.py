@@ -104,3 +104,26 @@ def test_the_entries_of_the_behaviors_own_cell_are_known(tmp_path: Path) -> None
     (tmp_path / "e.yaml").write_text("flexcell: 1\njoints: {home: [0]}\n", encoding="utf-8")
     (finding,) = json.loads(flexcell("check", "b.yaml", "--json", cwd=tmp_path).out)
     assert (finding["code"], finding["hint"]) == ("missing-entry", "did you mean home?")
+
+
+def test_cells_and_entries_are_checked_as_documents_of_their_own(tmp_path: Path) -> None:
+    """Each with its own findings; `--cell` says in which cell behaviors and entries are."""
+    (tmp_path / "cell.yaml").write_text(
+        "flexcell: 1\ncell: bench\nworld: {kind: mujoco}\nrobots: {left: {model: pandda}}\n", encoding="utf-8"
+    )
+    (tmp_path / "e.yaml").write_text("flexcell: 1\nposes: {up: {xyz: [0, 0, 1], frame: plat}}\n", encoding="utf-8")
+    wait = "state: flow.Wait, with: {duration_s: 1}, transitions: {done: finished}"
+    move = "state: magnet.Off, with: {magnet: lft}, transitions: {released: finished, failed: finished}"
+    (tmp_path / "b.yaml").write_text(GOOD.replace(wait, move), encoding="utf-8")
+    said = flexcell("check", "cell.yaml", "e.yaml", "b.yaml", cwd=tmp_path)
+    assert (said.code, said.out) == (
+        2,
+        "cell.yaml:4:24: error: no robot model is called pandda (did you mean panda?) [unknown-model]\n",
+    )
+    said = flexcell("check", "e.yaml", "b.yaml", "--cell", "cell.yaml", cwd=tmp_path)
+    assert [line.partition(": ")[2] for line in said.out.splitlines()] == [
+        "error: the cell bench has no frame `plat` (known: world) [unknown-in-cell]",
+        "error: the cell bench has no robot with a magnet `lft` (there are none) [unknown-in-cell]",
+    ]
+    said = flexcell("check", "b.yaml", "--cell", "none.yaml", cwd=tmp_path)
+    assert (said.code, "none.yaml:1:1" in said.err, "Traceback" in said.err) == (2, True, False)

@@ -114,9 +114,9 @@ def test_a_run_of_the_journal_replays_too(project: Path) -> None:
 
 
 def test_a_recording_that_cannot_be_begun_starts_nothing(project: Path) -> None:
-    said = flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--record", "no/run.mcap", cwd=project)
+    said = flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--record", "wait.yaml/run.mcap", cwd=project)
     assert (said.code, said.out) == (2, "")
-    assert "the recording cannot be created: No such file or directory" in said.err
+    assert "this file cannot be written" in said.err
     assert said.err.count("\n") == 1
     assert not (project / ".flexcell").exists() or list_runs(project / ".flexcell") == ()
 
@@ -131,3 +131,23 @@ def test_the_result_of_a_run_as_junit(project: Path) -> None:
     failure = suite.find("./testcase/failure")
     assert failure is not None
     assert failure.get("type") == "failed"
+
+
+def test_what_is_wrong_with_a_file_to_be_written_is_said_before_the_run(project: Path) -> None:
+    """A folder that is missing is made; where a folder stands, no file can."""
+    asked = ("run", "wait.yaml", "--clock", "virtual", "-q", "--events", "e.jsonl", "--junit")
+    assert flexcell(*asked, "new/folder/r.xml", cwd=project).code == 0
+    assert (project / "new" / "folder" / "r.xml").read_bytes().startswith(b"<?xml")
+    (project / "e.jsonl").unlink()
+    for junit, message in (("new", "this is a folder"), ("wait.yaml/r.xml", "cannot be written")):
+        said = flexcell(*asked, junit, cwd=project)
+        assert (said.code, (project / "e.jsonl").exists()) == (2, False)
+        assert message in said.err
+
+
+def test_a_run_whose_report_finds_no_space_has_been_and_is_told(project: Path) -> None:
+    """Exit code 3, so that no CI takes it for good; what can be told is."""
+    said = flexcell("run", "wait.yaml", "--clock", "virtual", "-q", "--junit", "/dev/full", cwd=project)
+    assert said.code == 3
+    assert "No space left on device" in said.err
+    assert "finished" in said.out + said.err

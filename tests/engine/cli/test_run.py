@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -83,6 +85,16 @@ def test_bad_usage_is_exit_code_2_and_one_line(behavior: Path, arguments: tuple[
     assert message in said.err
 
 
+def test_a_document_with_several_mistakes_is_refused_with_the_first_and_their_number(behavior: Path) -> None:
+    """One line, with the command that tells them all."""
+    text = behavior.read_text(encoding="utf-8")
+    behavior.write_text(f"flavour: 1\n{text}colour: 2\n", encoding="utf-8")
+    said = flexcell("run", behavior.name, "--clock", "virtual", cwd=behavior.parent)
+    assert (said.code, said.err.count("\n")) == (2, 1)
+    assert said.err.startswith(f"flexcell: {behavior.name}:1:1: unknown key `flavour`")
+    assert said.err.endswith(f"; 1 more: flexcell check {behavior.name}\n")
+
+
 def test_an_error_in_a_state_is_exit_code_3_with_its_cause(tmp_path: Path) -> None:
     """A state that asks for a store that is not there ends the run with the reason."""
     file = tmp_path / "read.yaml"
@@ -133,3 +145,41 @@ def _running(journal: Path) -> bool:
         return bool(list_runs(journal))
     except Exception:  # the file is being made
         return False
+
+
+def test_the_version_is_told_without_loading_the_rest() -> None:
+    """By the installed script."""
+    imported = "import sys; sys.argv[1:] = ['--version']; from engine.cli.entry import main; main(); "
+    done = subprocess.run(
+        [sys.executable, "-c", f"{imported} sys.exit('typer' in sys.modules or 'msgspec' in sys.modules)"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    script = subprocess.run([FLEXCELL, "--version"], capture_output=True, text=True, check=False)
+    assert (done.returncode, script.returncode) == (0, 0)
+    assert done.stdout == script.stdout == f"flexcell {version('flexcell')}\n"
+
+
+def test_a_run_is_refused_where_its_cell_lacks_what_it_names(tmp_path: Path) -> None:
+    """By default, by what it is given and in another cell; nothing is started, and one line says why."""
+    for cell, robot in (("own", "left"), ("other", "arm")):
+        text = f"flexcell: 1\ncell: {cell}\nworld: {{kind: mujoco}}\nrobots: {{{robot}: {{model: servo_arm}}}}\n"
+        (tmp_path / f"{cell}.yaml").write_text(text, encoding="utf-8")
+    text = COUNT.replace("name: wait\n", "name: wait\ncell: own.yaml\n", 1)
+    text = text.replace("parameters: {", "parameters: {arm: {type: string, default: left}, ")
+    text = text.replace(
+        'state: flow.Decide, with: {when: "${flag}"}', 'state: motion.SetSpeed, with: {robot: "${arm}", share: 0.5}'
+    )
+    text = text.replace('"true": finished, "false": failed', "set: finished, failed: failed")
+    (tmp_path / "b.yaml").write_text(text, encoding="utf-8")
+    for arguments, line in (
+        (("-p", "arm=lft"), "the cell own has no robot `lft`, which `${arm}` is (did you mean left?)"),
+        (("--cell", "other.yaml"), "the cell other has no robot `left`, which `${arm}` is by default (known: arm)"),
+        (("--cell", "other.yaml", "-p", "arm=am"), "the cell other has no robot `am`, which"),
+    ):
+        said = flexcell("run", "b.yaml", "--clock", "virtual", "-q", *arguments, cwd=tmp_path)
+        assert (said.code, line in said.err, "Traceback" in said.err) == (2, True, False), said
+    assert not (tmp_path / ".flexcell").exists()
+    said = flexcell("run", "b.yaml", "--clock", "virtual", "-q", "--cell", "other.yaml", "-p", "arm=arm", cwd=tmp_path)
+    assert (said.code, "has no robot" in said.err) == (0, False), said

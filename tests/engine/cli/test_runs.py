@@ -96,9 +96,9 @@ def test_the_end_of_a_run_is_shown_with_its_cause(behavior: Path) -> None:
     run = run_id_in(behavior.parent)
     said = flexcell("runs", "show", run, cwd=behavior.parent)
     assert "finished with failed" in said.out
-    assert "because root/decide: decide ended with false" in said.out
+    assert "\n  so root/decide ended with false\n" in said.out
     shown = json.loads(flexcell("runs", "show", run, "--json", cwd=behavior.parent).out)
-    assert (shown["outcome"], shown["cause"][-1]["message"]) == ("failed", "the condition is false")
+    assert (shown["outcome"], shown["cause"][0]["message"]) == ("failed", "the condition is false")
 
 
 def test_a_run_begins_at_a_moment_of_another(behavior: Path) -> None:

@@ -62,6 +62,12 @@ class Blocking(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
+class Inert(State, frozen=True, kw_only=True):
+    """Has nothing to run."""
+
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+
 class Positional(State, frozen=True, kw_only=True):
     """Takes an input by position."""
 
@@ -97,6 +103,7 @@ class Stray(State, frozen=True, kw_only=True):
     ("state", "says"),
     [
         (Silent, "declares no outcomes"),
+        (Inert, "it has no `run`"),
         (Blocking, "is not a coroutine"),
         (Positional, "`part` of `run` is positional"),
         (Untyped, "`part` of `run` has no type"),

@@ -206,7 +206,7 @@ def _remove(document: Plain, path: str) -> None:
     del body["states"][old]
     if "concurrency" in container:
         rules = [
-            {outcome: {k: v for k, v in when.items() if k != old} for outcome, when in rule.items()}
+            {outcome: _of_those_left({k: v for k, v in when.items() if k != old}) for outcome, when in rule.items()}
             for rule in body["conditions"]
         ]
         body["conditions"] = [rule for rule in rules if all(rule.values())]
@@ -221,6 +221,12 @@ def _remove(document: Plain, path: str) -> None:
             child["transitions"] = {how: to for how, to in child["transitions"].items() if to != old}
             if not child["transitions"]:
                 del child["transitions"]
+
+
+def _of_those_left(when: dict[str, object]) -> dict[str, object]:
+    asked = [name for name, due in when.items() if isinstance(due, str)]
+    count = when.get("at_least")
+    return {name: when[name] for name in asked} if isinstance(count, int) and count > len(asked) else when
 
 
 def _before(node: Plain, key: str, value: object, after: tuple[str, ...]) -> None:

@@ -48,6 +48,14 @@ def test_a_group_takes_its_text_along_and_leads_where_its_members_led() -> None:
     )
 
 
+def test_a_group_that_would_fit_between_braces_keeps_the_comments_beside_its_members() -> None:
+    ends = "transitions: {done: good}}"
+    text = f"{HEAD}      # One.\n      one: {{state: flow.Wait, {ends}   # 1\n      two: {{state: flow.Wait, {ends}\n"
+    made = edited(text, {"edit": "group", "paths": ["root/one"], "kind": "machine", "name": "group"})
+    assert f"          states:\n            # One.\n            one: {{state: flow.Wait, {ends}   # 1\n" in made
+    assert edited(made, {"edit": "ungroup", "path": "root/group"}) == text
+
+
 def test_ungrouping_gives_the_text_back() -> None:
     made = edited(CHAIN, {"edit": "group", "paths": ["root/one", "root/two"], "kind": "machine", "name": "pair"})
     assert edited(made, {"edit": "ungroup", "path": "root/pair"}) == CHAIN

@@ -148,6 +148,15 @@ def test_a_removed_branch_leaves_the_conditions_of_the_others() -> None:
     ]
 
 
+def test_a_count_of_branches_follows_those_that_are_left() -> None:
+    some = TEXT.replace("right: a}}   # all well", "right: a, at_least: 1}}   # one of them")
+    made = edited(some, {"edit": "rename_node", "path": "root/both/left", "name": "west"})
+    assert "- {done: {west: a, right: a, at_least: 1}}   # one of them" in made
+    two = some.replace("at_least: 1}}   # one", "at_least: 2}}   # both")
+    made = edited(two, {"edit": "remove_nodes", "paths": ["root/both/right"]})
+    assert "- {done: {left: a}}   # both of them" in made
+
+
 def test_the_last_state_may_be_removed_and_another_one_added() -> None:
     paths = ["root/first", "root/second", "root/both", "root/third"]
     made = edited(TEXT, {"edit": "remove_nodes", "paths": paths})

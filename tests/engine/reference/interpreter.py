@@ -210,7 +210,8 @@ def _decision(node: Node, ends: Mapping[str, End], deadline_s: float) -> End:
         if any(end.failed for end in finished.values()):
             return End(instant_s, failed=True)
         for rule in node.concurrency.rules:
-            if all(name in finished and finished[name].outcome == due for name, due in rule.when.items()):
+            ended_so = [name for name, due in rule.when.items() if name in finished and finished[name].outcome == due]
+            if len(ended_so) >= (rule.at_least or len(rule.when)):
                 return End(instant_s, rule.outcome)
         if len(finished) == len(ends):
             otherwise = node.concurrency.otherwise

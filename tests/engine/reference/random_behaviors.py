@@ -113,7 +113,10 @@ def _concurrencies(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
     states = {name: draw(_steps(depth - 1, LATE)) for name in names}
     due = st.sampled_from(["a", "a", "b", "x", "y", "late", "exhausted"])
     whens = st.dictionaries(st.sampled_from(names), due, min_size=1, max_size=2)
-    rules = draw(st.lists(st.tuples(st.sampled_from(OUTS), whens), max_size=4))
+    rules = [
+        (outcome, {**when, **({"at_least": draw(st.integers(1, len(when)))} if draw(st.booleans()) else {})})
+        for outcome, when in draw(st.lists(st.tuples(st.sampled_from(OUTS), whens), max_size=4))
+    ]
     return concurrency(
         states=states,
         conditions=rules,

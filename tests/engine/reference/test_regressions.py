@@ -86,7 +86,6 @@ def test_a_machine_goes_on_at_the_very_instant_of_its_timeout() -> None:
     assert story_of(lines_of(run_to_end(behavior, 10.0).events)) == story_of(reference.log)
 
 
-@pytest.mark.xfail(strict=True, reason="the task of a node with a timeout starts a turn of the loop after its siblings")
 def test_branches_are_entered_in_document_order() -> None:
     """Also the one that has a timeout; the order decides who is given a resource that two branches want."""
     events = run_to_end(_behavior(TWO_BRANCHES), 10.0).events

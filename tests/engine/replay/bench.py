@@ -173,6 +173,36 @@ class DoLook(State, frozen=True, kw_only=True):
         return Outcome("a" if number % 2 else "b", {"seen": number})
 
 
+class DoGlance(State, frozen=True, kw_only=True):
+    """Ask the camera whether it has looked fewer times than so."""
+
+    state_name: ClassVar[str] = "bench.Glance"
+    outcomes: ClassVar[tuple[str, ...]] = ("a", "b")
+    success: ClassVar[tuple[str, ...]] = ("a",)
+    observes: ClassVar[bool] = True
+    until: int
+
+    async def run(self, ctx: Context) -> Outcome:
+        return Outcome("a" if (await ctx.call(Look(), to="bench")).number < self.until else "b")
+
+
+class Range(Message, frozen=True, kw_only=True):
+    """How far away the next thing is."""
+
+    distance_m: float
+
+
+class DoSeeFar(State, frozen=True, kw_only=True):
+    """Tell by the topic whether nothing is in the way; NaN is something."""
+
+    state_name: ClassVar[str] = "bench.Far"
+    outcomes: ClassVar[tuple[str, ...]] = ("a", "b")
+
+    async def run(self, ctx: Context) -> Outcome:
+        seen = await ctx.latest("range", Range)
+        return Outcome("b" if seen.distance_m > 1.0 else "a")
+
+
 class DoListen(State, frozen=True, kw_only=True):
     """Read the topic, the newest message or those to come."""
 
@@ -192,7 +222,7 @@ class DoListen(State, frozen=True, kw_only=True):
 
 CATALOGUE: dict[str, type[State]] = {
     **PLAIN,
-    **{state.state_name: state for state in (DoWork, DoLook, DoListen)},
+    **{state.state_name: state for state in (DoWork, DoLook, DoGlance, DoSeeFar, DoListen)},
 }
 
 Act = Callable[[Run], object]

@@ -9,17 +9,17 @@ from pathlib import Path
 import pytest
 
 from engine.bus import SkillBus
-from engine.clock import NothingCanWake
+from engine.clock import NothingCanWake, run_virtual
 from engine.document.faults import parse_faults
 from engine.errors import DocumentError, RecordingError
-from engine.event import FaultInjected, Logged, Received, RunResumed
+from engine.event import Called, FaultInjected, Logged, Received, RunEnded, RunResumed
 from engine.faults import FaultPort
 from engine.recording import RecordedEvent, load_recording
 from engine.replay import ReplayReport, replay
 from engine.replay.attempt import Attempt
 from engine.skill_port import BusPort
 from engine.state import Context, Outcome
-from tests.engine.replay.bench import CATALOGUE, Act, DoLook, Look, behavior_of, record_run, recorded, replayed
+from tests.engine.replay.bench import CATALOGUE, Act, DoLook, Look, Range, behavior_of, record_run, recorded, replayed
 
 TEXT = """
 root:
@@ -149,16 +149,20 @@ AT_ONCE = """
 root:
   concurrency:
     states:
-      looking:
-        foreach: {times: 2, next: [a, b, c], child: {state: bench.Look, with: {turns: 1}, timeout: {after: 1, to: b}}}
-      working: {foreach: {times: 2, next: [a, b, c], child: {state: bench.Work, with: {for_s: 0}}}}
+      looking: {foreach: {times: 2, next: [a, b, c], child: {state: bench.Look, with: {turns: TURNS}LOOKING}}}
+      working: {foreach: {times: 2, next: [a, b, c], child: {state: bench.Work, with: {for_s: 0}WORKING}}}
     conditions: [{good: {looking: exhausted, working: exhausted}}]
 """
+TIMEOUT = ", timeout: {after: 1, to: b}"
 
 
-def test_the_order_of_answers_of_one_instant_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("turns", "looking", "working"), [(1, TIMEOUT, TIMEOUT), (2, TIMEOUT, ""), (5, "", TIMEOUT)])
+def test_the_order_of_answers_of_one_instant_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, turns: int, looking: str, working: str
+) -> None:
     """All of it happens at time 0; how many turns of the loop each answer took there is not recorded."""
-    recording = recorded(AT_ONCE, tmp_path / "r.mcap")
+    text = AT_ONCE.replace("TURNS", str(turns)).replace("LOOKING", looking).replace("WORKING", working)
+    recording = recorded(text, tmp_path / "r.mcap")
     assert replay(recording, CATALOGUE).difference is None
     monkeypatch.setattr("engine.replay.replaying.search_order", _first)
     assert replay(recording, CATALOGUE).difference is not None
@@ -249,6 +253,65 @@ root:
           conditions: [{good: {left: out, right: out}}]
         transitions: {good: good}
 """
+
+
+@pytest.mark.parametrize("distance_m", [float("inf"), float("nan")])
+def test_a_number_that_json_does_not_have_is_replayed(tmp_path: Path, distance_m: float) -> None:
+    """A sensor that sees nothing says so."""
+
+    def publish(bus: SkillBus) -> None:
+        bus.topic("range", Range).publish(Range(distance_m=distance_m))
+
+    report = replayed(
+        "root: {machine: {initial: far, states: {far: {state: bench.Far, transitions: {a: good, b: bad}}}}}",
+        tmp_path / "r.mcap",
+        prepare=publish,
+    )
+    assert (report.difference, report.same) == (None, True)
+    told = [each.event.outcome for each in report.recording.events if isinstance(each.event, RunEnded)]
+    assert told == ["bad" if distance_m == float("inf") else "good"]
+
+
+REACTIVE = """
+root:
+  machine:
+    initial: tree
+    states:
+      tree:
+        tree:
+          sequence:
+            memory: false
+            children:
+              - {state: bench.Glance, with: {until: 4}, every: PERIOD}
+              - {state: bench.Work, name: carry, with: {for_s: 60}}
+        transitions: {success: good, failure: bad}
+"""
+
+
+def test_a_check_that_was_observed_turns_at_the_same_moment_again(tmp_path: Path) -> None:
+    """Of the observations that changed nothing there is no event; the camera has looked four times."""
+    report = replayed(REACTIVE.replace("PERIOD", "500 ms"), tmp_path / "r.mcap")
+    assert (report.difference, report.same) == (None, True)
+    asked = [each for each in report.recording.events if isinstance(each.event, Called)]
+    assert [each.at_s for each in asked] == [0.0, 1.5]
+
+
+async def test_it_does_where_that_was_in_real_time(tmp_path: Path) -> None:
+    """When the check was asked again is known only from its being entered."""
+    result, _ = await record_run(REACTIVE.replace("PERIOD", "20 ms"), tmp_path / "r.mcap")
+    report = await asyncio.to_thread(replay, load_recording(tmp_path / "r.mcap"), CATALOGUE)
+    assert (result.outcome, report.difference, report.same) == ("bad", None, True)
+
+
+def test_a_fault_of_an_observation_is_met(tmp_path: Path) -> None:
+    """The third question to the camera is the first that fails; the tick is answered with what was observed."""
+    faults = parse_faults("flexcell: 1\nfaults: [{address: bench/look, request: 3, error: too dark}]\n", file="f.yaml")
+    path = tmp_path / "r.mcap"
+    text = REACTIVE.replace("PERIOD", "500 ms")
+    result, _ = run_virtual(record_run(text, path, skills=lambda bus: FaultPort(BusPort(bus), faults, clock=bus.clock)))
+    assert (result.status, result.duration_s) == ("errored", 1.0)
+    report = replay(load_recording(path), CATALOGUE)
+    assert (report.difference, report.same) == (None, True)
 
 
 async def test_a_run_in_real_time_replays_by_branch(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from engine.errors import DocumentError
@@ -81,6 +81,19 @@ some_triggers = st.lists(
 ).map(tuple)
 
 
+@example(
+    before=(),
+    after=(
+        Trigger(
+            trig_name="\ufeff",
+            robot_ns="",
+            trig_topic="a\u200b",
+            trig_type="hold",
+            trig_callback="tf_save",
+            source_frame="\ufeffbase",
+        ),
+    ),
+)
 @given(before=some_triggers, after=some_triggers)
 def test_any_triggers_are_read_back_as_they_were_written(
     before: tuple[Trigger, ...], after: tuple[Trigger, ...]

@@ -35,6 +35,12 @@ def test_the_test_of_the_transfer_passes(tmp_path: Path, monkeypatch: pytest.Mon
     test(partial(run_behavior, catalogue=load_states(), store=tmp_path / "store.db"))
 
 
+def test_a_stand_in_ends_the_transfer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(PROJECT)
+    test = _examples()[2]["test_a_part_that_is_missed_ends_the_transfer"]
+    test(partial(run_behavior, catalogue=load_states(), store=tmp_path / "store.db"))
+
+
 @pytest.mark.virtual
 async def test_the_fake_answers() -> None:
     async with SkillBus(new_clock()) as bus:

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from engine.clock import run_virtual
+from tests.engine.cli.command import flexcell
 from tests.engine.replay.bench import record_run
 
 WAIT = """flexcell: 1
@@ -56,16 +57,8 @@ def record(project: Path, name: str) -> None:
     """Record a run of the behavior `wait` into a folder of the project."""
     (project / "recordings").mkdir(exist_ok=True)
     (project / "wait.yaml").write_text(WAIT, encoding="utf-8")
-    subprocess.run(
-        [
-            Path(sys.executable).with_name("flexcell"),
-            *("run", "wait.yaml", "--clock", "virtual", "-q", "--journal", "none"),
-            *("--record", f"recordings/{name}.mcap"),
-        ],
-        cwd=project,
-        check=True,
-        timeout=100,
-    )
+    given = ("wait.yaml", "--clock", "virtual", "-q", "--journal", "none", "--record", f"recordings/{name}.mcap")
+    assert flexcell("run", *given, cwd=project).code == 0
 
 
 @pytest.fixture

@@ -64,6 +64,18 @@ TREES = {
           - {state: test.Give, with: {outcome: c, after_s: 1}, retry: {times: 1, outcomes: [c], backoff: 1 s},
              success: [c]}
     """,
+    "thresholds of a parallel": """
+        sequence:
+          - parallel:
+              success_count: 2
+              failure_count: 2
+              children:
+                - {state: test.Act, name: a, with: {script: [[1, false]]}}
+                - {state: test.Act, name: b, with: {script: [[2, true]]}}
+                - {state: test.Act, name: c, with: {script: [[3, true]]}}
+                - {state: test.Act, name: d, with: {script: [[9, true]]}}
+          - {state: test.Act, name: e, with: {script: [[1, true]]}}
+    """,
     "a check that watches": """
         sequence:
           memory: false

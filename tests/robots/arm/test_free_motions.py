@@ -243,6 +243,30 @@ async def test_with_blind_cameras_nothing_starts() -> None:
 
 
 @pytest.mark.virtual
+@pytest.mark.parametrize("sees", [True, False])
+async def test_cameras_that_are_still_starting_are_waited_for(sees: bool) -> None:
+    """On a new machine that takes half a minute; once they are up, an image is due within 3 s."""
+    async with fake_cell() as cell:
+        cell.cameras.see()
+        cell.cameras.starting = True
+        cell.cameras.go_blind("the cameras are still starting")
+        handle = cell.bus.send_goal(free(THERE), to="left")
+        await cell.bus.clock.sleep(30.0)
+        assert cell.port.followed == []
+        cell.cameras.starting = False
+        cell.cameras.go_blind("the cameras have not seen anything yet")
+        await cell.bus.clock.sleep(1.0)
+        if sees:
+            cell.cameras.see()
+            assert (await handle.result()).status is GoalStatus.SUCCEEDED
+        else:
+            began_s = cell.bus.clock.now_s()
+            end = await handle.result()
+            assert (end.status, "not seen anything yet" in str(end.cause)) == (GoalStatus.REJECTED, True), end.cause
+            assert cell.bus.clock.now_s() - began_s == pytest.approx(2.0)
+
+
+@pytest.mark.virtual
 async def test_a_planner_that_dies_rejects_the_goal_that_needs_it_and_the_next_one_works() -> None:
     async with fake_cell() as cell:
         cell.planner.failing = "the planning process was ended by SIGKILL"

@@ -15,8 +15,8 @@ from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.rigid import Rigid
 from robots.planning.exact_checker import ExactChecker
-from robots.planning.ompl_search import OMPL_PLANNERS
-from robots.planning.planner import PLANNERS, ScenePlanner
+from robots.planning.planner import ScenePlanner
+from robots.planning.planner_names import OMPL_PLANNERS, PLANNERS
 from robots.planning.request import JointGoal, KeepOrientation, Plan, PlanAnswer, PlanRequest, PoseGoal, Refusal
 from robots.planning.scene import AttachedPart
 from robots.port import Array

@@ -16,12 +16,15 @@ from engine.clock import LoopClock, run_virtual
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
 from engine.sensing import OccupancyGrid
-from engine.shapes import Capsule, Obstacle
+from engine.shapes import Capsule, Obstacle, Solid
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model
 from robots.model.rigid import Rigid
-from robots.planning.request import JointGoal, LookRequest, Plan, PlanRequest, Refusal, WayRequest
-from robots.planning.worker import LOOK_FIXED_S, InlinePlanner, PlanningWorker, plan_service
+from robots.planning.inline_planner import LOOK_FIXED_S, InlinePlanner
+from robots.planning.plan_service import plan_service
+from robots.planning.request import CarryRequest, JointGoal, LookRequest, Plan, PlanRequest, Refusal, WayRequest
+from robots.planning.scene import AttachedPart
+from robots.planning.worker import PlanningWorker
 
 SHELF = cases()[-1].request
 
@@ -66,6 +69,9 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         assert check.blocked_at_s is not None
         assert {pair[1] for pair in check.pairs} == {"occupancy"}
         assert (await planner.check_way(msgspec.structs.replace(ways, occupancy=None))).blocked_at_s is None
+        bar = AttachedPart(name="bar", arm=ARM, solids=(Solid(shape=Capsule(radius_m=0.01, length_m=2.0)),))
+        carry = CarryRequest(scene=SHELF.scene.with_attached(bar), arm=ARM, way=answer.timed)
+        assert "bar" in (await planner.check_carry(carry)).pairs[0]
         looks = LookRequest(scene=SHELF.scene, arm=ARM, joints_rad=SHELF.start_rad, occupancy=block)
         look = await planner.look(looks)
         assert "occupancy" in {pair.second for pair in look.touching}

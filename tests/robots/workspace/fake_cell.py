@@ -18,9 +18,9 @@ from engine.skills.planning import FreeMotionFeedback, FreeMotionResult, MoveFre
 from engine.skills.planning_scene import CollisionReport
 from robots.arm import ArmServer
 from robots.model.rigid import Rigid
-from robots.planning.request import LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
+from robots.planning.inline_planner import InlinePlanner
+from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
 from robots.planning.scene import PlanningScene, SceneArm
-from robots.planning.worker import InlinePlanner
 from robots.sim.scene import ArmPlacement
 from robots.workspace.live_scene import LiveScene
 from robots.workspace.planners import Planners
@@ -64,6 +64,12 @@ class FragilePlanner:
         await self._fail()
         return await self._inner.check_way(request)
 
+    async def check_carry(self, request: CarryRequest) -> WayCheck:
+        """Check what is held on a way."""
+        self.checks += 1
+        await self._fail()
+        return await self._inner.check_carry(request)
+
     async def look(self, request: LookRequest) -> CollisionReport:
         """Look."""
         await self._fail()
@@ -82,6 +88,7 @@ class FakeCameras:
     def __init__(self) -> None:
         self.latest: OccupancyGrid | None = None
         self.stale_reason = "no image yet"
+        self.starting = False
         self.required = 0
         self.known: PlanningScene | None = None
         self.forgotten = 0

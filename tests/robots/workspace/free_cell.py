@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 from collections.abc import AsyncGenerator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -10,10 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from engine.bus import GoalHandle, SkillBus
 from engine.cell import OpenCell
-from engine.document.cell import load_cell
+from engine.document.cell import MujocoWorld, load_cell
 from engine.messages import FramePoses, JointState, Pose, Vector3
 from engine.shapes import Box, Obstacle
 from engine.skills.planning import (
@@ -31,6 +33,7 @@ from robots.port import Array
 from robots.sim.lockstep_host import LockstepHost
 from robots.sim.world import SimWorld
 from robots.workspace.workspace import Workspace
+from tests.robots.sim.sim_cell import PATIENT_S
 
 CELLS = Path(__file__).parents[3] / "behaviors" / "cells"
 THERE = (0.8, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8)
@@ -158,8 +161,14 @@ def free(
 
 @asynccontextmanager
 async def free_cell(folder: Path, *, cell: str | Path = "dual_panda.yaml") -> AsyncGenerator[FreeCell]:
-    """Open a cell with a store of its own."""
-    async with OpenCell(load_cell(CELLS / cell), store_path=str(folder / "store.db")) as opened:
+    """Open a cell with a store of its own, patient with an engine that a busy machine keeps waiting."""
+    loaded = load_cell(CELLS / cell)
+    world = loaded.document.world
+    assert isinstance(world, MujocoWorld)
+    patient = replace(world, engine_silence_s=PATIENT_S, world_silence_s=PATIENT_S)
+    document = replace(loaded.document, world=patient)
+    patient_cell = dataclasses.replace(loaded, document=document)
+    async with OpenCell(patient_cell, store_path=str(folder / "store.db")) as opened:
         yield FreeCell(opened)
 
 

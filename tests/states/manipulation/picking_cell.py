@@ -35,7 +35,21 @@ AT_PART = CollisionReport(
 AT_CRATE = CollisionReport(
     touching=(TouchingPair(first="arm/finger", second="crate"),), distance_m=0.0, nearest=("", "")
 )
+IN_THE_WAY = Cause(
+    message="the arm cannot go there with what it holds",
+    where="arm/cart_lin_task",
+    kind="GoalRejected",
+    because=Cause(message="block would touch crate after 60% of the way", where="arm", kind="PathBlocked"),
+)
 LIMIT = Cause(message="joint 4 would exceed its limit", where="arm/cart_lin_task", kind="GoalRejected")
+
+
+def touching(first: str, second: str, depth_m: float) -> CollisionReport:
+    return CollisionReport(
+        touching=(TouchingPair(first=first, second=second, depth_m=depth_m),),
+        distance_m=-depth_m,
+        nearest=(first, second),
+    )
 
 
 def done(result: object) -> ActionEnd[object]:

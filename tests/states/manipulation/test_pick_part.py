@@ -16,8 +16,7 @@ from engine.skills.motion import AllInverseKinematics, InverseKinematics, Invers
 from engine.skills.planning import MotionTarget, MoveFree
 from engine.skills.planning_scene import AttachPart
 from engine.state import ActionEnd, Outcome
-from states.manipulation.pick_part import PickPart
-from states.motion.target import PoseTarget
+from states.manipulation.pick_part import GraspTarget, PickPart
 from tests.states.fake_context import FakeContext, broken_off
 from tests.states.manipulation.picking_cell import (
     AT_CRATE,
@@ -25,6 +24,7 @@ from tests.states.manipulation.picking_cell import (
     CLEAR,
     DOWN,
     HERE,
+    IN_THE_WAY,
     LIMIT,
     STOOD,
     WENT,
@@ -68,7 +68,7 @@ async def test_the_tool_comes_from_where_the_behavior_says_in_the_frame_of_the_p
         ctx.answers,
         topics={"cell/parts": PartPoses(time_s=0.0, poses={"block": Pose(xyz=(0.5, 0.1, 0.2), xyzw=quarter)})},
     )
-    grasp = PoseTarget(xyz=(0.02, 0.0, 0.0), xyzw=DOWN, frame="part")
+    grasp = GraspTarget(xyz=(0.02, 0.0, 0.0), xyzw=DOWN, frame="part")
     state = PickPart(
         robot="arm", part="block", width_m=0.05, grasp=grasp, approach=(2.0, 0.0, 0.0), approach_m=0.2, lift_m=0.05
     )
@@ -81,7 +81,7 @@ async def test_a_grasp_given_in_the_world_asks_for_no_part() -> None:
     """As the entries of a taught cell; the tool comes against its own z."""
     ctx = FakeContext(cell().answers)
     level = (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5))
-    state = PickPart(robot="arm", part="block", width_m=0.05, grasp=PoseTarget(xyz=(0.5, 0.0, 0.4), xyzw=level))
+    state = PickPart(robot="arm", part="block", width_m=0.05, grasp=GraspTarget(xyz=(0.5, 0.0, 0.4), xyzw=level))
     assert (await state.run(ctx)).name == "picked"
     assert (beside(ctx)[0], lines(ctx)[0]) == ((0.4, 0.0, 0.4), (0.5, 0.0, 0.4))
 
@@ -168,6 +168,13 @@ async def test_a_missed_part_leaves_the_tool_open_and_the_arm_in_front() -> None
     assert "the fingers closed to 0.0 mm" in str(told.outputs["reason"])
     assert asked(ctx)[-3:] == ["arm/gripper/gripper_open", "cell/detach_part", "arm/cart_lin_task"]
     assert lines(ctx)[-1] == (0.5, 0.1, 0.3)
+
+
+async def test_a_part_that_cannot_be_lifted_is_let_go_of_where_it_stands() -> None:
+    ctx = cell(cart_lin_task=[done(WENT), broken_off("rejected", IN_THE_WAY), done(WENT)])
+    told = await PICK.run(ctx)
+    assert (told.name, "block would touch crate" in str(told.outputs["reason"])) == ("blocked", True)
+    assert asked(ctx)[-3:] == ["arm/gripper/gripper_open", "cell/detach_part", "arm/cart_lin_task"]
 
 
 async def test_a_part_that_is_not_there_is_missed_before_anything_moves() -> None:

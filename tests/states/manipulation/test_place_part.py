@@ -10,15 +10,26 @@ from engine.messages import GripperState, Pose
 from engine.skills.arm_control import SetLoad
 from engine.state import ActionEnd, Outcome
 from states.manipulation.place_part import PlacePart
-from states.motion.target import PoseTarget
+from states.motion.target import ShownPoseTarget
 from tests.states.fake_context import broken_off
-from tests.states.manipulation.picking_cell import AT_CRATE, AT_PART, DOWN, LIMIT, STOOD, asked, beside, cell, lines
+from tests.states.manipulation.picking_cell import (
+    AT_CRATE,
+    DOWN,
+    IN_THE_WAY,
+    LIMIT,
+    STOOD,
+    asked,
+    beside,
+    cell,
+    lines,
+    touching,
+)
 
-PLACE = PlacePart(robot="arm", part="block", target=PoseTarget(xyz=(0.2, 0.4, 0.25), xyzw=DOWN))
+PLACE = PlacePart(robot="arm", part="block", target=ShownPoseTarget(xyz=(0.2, 0.4, 0.25), xyzw=DOWN))
 
 
 async def test_the_part_is_carried_over_put_down_let_go_and_left_in_this_order() -> None:
-    ctx = cell(check_collision=AT_PART)
+    ctx = cell(check_collision=touching("block", "table", 0.004))
     assert await PLACE.run(ctx) == Outcome("placed")
     assert asked(ctx) == [
         "arm/gripper/read_gripper",
@@ -39,7 +50,7 @@ async def test_the_part_is_carried_over_put_down_let_go_and_left_in_this_order()
 async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -> None:
     """The block hangs 40 mm below the tool centre and 10 mm beside it."""
     ctx = cell(forward_kinematics=Pose(xyz=(0.51, 0.1, 0.24), xyzw=DOWN))
-    state = PlacePart(robot="arm", part="block", target=PoseTarget(xyz=(0.2, 0.4, 0.05)), target_of="part")
+    state = PlacePart(robot="arm", part="block", target=ShownPoseTarget(xyz=(0.2, 0.4, 0.05)), target_of="part")
     assert (await state.run(ctx)).name == "placed"
     assert lines(ctx)[0] == (0.21, 0.4, 0.09)
 
@@ -56,6 +67,13 @@ async def test_the_part_itself_comes_to_the_target_however_the_tool_holds_it() -
         ({"cart_lin_task": broken_off("rejected", LIMIT)}, "unreachable", "joint 4 would exceed its limit"),
         ({"move_free": ActionEnd("aborted", STOOD, LIMIT)}, "blocked", "joint 4 would exceed its limit"),
         ({"check_collision": AT_CRATE}, "blocked", "there, arm/finger with crate would touch"),
+        (
+            {"check_collision": touching("crate", "block", 0.015)},
+            "blocked",
+            "crate with block (15 mm deep) would touch",
+        ),
+        ({"check_collision": touching("arm/elbow", "block", 0.001)}, "blocked", "arm/elbow with block (1 mm deep)"),
+        ({"cart_lin_task": broken_off("rejected", IN_THE_WAY)}, "blocked", "block would touch crate"),
         ({"gripper_open": broken_off("aborted", LIMIT)}, "failed", "did not open to release part block"),
         ({"detach_part": SkillFailed("the cell is closed")}, "failed", "part block was not detached"),
     ],

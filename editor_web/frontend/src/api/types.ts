@@ -161,15 +161,16 @@ export interface CartFit {
   readonly cut: Cut
 }
 
-/** Everything that can be put into a behavior. */
+/** Everything that can be put into a behavior. `names` are those of the open cell by kind, which the JSON Schema of a parameter calls `cell_name`: robots, parts, cameras, frames. Those of a tool, link, output or label begin with the name of what has it: `left/panda_hand`. */
 export interface CatalogueBody {
   readonly states: readonly StateBody[]
   readonly containers: readonly ContainerBody[]
   readonly behaviors: readonly ReferableBody[]
   readonly entries: readonly EntryBody[]
+  readonly names: Dict<readonly string[]>
 }
 
-/** One link of a cause chain, outermost first. */
+/** One link of a cause chain: first what was measured, then what followed from it. */
 export interface CauseLine {
   readonly message: string
   readonly where: string
@@ -497,7 +498,7 @@ export interface Failure {
   readonly around: readonly LogLine[]
 }
 
-/** One link of the chain of causes, outermost first; `hint` says what to do about it, may be empty. */
+/** One link of the chain of causes, what was measured first; `hint` says what to do about it, may be empty. */
 export interface FailureLink {
   readonly message: string
   readonly where: string
@@ -989,10 +990,11 @@ export interface RobotLine {
   readonly way: WayLine | null
 }
 
-/** One condition of a concurrency container: the outcome, and which child must have ended how. */
+/** One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`. */
 export interface RuleBody {
   readonly outcome: string
   readonly when: Dict<string>
+  readonly at_least: number | null
 }
 
 /** One run, under way or over. */
@@ -1048,7 +1050,7 @@ export interface SetDocument {
   readonly changes: Dict<unknown>
 }
 
-/** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, items, times, as, index, next, collect, memory, policy, synchronise, after, status, running, failure; and `order`, the names of all children in their new order. */
+/** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
 export interface SetField {
   readonly edit: "set_field"
   readonly path: string

@@ -111,7 +111,7 @@ export function kindOfKey(
     if (writer.origin === 'collect') kinds.add('list')
   }
   for (const reader of flow.readers) {
-    if (reader.by !== 'expression' && reader.by !== 'collect')
+    if (!['expression', 'collect', 'shared'].includes(reader.by))
       kinds.add(schemaKind(catalogue, nodeOf(root, reader.path), 'inputs', reader.name))
   }
   kinds.delete('')

@@ -1,6 +1,6 @@
 /** From JSON Schema to fields. */
 import { expect, it } from 'vitest'
-import { editFieldOf, fieldProblem, limitsText, looseValue, typedValue } from './fields'
+import { editFieldOf, fieldProblem, fittingNames, limitsText, looseValue, typedValue } from './fields'
 
 const key = (schema: Record<string, unknown>, more = {}) =>
   editFieldOf({ name: 'x', required: false, default: null, schema, ...more })
@@ -34,6 +34,16 @@ it('knows vectors, choices, and targets that are named entries', () => {
   }
   expect(key(target)).toMatchObject({ kind: 'entry', entryKind: 'pose', isPlainEntry: false, description: 'Where' })
   expect(key({ type: 'string', entry: 'dmp' })).toMatchObject({ kind: 'entry', entryKind: 'dmp', isPlainEntry: true })
+})
+
+it('offers the names of the cell, of a robot those of the robot that is given', () => {
+  const names = { robot: ['left', 'right'], link: ['left/hand', 'left/arm', 'right/hand', 'leftover/x'] }
+  const robot = key({ type: 'string', cell_name: 'robot' })
+  const link = key({ anyOf: [{ type: 'string', cell_name: 'link', of: 'robot' }, { type: 'null' }] })
+  expect(fittingNames(robot, names, {})).toEqual(['left', 'right'])
+  expect(fittingNames(link, names, { robot: 'left' })).toEqual(['hand', 'arm'])
+  expect(fittingNames(link, names, {})).toEqual([])
+  expect(fittingNames(key({ type: 'string' }), names, {})).toEqual([])
 })
 
 it('asks for a value where one is required', () => {

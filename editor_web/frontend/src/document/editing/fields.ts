@@ -22,6 +22,10 @@ export interface EditField {
   /** Kind of the named entries that fit; the whole value is the name where `isPlainEntry`. */
   readonly entryKind: string
   readonly isPlainEntry: boolean
+  /** Kind of names of the cell that fit; empty for none. */
+  readonly nameKind: string
+  /** The parameter that names what the name is of: the robot of a link. */
+  readonly nameOf: string
   readonly fallback: unknown
 }
 
@@ -61,12 +65,16 @@ export function editFieldOf(key: KeyLike): EditField {
     parts,
     entryKind: plainEntry || text(entry['entry']),
     isPlainEntry: plainEntry !== '' && !isTarget,
+    nameKind: text(said['cell_name']),
+    nameOf: text(said['of']),
     fallback: key.default,
   }
 }
 
+const SAID_BESIDE = new Set(['description', 'unit', 'entry', 'cell_name', 'of'])
+
 function withoutShape(schema: Schema): Dict<unknown> {
-  return Object.fromEntries(Object.entries(schema).filter(([key]) => ['description', 'unit', 'entry'].includes(key)))
+  return Object.fromEntries(Object.entries(schema).filter(([key]) => SAID_BESIDE.has(key)))
 }
 
 interface Resolved {
@@ -127,6 +135,18 @@ export function limitsText({ minimum, maximum, isOpenBelow, unit }: EditField): 
           ? `≤ ${maximum}`
           : ''
   return [range, unit].filter(Boolean).join(' ')
+}
+
+/** The names of the cell that fit a field, given what the node is given for its other parameters. */
+export function fittingNames(
+  field: Pick<EditField, 'nameKind' | 'nameOf'>,
+  names: Dict<readonly string[]>,
+  parameters: Dict<unknown>,
+): readonly string[] {
+  const known = lookup(names, field.nameKind) ?? []
+  if (!field.nameOf) return known
+  const owner = `${text(lookup(parameters, field.nameOf))}/`
+  return known.filter((name) => name.startsWith(owner)).map((name) => name.slice(owner.length))
 }
 
 /** Is it written with `${…}`, and so only known when the node is entered? */

@@ -5,13 +5,27 @@ import type { EditNode } from './model'
 export interface Rule {
   readonly outcome: string
   readonly when: Dict<string>
+  /** How many of these children; null asks for all of them. */
+  readonly at_least: number | null
 }
 
-/** As documents write them: `[{finished: {left: reached}}]`. */
+/** As documents write them: `[{finished: {left: reached, right: reached, at_least: 1}}]`. */
 export function conditionsOf(
   rules: readonly Rule[],
-): readonly Dict<Dict<string>>[] {
-  return rules.map(({ outcome, when }) => ({ [outcome]: when }))
+): readonly Dict<Dict<string | number>>[] {
+  return rules.map(({ outcome, when, at_least }) => ({
+    [outcome]: at_least === null ? when : { ...when, at_least },
+  }))
+}
+
+/** Ask for so many of the children that a rule names; all of them, and more than all, is said without a number. */
+export function withCount(rules: readonly Rule[], index: number, count: number): readonly Rule[] {
+  return rules.map((rule, at) => (at === index ? counted(rule, count) : rule))
+}
+
+function counted(rule: Rule, count: number | null): Rule {
+  const all = count === null || count >= Object.keys(rule.when).length
+  return { ...rule, at_least: all ? null : count }
 }
 
 export function renamedOutcome(rules: readonly Rule[], index: number, outcome: string): readonly Rule[] {
@@ -23,7 +37,7 @@ export function withChild(rules: readonly Rule[], index: number, child: string, 
   return rules.map((rule, at) => {
     if (at !== index) return rule
     const when = outcome === '' ? withoutName(rule.when, child) : { ...rule.when, [child]: outcome }
-    return Object.keys(when).length === 0 ? rule : { ...rule, when }
+    return Object.keys(when).length === 0 ? rule : counted({ ...rule, when }, rule.at_least)
   })
 }
 
@@ -46,14 +60,14 @@ export function added(
     children.flatMap((child) => (child.outcomes[0] ? [[child.name, child.outcomes[0]]] : [])),
   )
   const candidates: Rule[] = [
-    { outcome: 'finished', when: all },
+    { outcome: 'finished', when: all, at_least: null },
     ...children.flatMap((child) =>
-      child.outcomes.slice(1).map((outcome) => ({ outcome: 'failed', when: { [child.name]: outcome } })),
+      child.outcomes.slice(1).map((outcome) => ({ outcome: 'failed', when: { [child.name]: outcome }, at_least: null })),
     ),
   ]
   const said = new Set(rules.map((rule) => textOf(rule.when)))
   const next = candidates.find((rule) => Object.keys(rule.when).length > 0 && !said.has(textOf(rule.when)))
-  return next ? [...rules, next] : [...rules, { outcome: 'finished', when: all }]
+  return next ? [...rules, next] : [...rules, { outcome: 'finished', when: all, at_least: null }]
 }
 
 function textOf(when: Rule['when']): string {

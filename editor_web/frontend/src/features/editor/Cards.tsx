@@ -207,9 +207,10 @@ function RuleTable({ node }: { node: CardData['node'] }) {
         <div key={index} className="rule">
           <span className={`rule-outcome${isFailure(rule.outcome) ? ' is-failure' : ''}`}>{rule.outcome}</span>
           <span className="rule-when">
+            {rule.at_least !== null && <em>{rule.at_least} of </em>}
             {Object.entries(rule.when).map(([child, outcome], position) => (
               <span key={child}>
-                {position > 0 && <em> and </em>}
+                {position > 0 && <em>{rule.at_least === null ? ' and ' : ', '}</em>}
                 {child} = {outcome}
               </span>
             ))}

@@ -1,5 +1,6 @@
-/** What happens around a node: guard, timeout, retry, errors, and what to do with it after a crash. */
+/** What happens around a node: guard, timeout, retry, errors, when it is asked again, and what to do with it after a crash. */
 import type { ReactNode } from 'react'
+import { lookup } from '../../document/dict'
 import { isFailure, isMachine, isTreePart, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { looseValue, shownValue } from '../../document/editing/fields'
@@ -26,7 +27,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
       const leads = field !== 'retry' && !('to' in next) && targets[0] ? { to: worst(targets, success) } : {}
       return [setField(node.path, field, { ...leads, ...next })]
     })
-  const isSet = [node.guard, node.timeout, node.retry, node.on_error, node.resume].some((each) => each !== null)
+  const isSet = [node.guard, node.timeout, node.retry, node.on_error, node.every, node.resume].some((each) => each !== null)
   return (
     <Section title="Guard, timeout, retry" isClosed={!isSet} note={isSet ? 'set' : undefined}>
       <Line label="Enter only when">
@@ -109,6 +110,16 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
         targets={targets}
         onSet={(to) => set('on_error', to || null)}
       />
+      {(node.every !== null || asksAgain(parent)) && (
+        <Line label="Ask again every">
+          <TemplateInput
+            label="Ask again every"
+            placeholder="a check: such as 200 ms"
+            value={shownValue(node.every)}
+            onCommit={(typed) => set('every', typed === '' ? null : looseValue(typed))}
+          />
+        </Line>
+      )}
       <Line label="After a crash">
         <select
           className="plain-input"
@@ -143,6 +154,11 @@ function targetsOf(
   if (!isMachine(parent.kind)) return node.outcomes
   const ends = [...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes]
   return [...new Set([...ends, ...parent.children.map((child) => child.name)])].filter((name) => name !== node.name)
+}
+
+/** Whether a container asks what has ended again while what stands behind it is at work. */
+function asksAgain(parent: EditNode | undefined): boolean {
+  return (parent?.kind === 'sequence' || parent?.kind === 'selector') && lookup(parent.settings, 'memory') === false
 }
 
 /** Where something that went wrong leads unless said otherwise. */

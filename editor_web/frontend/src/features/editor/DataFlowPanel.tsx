@@ -121,6 +121,7 @@ function writerWords(writer: KeyWriterBody, key: string): string {
 function readerWords(reader: KeyReaderBody, key: string): string {
   if (reader.by === 'expression') return 'in an expression'
   if (reader.by === 'collect') return 'collects it'
+  if (reader.by === 'shared') return 'shares it among its branches'
   return reader.name === key ? 'input' : `input ${reader.name}`
 }
 

@@ -1,5 +1,5 @@
 /** The parameters of a state or behavior, each in the field that fits it; `${…}` is possible in all of them. */
-import { lookup } from '../../document/dict'
+import { lookup, type Dict } from '../../document/dict'
 import { Switch } from '@mantine/core'
 import { IconBraces, IconX } from '@tabler/icons-react'
 import { useId, useState } from 'react'
@@ -7,6 +7,7 @@ import type { EntryBody, KeyBody } from '../../api/types'
 import {
   editFieldOf,
   fieldProblem,
+  fittingNames,
   isTemplate,
   limitsText,
   looseValue,
@@ -39,6 +40,7 @@ export function ParameterFields({ node, keys }: { node: EditNode; keys: readonly
 }
 
 const NO_ENTRIES: readonly EntryBody[] = []
+const NO_NAMES: Dict<readonly string[]> = {}
 
 function setParameter(node: EditNode, name: string, value: unknown): void {
   void perform(
@@ -57,6 +59,7 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
   const hintId = useId()
   const limits = limitsText(field)
   const set = (next: unknown) => setParameter(node, field.name, next)
+  const names = useEditor((s) => s.catalogue?.names ?? NO_NAMES)
   const isFree = asTemplate || isTemplate(value)
   return (
     <div className={`edit-field${problem ? ' has-problem' : ''}`}>
@@ -100,6 +103,7 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
         value={value}
         isFree={isFree}
         entries={entries}
+        names={fittingNames(field, names, node.parameters)}
         hintId={limits ? `${hintId} ${hintId}-limits` : hintId}
         isInvalid={problem !== undefined}
         onSet={set}
@@ -120,6 +124,8 @@ interface InputProps {
   readonly value: unknown
   readonly isFree: boolean
   readonly entries: readonly EntryBody[]
+  /** Names of the cell to choose from. */
+  readonly names: readonly string[]
   readonly hintId: string
   readonly isInvalid: boolean
   readonly onSet: (value: unknown) => void
@@ -127,7 +133,7 @@ interface InputProps {
   readonly onPoint: (option: string | undefined) => void
 }
 
-function FieldInput({ field, value, isFree, entries, hintId, isInvalid, onSet, onPoint }: InputProps) {
+function FieldInput({ field, value, isFree, entries, names, hintId, isInvalid, onSet, onPoint }: InputProps) {
   const label = field.name
   const fallback = shownValue(field.fallback)
   const shared = { label, describedBy: hintId, isInvalid, placeholder: field.required ? '' : fallback || 'not given' }
@@ -179,6 +185,7 @@ function FieldInput({ field, value, isFree, entries, hintId, isInvalid, onSet, o
         <TemplateInput
           {...shared}
           isMono={field.kind === 'data'}
+          {...(names.length > 0 ? { options: names } : {})}
           inputMode={field.kind === 'number' || field.kind === 'integer' ? 'decimal' : 'text'}
           value={shownValue(value)}
           onCommit={(typed) => onSet(typedValue(field, typed))}

@@ -3,7 +3,7 @@ import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
-import { added, conditionsOf, moved, renamedOutcome, withChild, without, type Rule } from '../../document/editing/rules'
+import { added, conditionsOf, moved, renamedOutcome, withChild, withCount, without, type Rule } from '../../document/editing/rules'
 import { perform, performOn } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
@@ -20,6 +20,7 @@ export function RulesForm({ node }: { node: EditNode }) {
           <thead>
             <tr>
               <th scope="col">Outcome</th>
+              <th scope="col">How many</th>
               {node.children.map((child) => (
                 <th scope="col" key={child.name}>
                   {child.name}
@@ -39,6 +40,22 @@ export function RulesForm({ node }: { node: EditNode }) {
                     value={rule.outcome}
                     onCommit={(typed) => typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)}
                   />
+                </td>
+                <td>
+                  <select
+                    className="plain-input"
+                    aria-label={`How many in rule ${index + 1}`}
+                    value={rule.at_least ?? Object.keys(rule.when).length}
+                    onChange={({ currentTarget: { value } }) =>
+                      set((rules) => withCount(rules, index, Number(value)), `Rule ${index + 1}`)
+                    }
+                  >
+                    {Object.keys(rule.when).map((name, at) => (
+                      <option key={name} value={at + 1}>
+                        {at + 1 === Object.keys(rule.when).length ? 'all' : at + 1}
+                      </option>
+                    ))}
+                  </select>
                 </td>
                 {node.children.map((child) => (
                   <td key={child.name}>

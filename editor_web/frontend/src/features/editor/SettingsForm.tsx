@@ -16,6 +16,9 @@ interface Setting {
 }
 
 const SETTINGS: Record<string, readonly Setting[]> = {
+  concurrency: [
+    { key: 'shared', words: 'Shared keys', hint: 'Names as a list: branches see each other write them' },
+  ],
   foreach: [
     { key: 'items', words: 'Items', hint: 'A list, or ${…} that gives one' },
     { key: 'times', words: 'Times', hint: 'Rounds, instead of items' },
@@ -27,6 +30,8 @@ const SETTINGS: Record<string, readonly Setting[]> = {
   parallel: [
     { key: 'policy', words: 'Succeeds with', hint: '`all`, `one`, or names of children as a list' },
     { key: 'synchronise', words: 'Synchronise', hint: 'What has succeeded waits for the others', kind: 'switch' },
+    { key: 'success_count', words: 'Successes', hint: 'So many must succeed, instead of a policy' },
+    { key: 'failure_count', words: 'Failures', hint: 'So many must fail, 1 without' },
   ],
   repeat: [{ key: 'times', words: 'Times', hint: 'Successes in a row' }],
   retry: [

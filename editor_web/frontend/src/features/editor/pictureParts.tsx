@@ -235,9 +235,10 @@ export function Rules({ node, box, palette }: { node: EditNode; box: Box; palett
   const lines = [
     ...node.rules.map((rule) => [
       rule.outcome,
-      Object.entries(rule.when)
-        .map(([child, outcome]) => `${child} = ${outcome}`)
-        .join(' and '),
+      (rule.at_least === null ? '' : `${rule.at_least} of `) +
+        Object.entries(rule.when)
+          .map(([child, outcome]) => `${child} = ${outcome}`)
+          .join(rule.at_least === null ? ' and ' : ', '),
     ]),
     ...(node.otherwise ? [[node.otherwise, 'otherwise']] : []),
   ]

@@ -47,9 +47,9 @@ export function useSteps(): Steps {
   return { isBusy, problem, send, stop }
 }
 
-/** The words of a cause, with what it came from. */
+/** The words of a cause: what was measured first, then what followed from it. */
 function causeOf(cause: unknown): string {
   if (typeof cause !== 'object' || cause === null) return ''
   const { message, because } = cause as { readonly message?: unknown; readonly because?: unknown }
-  return [typeof message === 'string' ? message : '', causeOf(because)].filter(Boolean).join(' because ')
+  return [causeOf(because), typeof message === 'string' ? message : ''].filter(Boolean).join(', so ')
 }

@@ -125,8 +125,8 @@ function Told({ failure, onShow: show }: { failure: Failure; onShow: (at: At) =>
             <h4>Why</h4>
             <ol>
               {links.map((link, index) => (
-                <li key={index} className={index === links.length - 1 ? 'is-origin' : undefined}>
-                  {index > 0 && <span className="quiet">because </span>}
+                <li key={index} className={index === 0 ? 'is-origin' : undefined}>
+                  {index > 0 && <span className="quiet">so </span>}
                   {link.message}
                   <div className="quiet mono">{[link.kind, link.where].filter(Boolean).join(' · ')}</div>
                 </li>

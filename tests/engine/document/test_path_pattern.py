@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.faults import matches
+from engine.document.path_pattern import matches
 
 PARTS = st.lists(st.text("ab.", min_size=1, max_size=3), min_size=1, max_size=5)
 

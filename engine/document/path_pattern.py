@@ -4,6 +4,14 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
+from typing import Annotated
+
+from msgspec import Meta
+
+PathPattern = Annotated[
+    str,
+    Meta(min_length=1, description="A node path; `*` stands for any text without `/`, `**` for any number of parts"),
+]
 
 
 @lru_cache(maxsize=1024)

@@ -1,0 +1,119 @@
+"""Checks cell and entries documents: models and drivers that exist, names that fit together, units that are meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from engine.cell_names import CellNameKind, CellNames, cell_names
+from engine.check.finding import Finding, new_finding, place_of
+from engine.check.magnitude import Suspicion, suspicion_of, suspicions
+from engine.document.cell import Cell, CellDocument, RobotEntry
+from engine.document.entries import Entries, EntriesDocument, load_entries
+from engine.document.yaml_source import DataPath, Source
+from engine.errors import DocumentError, FlexcellError, Position
+from engine.nearness import near_names
+from engine.registry import DRIVERS, registered
+from engine.robot_models import RobotModels, robot_models
+
+_PART_FRAME = "part"
+"""The frame of whatever part a pose is used for."""
+
+
+def check_cell(cell: Cell) -> tuple[Finding, ...]:
+    """Return everything that is wrong with a cell and the entries that it is seeded with; nothing is connected."""
+    names = cell_names(cell)
+    models = robot_models()
+    findings = list(_suspect(cell.source, CellDocument))
+    for robot, entry in cell.document.robots.items():
+        findings += _check_driver(cell, robot, entry)
+        if models is not None:
+            findings += _check_models(cell, robot, entry, models)
+    for camera, entry in cell.document.cameras.items():
+        for part in entry.detect.labels if entry.detect is not None else ():
+            path: DataPath = ("cameras", camera, "detect", "labels", part)
+            findings += _missing(names, "part", part, cell.source.position(path, of_key=True))
+    findings += _check_seed(cell, names)
+    return tuple(sorted(findings, key=place_of))
+
+
+def check_entries_document(entries: Entries, names: CellNames | None = None) -> tuple[Finding, ...]:
+    """Return what is wrong with entries: numbers in another unit and, with the names of a cell, frames it has not."""
+    findings = list(_suspect(entries.source, EntriesDocument))
+    for name, pose in entries.document.poses.items():
+        suspicion = suspicion_of("xyz", pose.xyz, "m", steps=("poses", name, "xyz"))
+        findings += [_suspected(entries.source, suspicion)] if suspicion is not None else []
+        # An arm takes its base, a state that handles parts any body that the cell shows.
+        if names is not None and pose.frame != _PART_FRAME:
+            findings += _missing(names, "frame", pose.frame, entries.source.position(("poses", name, "frame")))
+    return tuple(sorted(findings, key=place_of))
+
+
+def _check_driver(cell: Cell, robot: str, entry: RobotEntry) -> Iterator[Finding]:
+    known = registered(DRIVERS)
+    if not entry.simulated and entry.driver_kind not in known:
+        position = cell.source.position(("robots", robot, "driver", "kind"))
+        hint = near_names(entry.driver_kind, known) if known else "none is installed; `driver: sim` simulates it"
+        yield new_finding(
+            "unknown-driver", f"no driver is called {entry.driver_kind}", path="", position=position, hint=hint
+        )
+
+
+def _check_models(cell: Cell, robot: str, entry: RobotEntry, models: RobotModels) -> Iterator[Finding]:
+    here: DataPath = ("robots", robot)
+    named: list[tuple[str, str, DataPath, tuple[str, ...]]] = [
+        ("robot", entry.model, (*here, "model"), models.robots())
+    ]
+    if entry.gripper is not None:
+        named.append(("gripper", entry.gripper.model, (*here, "gripper", "model"), models.tools()))
+    unknown = [each for each in named if not _is_folder(each[1]) and each[1] not in each[3]]
+    for what, model, path, known in unknown:
+        message, hint = f"no {what} model is called {model}", near_names(model, known)
+        yield new_finding("unknown-model", message, path="", position=cell.source.position(path), hint=hint)
+    if unknown:
+        return
+    try:
+        outputs = models.summary(cell, robot).digital_outputs
+    except FlexcellError as error:
+        position = error.where if isinstance(error.where, Position) else cell.source.position((*here, "model"))
+        message = f"robot `{robot}`: {error.message}"
+        yield new_finding("unknown-model", message, path="", position=position, hint=error.hint or "")
+        return
+    for use, number in entry.outputs.items():
+        if number >= outputs:
+            hint = f"a {entry.model} has {f'the outputs 0 to {outputs - 1}' if outputs else 'no outputs'}"
+            position = cell.source.position((*here, "outputs", use))
+            message = f"`{robot}` has no output {number}"
+            yield new_finding("unknown-in-cell", message, path="", position=position, hint=hint)
+
+
+def _check_seed(cell: Cell, names: CellNames) -> tuple[Finding, ...]:
+    seed = cell.seed_file
+    if seed is None:
+        return ()
+    try:
+        return check_entries_document(load_entries(seed), names)
+    except DocumentError as error:
+        message, position = error.message, error.where
+        if not seed.is_file() or not isinstance(position, Position):
+            message, position = f"{seed.name}: {message}", cell.source.position(("store", "seed"))
+        return (new_finding("invalid-document", message, path="", position=position, hint=error.hint or ""),)
+
+
+def _missing(names: CellNames, kind: CellNameKind, name: str, position: Position) -> Iterator[Finding]:
+    if not names.has(kind, name):
+        message, hint = names.missing(kind, name), names.advice(kind, name)
+        yield new_finding("unknown-in-cell", message, path="", position=position, hint=hint)
+
+
+def _suspect(source: Source, model: Any) -> Iterator[Finding]:
+    yield from (_suspected(source, found) for found in suspicions(model, source.data))
+
+
+def _suspected(source: Source, found: Suspicion) -> Finding:
+    position = source.position(found.steps)
+    return new_finding("suspect-unit", found.message, path="", position=position, hint=found.hint)
+
+
+def _is_folder(model: str) -> bool:
+    return model.startswith(".") or "/" in model

@@ -1,0 +1,71 @@
+"""Checks that joint angles which an arm of the cell is told have as many joints as it, and are within their limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import cast
+
+from engine.check.annotated import is_annotated, lists
+from engine.check.finding import Finding
+from engine.check.magnitude import MOST_TURNS_RAD
+from engine.check.settled import settled
+from engine.check.subject import Placed, Subject
+from engine.document.signature import StateSignature
+
+Ranges = Mapping[str, tuple[tuple[float, float], ...]]
+"""The least and the greatest angle of each joint, radians, by the name of the robot."""
+_NEARLY_RAD = 1e-6
+
+
+def check_joint_targets(subject: Subject, ranges: Ranges, known: Mapping[str, object]) -> Iterator[Finding]:
+    """Find joint angles in a behavior that the arm they are for cannot have.
+
+    Args:
+        subject: The behavior.
+        ranges: Those of the robots whose models are known.
+        known: Parameters of the behavior by name.
+    """
+    for placed in subject.nodes.values():
+        signature = subject.signature(placed.node)
+        if signature is not None:
+            yield from _check_state(subject, placed, signature, ranges, known)
+
+
+def _check_state(
+    subject: Subject, placed: Placed, signature: StateSignature, ranges: Ranges, known: Mapping[str, object]
+) -> Iterator[Finding]:
+    given = subject.given_to(placed)
+    for name, found in given.items():
+        declared = signature.parameters.get(name)
+        if declared is None or not is_annotated(declared.type):
+            continue
+        for steps, listed in lists(declared.type, settled(found, known)):
+            of = listed[0].says.get("joints_of")
+            robot = settled(given[str(of)], known) if of in given else None
+            angles = [each.value for each in listed]
+            if (
+                not isinstance(robot, str)
+                or robot not in ranges
+                or not all(isinstance(each, int | float) for each in angles)
+            ):
+                continue
+            fault = _fault(robot, ranges[robot], cast("list[float]", angles))
+            if fault is not None:
+                index, message, hint = fault
+                keys = ("with", name, *steps, *(() if index is None else (index,)))
+                yield subject.finding("unreachable-joints", f"`{name}`: {message}", placed.path, *keys, hint=hint)
+
+
+def _fault(
+    robot: str, ranges: tuple[tuple[float, float], ...], angles: list[float]
+) -> tuple[int | None, str, str] | None:
+    """Return which joint is wrong, if it is one, what is wrong, and what to do."""
+    if len(angles) != len(ranges):
+        return None, f"`{robot}` has {len(ranges)} joints, not {len(angles)}", "give one angle for each, in radians"
+    if max(map(abs, angles)) > MOST_TURNS_RAD:
+        return None  # told as degrees
+    for index, (angle, (low, high)) in enumerate(zip(angles, ranges, strict=True)):
+        if not low - _NEARLY_RAD <= angle <= high + _NEARLY_RAD:
+            message = f"joint {index + 1} of `{robot}` cannot be at {angle:g} rad"
+            return index, message, f"it turns from {low:.4g} to {high:.4g} rad"
+    return None

@@ -1,0 +1,115 @@
+"""Finds numbers so large that they seem to be in another unit: degrees for radians, millimetres for metres."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from engine.check.annotated import is_annotated, lists
+from engine.check.finding import Finding, new_finding
+from engine.check.settled import settled
+from engine.check.subject import Placed, Subject
+from engine.document.parameter import Parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Unit:
+    """A unit, the one that is taken for it, and how large a number alone, or the largest of several, still is."""
+
+    other: str
+    factor: float
+    alone: float
+    in_list: float
+
+
+MOST_TURNS_RAD = 2.5 * math.pi
+"""More than any joint of an arm turns to one side."""
+_UNITS: Mapping[str, _Unit] = {
+    "rad": _Unit(other="degrees", factor=math.pi / 180.0, alone=MOST_TURNS_RAD, in_list=MOST_TURNS_RAD),
+    # A hall is longer than a gripper is wide.
+    "m": _Unit(other="millimetres", factor=0.001, alone=10.0, in_list=30.0),
+    "m/s": _Unit(other="millimetres a second", factor=0.001, alone=10.0, in_list=30.0),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suspicion:
+    """A number, or a list of numbers, that seems to be in another unit; `steps` lead to it."""
+
+    steps: tuple[str | int, ...]
+    message: str
+    hint: str
+
+
+def suspicions(annotation: Any, value: object, *, name: str = "") -> Iterator[Suspicion]:
+    """Go through what seems to be in another unit than the annotations inside a type say, once for each list.
+
+    Args:
+        annotation: The type.
+        value: Plain data.
+        name: What the whole value is called.
+    """
+    for steps, found in lists(annotation, value):
+        inner = next((step for step in reversed(steps) if isinstance(step, str)), name)
+        suspicion = suspicion_of(inner, [each.value for each in found], found[0].says.get("unit"), steps=steps)
+        if suspicion is not None:
+            yield suspicion
+
+
+def suspicion_of(
+    name: str, values: Sequence[object], unit: object, *, steps: tuple[str | int, ...] = ()
+) -> Suspicion | None:
+    """Return what is odd about numbers in a unit; None where nothing is.
+
+    Args:
+        name: What they are called.
+        values: The number alone, or all in the list; what is no number is not looked at.
+        unit: Theirs.
+        steps: The keys that lead to the number, or to the list of them.
+    """
+    due = _UNITS.get(str(unit))
+    numbers = [each for each in values if isinstance(each, int | float) and not isinstance(each, bool)]
+    if due is None or not numbers:
+        return None
+    largest = max(numbers, key=abs)
+    if not (due.in_list if len(values) > 1 else due.alone) < abs(largest) < math.inf:
+        return None
+    meant = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
+    return Suspicion(
+        steps=steps,
+        message=f"`{name}`: {largest:g} {unit} looks like {due.other}",
+        hint=f"if so, write {meant if len(values) == 1 else f'[{meant}]'}",
+    )
+
+
+def check_magnitudes(subject: Subject) -> Iterator[Finding]:
+    """Find numbers in a behavior that seem to be in another unit than is due."""
+    declared = subject.behavior.parameters
+    for name, parameter in declared.items():
+        found = suspicion_of(name, [parameter.default], _unit(parameter)) if not parameter.required else None
+        if found is not None:
+            position = subject.behavior.source.position(("parameters", name, "default"))
+            yield new_finding("suspect-unit", found.message, path=subject.base, position=position, hint=found.hint)
+    for placed in subject.nodes.values():
+        for name in subject.given_to(placed):
+            for found in _given(subject, placed, name):
+                keys = ("with", name, *found.steps)
+                yield subject.finding("suspect-unit", found.message, placed.path, *keys, hint=found.hint)
+
+
+def _given(subject: Subject, placed: Placed, name: str) -> Iterator[Suspicion]:
+    given = subject.given_to(placed)[name]
+    signature, referred = subject.signature(placed.node), subject.referred(placed.node)
+    if signature is not None and name in signature.parameters:
+        declared = signature.parameters[name].type
+        if is_annotated(declared):
+            yield from suspicions(declared, settled(given, {}), name=name)
+    elif referred is not None and name in referred.behavior.parameters:
+        found = suspicion_of(name, [settled(given, {})], _unit(referred.behavior.parameters[name]))
+        yield from [found] if found is not None else []
+
+
+def _unit(parameter: Parameter) -> str:
+    return parameter.unit.strip()

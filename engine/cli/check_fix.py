@@ -1,0 +1,78 @@
+"""Writes fixes into behavior documents, for `flexcell check --fix`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from engine.authoring.python_file import is_python_name
+from engine.check.subject import Catalogue
+from engine.document.yaml_source import MAX_BYTES, load_source
+from engine.editing.knowledge import Knowledge
+from engine.editing.mending.repair import Repaired, repair
+from engine.editing.versions import write_whole
+from engine.errors import DocumentError, FlexcellError
+from engine.library import FindingView
+
+
+def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> Repaired | None:
+    """Write into a behavior document the fixes that can be made without asking; None where it is none, or unreadable.
+
+    Raises:
+        FlexcellError: the file cannot be written, or was changed meanwhile; it is as it was.
+    """
+    if is_python_name(str(file)) or not _is_behavior(file):
+        return None
+    content = _content(file)
+    knowledge = Knowledge(catalogue, file.parent, Path(file.absolute().anchor))
+    try:
+        made = repair(content.decode("utf-8"), file=file, knowledge=knowledge, likely=likely)
+    except UnicodeDecodeError:
+        return None  # the check says so
+    if made.fixed:
+        _write(file, content, made.text)
+    return made
+
+
+def fix_lines(file: Path, made: Repaired) -> Iterator[str]:
+    """Say what was fixed, where it stood when its turn came, and what a person may choose from for what is left."""
+    for finding, fix in made.fixed:
+        yield f"{_place(file, finding)}: fixed: {finding.message}: {fix.title} [{finding.code}]"
+    for finding, fixes in made.left:
+        if fixes:
+            titles = "; or: ".join(fix.title for fix in fixes)
+            yield f"{_place(file, finding)}: not fixed, to choose: {titles} [{finding.code}]"
+
+
+def _place(file: Path, finding: FindingView) -> str:
+    return f"{file}:{finding.line}:{finding.column}"
+
+
+def _is_behavior(file: Path) -> bool:
+    try:
+        data = load_source(file).data
+    except DocumentError:
+        return False
+    return isinstance(data, dict) and ("root" in data or "outcomes" in data)
+
+
+def _content(file: Path) -> bytes:
+    try:
+        with file.open("rb") as stream:
+            return stream.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise FlexcellError(f"cannot read this file: {error.strerror}", where=file) from error
+
+
+def _write(file: Path, before: bytes, text: str) -> None:
+    target = file.resolve()
+    hint = "nothing was fixed in it; make it writable, or check without `--fix`"
+    if not target.stat().st_mode & 0o222 or not os.access(target, os.W_OK):
+        raise FlexcellError("the file is read-only", where=file, hint=hint)
+    if _content(target) != before:
+        raise FlexcellError("the file was changed meanwhile", where=file, hint="nothing was fixed in it; check again")
+    try:
+        write_whole(target, text)
+    except OSError as error:
+        raise FlexcellError(f"the file cannot be written: {error.strerror}", where=file, hint=hint) from error

@@ -1,0 +1,63 @@
+"""What a container remembers of its children, to explain afterwards why it ended as it did.
+
+An outcome may be nominal to whoever has it and a failure further out: `not_found`, led to `failed`. Events hold no
+cause for it, as nothing has gone wrong yet; once somebody calls it a failure, the chain goes down to it all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from engine.cause import under
+from engine.event import Cause
+from engine.node import Node
+from engine.node_exit import ContainerOutcome, Left
+
+
+class Diagnosis:
+    """The children of one visit of a container as they end, one after the other.
+
+    Args:
+        cause: What had gone wrong last before, where a run is gone on with.
+        reason: What had decided its course last.
+    """
+
+    def __init__(self, cause: Cause | None = None, reason: Cause | None = None) -> None:
+        self.cause = cause
+        self._reason: Cause | tuple[Node, Left] | None = reason
+        self._is_decided = reason is not None
+
+    @property
+    def reason(self) -> Cause | None:
+        """The last child that went wrong or had a choice; without any, the one that ended last."""
+        return explain(*self._reason) if isinstance(self._reason, tuple) else self._reason
+
+    def take(self, child: Node, left: Left) -> None:
+        """Note how a child has ended."""
+        if went_wrong(child, left):
+            self.cause = self._reason = explain(child, left)
+            self._is_decided = True
+        elif _has_chosen(child, left):
+            self._reason, self._is_decided = (child, left), True
+        elif not self._is_decided:
+            self._reason = (child, left)
+
+    def outcome(self, name: str, nominal: Collection[str]) -> ContainerOutcome:
+        """Return how the container ends."""
+        return ContainerOutcome(name, cause=None if name in nominal else self.cause, reason=self.reason)
+
+
+def explain(child: Node, left: Left) -> Cause:
+    """Return why a container failed through this child."""
+    said = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
+    return under(said, left.cause or left.reason, where=child.path)
+
+
+def went_wrong(child: Node, left: Left) -> bool:
+    """Tell whether a child has failed: it has a cause, or an outcome that does not mean success to it."""
+    return left.cause is not None or bool(left.outcome and left.outcome not in child.work.nominal)
+
+
+def _has_chosen(child: Node, left: Left) -> bool:
+    """Tell whether a child could have ended well and led elsewhere; a guard always could."""
+    return left.target is not None or child.has_choice

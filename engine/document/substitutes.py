@@ -1,0 +1,158 @@
+"""Substitutes documents: which nodes of a behavior are stood in for, and by what, so that the rest can be tested.
+
+    flexcell: 1
+    substitutes:
+      - {at: root/*/grasp, outcome: held, after: 2 s, outputs: {width_m: 0.03}}
+      - {at: root/detect, script: [{outcome: none}, {error: the camera is dark}, {outcome: found}]}
+      - {at: root/**/plan, state: "my_states:PlanNothing"}
+
+A node, of whatever kind, keeps its wiring; what it would do is not done. The first entry that matches a node counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from engine.document.conversion import Strict, convert
+from engine.document.duration import Duration, seconds
+from engine.document.node import Key
+from engine.document.path_pattern import PathPattern, matches
+from engine.document.yaml_source import Source, load_source, parse_source
+from engine.errors import DocumentError, Position
+
+
+class Ending(Strict, frozen=True, kw_only=True):
+    """How one activation of a node ends: with an outcome and its outputs, or an error, `after` a time.
+
+    `outputs` are those of the state or behavior that is stood in for; of a container they are userdata keys.
+    """
+
+    outcome: str | None = None
+    after: Duration = 0.0
+    outputs: dict[Key, object] = {}
+    error: Annotated[str, Meta(min_length=1, description="What the error says")] | None = None
+
+    @property
+    def after_s(self) -> float:
+        """How long it takes, in seconds."""
+        return seconds(self.after)
+
+
+class Substitute(Ending, frozen=True, kw_only=True):
+    """What stands in for the nodes `at`: an ending, a `script` of them, or another `state`.
+
+    A script has one ending for each activation, in turn; the last one is that of all others. Another state is given the
+    parameters `with`, or those of the state that it replaces, and has no outcome that this one has not.
+    """
+
+    at: PathPattern
+    script: tuple[Ending, ...] = ()
+    state: Annotated[str, Meta(min_length=1, description="The name of a state")] | None = None
+    parameters: dict[str, object] | None = msgspec.field(default=None, name="with")
+
+    @property
+    def endings(self) -> tuple[Ending, ...]:
+        """The script; a single ending is one."""
+        return self.script or (Ending(outcome=self.outcome, after=self.after, outputs=self.outputs, error=self.error),)
+
+
+class SubstitutesDocument(Strict, frozen=True, kw_only=True):
+    """The substitutes of a run as written, in order of precedence."""
+
+    flexcell: Literal[1]
+    description: str = ""
+    substitutes: Annotated[tuple[Substitute, ...], Meta(min_length=1, description="The substitutes, at least one")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Substitutes:
+    """A substitutes document with the file it came from."""
+
+    document: SubstitutesDocument
+    file: Path
+    source: Source = field(repr=False)
+    classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
+    """The state classes that a test gave, by the name written for each; a document brings none."""
+
+    def position(self, index: int, *keys: str | int) -> Position:
+        """Return where an entry, from 0, stands, or a value inside it."""
+        return self.source.position(("substitutes", index, *keys))
+
+    def index_for(self, path: str) -> int | None:
+        """Return the index of the entry that stands in for a node; None where there is none."""
+        entries = enumerate(self.document.substitutes)
+        return next((index for index, entry in entries if matches(entry.at, path)), None)
+
+    @property
+    def text(self) -> bytes:
+        """The document, without its comments."""
+        return msgspec.json.encode(self.document)
+
+
+def load_substitutes(path: Path | str) -> Substitutes:
+    """Read a substitutes document.
+
+    Raises:
+        DocumentError: the file cannot be read or is not valid; `where` is the position.
+    """
+    return _checked(load_source(Path(path)), Path(path))
+
+
+def parse_substitutes(text: bytes | str, *, file: Path | str) -> Substitutes:
+    """Return the substitutes that `text` describes; `file` is the name shown in positions.
+
+    Raises:
+        DocumentError: as `load_substitutes`.
+    """
+    return _checked(parse_source(text, file=str(file)), Path(file))
+
+
+def new_substitutes(entries: Iterable[Substitute], *, name: str = "substitutes") -> Substitutes:
+    """Return substitutes that are made in Python; `name` is shown in place of a file.
+
+    Raises:
+        DocumentError: as `load_substitutes`.
+    """
+    document = SubstitutesDocument(flexcell=1, substitutes=tuple(entries))
+    return parse_substitutes(msgspec.json.encode(document), file=name)
+
+
+def _checked(source: Source, file: Path) -> Substitutes:
+    document = convert(source, SubstitutesDocument)
+    for index, entry in enumerate(document.substitutes):
+        _require_one_kind(source, index, entry)
+        for number, ending in enumerate(entry.script):
+            _require_one_end(source, ("substitutes", index, "script", number), ending)
+        if not entry.script and entry.state is None:
+            _require_one_end(source, ("substitutes", index), entry)
+    return Substitutes(document=document, file=file, source=source)
+
+
+def _require_one_kind(source: Source, index: int, entry: Substitute) -> None:
+    written = [key for key in ("outcome", "error", "script", "state") if getattr(entry, key) not in (None, ())]
+    if len(written) > 1:
+        where = source.position(("substitutes", index, written[1]), of_key=True)
+        message = f"this substitute has `{written[0]}` and `{written[1]}` at once"
+        raise DocumentError(message, where=where, hint="keep one of them")
+    beside = ("after", "outputs") if entry.script or entry.state is not None else ()
+    loose = [key for key in beside if getattr(entry, key)]
+    loose += ["with"] if entry.parameters is not None and entry.state is None else []
+    if loose:
+        where = source.position(("substitutes", index, loose[0]), of_key=True)
+        hint = "`with` goes with `state`, `after` and `outputs` with an `outcome`"
+        raise DocumentError(f"`{loose[0]}` has no meaning here", where=where, hint=hint)
+
+
+def _require_one_end(source: Source, keys: tuple[str | int, ...], ending: Ending) -> None:
+    if (ending.outcome is None) == (ending.error is None):
+        hint = "give one of `outcome` and `error`" + ("" if len(keys) > 2 else ", a `script` or a `state`")
+        raise DocumentError("this substitute does not say how it ends", where=source.position(keys), hint=hint)
+    if ending.error is not None and ending.outputs:
+        where = source.position((*keys, "outputs"), of_key=True)
+        raise DocumentError("an error has no outputs", where=where, hint="remove `outputs`")

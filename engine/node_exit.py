@@ -1,0 +1,31 @@
+"""How a node is left: with an outcome or for a target, with what went wrong, or what led to it."""
+
+from __future__ import annotations
+
+import msgspec
+
+from engine.event import Cause
+from engine.state import Outcome
+
+
+class Left(msgspec.Struct, frozen=True):
+    """How a node was left: with an outcome, or straight to a target (timeout, guard, on_error).
+
+    `reason` is how it came to that where nothing went wrong; events do not hold it.
+    """
+
+    outcome: str
+    target: str | None = None
+    cause: Cause | None = None
+    reason: Cause | None = None
+
+
+class ContainerOutcome(Outcome, frozen=True):
+    """The outcome of a container; `reason` is how it came to it, for an outcome that has no cause."""
+
+    reason: Cause | None = None
+
+
+def guard_closed(path: str) -> Cause:
+    """Return why a node was not entered."""
+    return Cause(message="the guard is closed", where=path, kind="Guard")

@@ -1,0 +1,46 @@
+"""What services have just answered an observation, for the state that asks the same in the tick that follows."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from engine.errors import FlexcellError
+from engine.skill import Service
+
+
+@dataclass(frozen=True)
+class ObservedAnswer:
+    """One request with its answer, or the error that it ended with."""
+
+    request: Service[Any]
+    to: str
+    answer: Any = None
+    error: FlexcellError | None = None
+
+
+class ObservedAnswers:
+    """By the path of the state; belongs to one run."""
+
+    def __init__(self) -> None:
+        self._answers: dict[str, deque[ObservedAnswer]] = {}
+
+    def keep(self, path: str, answers: Iterable[ObservedAnswer]) -> None:
+        """Have the next requests of a state answered so."""
+        self._answers[path] = deque(answers)
+
+    def take(self, path: str, request: Service[Any], to: str) -> ObservedAnswer | None:
+        """Return the answer to the next request of a state; None where it asks something else than was observed."""
+        if not self._answers:
+            return None
+        known = self._answers.get(path)
+        if not known or known[0].request != request or known[0].to != to:
+            self.forget(path)
+            return None
+        return known.popleft()
+
+    def forget(self, path: str) -> None:
+        """Have a state ask anew."""
+        self._answers.pop(path, None)

@@ -1,0 +1,53 @@
+"""Who answers planning requests on an event loop; what plans, and the compilers for it, is loaded by who needs it."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from engine.clock import Clock
+from engine.skills.planning_scene import CollisionReport
+from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
+
+
+class PlanService(Protocol):
+    """Who answers planning requests on an event loop. All of them raise as `plan` does."""
+
+    async def __aenter__(self) -> Any:
+        """Start."""
+        ...
+
+    async def __aexit__(self, *error: object) -> None:
+        """End."""
+        ...
+
+    async def plan(self, request: PlanRequest) -> PlanAnswer:
+        """Return a confirmed way, or why there is none.
+
+        Raises:
+            CellError: the scene has no such arm, or something in it is wrong.
+            RobotError: the planning process ended; the next request finds a new one.
+        """
+        ...
+
+    async def check_way(self, request: WayRequest) -> WayCheck:
+        """Return where an arm that follows a trajectory would touch something first."""
+        ...
+
+    async def check_carry(self, request: CarryRequest) -> WayCheck:
+        """Return where what an arm holds would touch something first on a trajectory."""
+        ...
+
+    async def look(self, request: LookRequest) -> CollisionReport:
+        """Return what an arm touches in a configuration and how near it is to what it must not touch."""
+        ...
+
+
+def plan_service(clock: Clock) -> PlanService:
+    """Return who plans under a clock: inline in virtual time, else a process; to be entered with `async with`."""
+    if clock.virtual:
+        from robots.planning.inline_planner import InlinePlanner
+
+        return InlinePlanner(clock)
+    from robots.planning.worker import PlanningWorker
+
+    return PlanningWorker()

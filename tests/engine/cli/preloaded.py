@@ -1,0 +1,65 @@
+"""The `flexcell` command with its imports done: forks for each line on stdin, `{args, cwd, env, out, err}` in JSON.
+
+Each command runs in a process of its own, from its arguments to its exit code, which is told on stdout; only the
+seconds that Python takes to import are not spent again. `tests/engine/cli/test_run.py` runs the installed script.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import json
+import os
+import pkgutil
+import sys
+import threading
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import engine.cli
+from engine.cli.main import main
+from engine.registry import load_states
+
+# A server is a program of its own, and brings the web with it.
+_NOT_HERE = ("engine.cli.serve", "engine.cli.entry")
+
+
+def serve() -> None:
+    """Fork until stdin ends; in a child, run the command and return."""
+    for module in pkgutil.iter_modules(engine.cli.__path__, "engine.cli."):
+        if module.name not in _NOT_HERE:
+            importlib.import_module(module.name)
+    load_states()
+    assert threading.active_count() == 1, "a thread would not be in the child"
+    gc.freeze()
+    _tell("ready")
+    for line in sys.stdin:
+        pid = os.fork()
+        if pid == 0:
+            _become(json.loads(line))
+            main()
+            return
+        _tell(str(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])))
+
+
+def _tell(line: str) -> None:
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+def _become(request: dict[str, Any]) -> None:
+    for number, path in enumerate((os.devnull, request["out"], request["err"])):
+        opened = os.open(path, os.O_WRONLY if number else os.O_RDONLY)
+        os.dup2(opened, number)
+        os.close(opened)
+    os.environ.clear()
+    os.environ.update(request["env"])
+    os.chdir(request["cwd"])
+    sys.argv = ["flexcell", *request["args"]]
+    # The name in the help is that of a script, not of this module.
+    sys.modules["__main__"].__package__ = ""
+
+
+if __name__ == "__main__":
+    serve()

@@ -1,0 +1,31 @@
+"""The names that a cell offers before it is opened are those that its world has."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from engine.cell_names import cell_names
+from engine.document.cell import load_cell
+from robots.sim.cell_model import build_cell
+from robots.sim.cell_scene import scene_of
+
+CELLS = sorted((Path(__file__).parents[2] / "behaviors" / "cells").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("file", CELLS, ids=lambda file: file.stem)
+def test_the_frames_of_a_cell_are_those_that_its_world_shows(file: Path) -> None:
+    """And `world`, which is no body."""
+    cell = load_cell(file)
+    shown = build_cell(scene_of(cell.document, resolve=cell.resolve)).frames
+    names = cell_names(cell)
+    assert [name for name in shown if not names.has("frame", name)] == []
+    assert names.by_kind["frame"] - set(shown) == {"world"}
+
+
+def test_tools_and_planners_come_from_the_models() -> None:
+    """The IRB 4600 carries a magnet."""
+    names = cell_names(load_cell(next(file for file in CELLS if file.stem == "irb4600"))).by_kind
+    assert (names["tool"], names["magnet"], names["gripper"]) == ({"arm/magnet"}, {"arm"}, frozenset())
+    assert {"fast", "stomp", "RRTConnect"} <= names["planner"]
