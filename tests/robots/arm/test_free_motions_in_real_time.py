@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 from pathlib import Path
 
@@ -41,6 +42,7 @@ async def test_killed_planning_processes_stop_the_arm_and_new_ones_take_it_to_it
         assert end.result is not None, end.cause
         assert (end.status, end.result.stops >= 1) == (GoalStatus.SUCCEEDED, True)
         assert np.abs(opened.joints() - ACROSS).max() < 0.01
-        assert any("SIGKILL" in message.reason for message in opened.told)
+        # Who was asked just then ended with the process; who asks later waits in vain for the next one to start.
+        assert any(re.search("SIGKILL|was not looked at", message.reason) for message in opened.told)
         assert all(worker.pid not in (0, *killed) for worker in workers)
     assert [worker.pid for worker in workers] == [0, 0]
