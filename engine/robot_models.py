@@ -11,6 +11,7 @@ from typing import Literal, Protocol
 
 import msgspec
 
+from engine.arm_target import DrawnCell
 from engine.document.cell import Cell
 from engine.errors import RegistryError
 from engine.registry import MODELS, load_maker
@@ -55,6 +56,10 @@ class RobotModels(Protocol):
             CellError: there is no such model, or it has no such option.
             DocumentError: a document of a model folder, or a calibration file, is wrong.
         """
+        ...
+
+    def drawn(self, cell: Cell) -> DrawnCell:
+        """Return the cell as it is drawn, in which arms can be put to targets; nothing is built before one is."""
         ...
 
 

@@ -24,6 +24,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import msgspec
 
+from engine.arm_target import ArmTarget, StoredTargets, ToolChange
 from engine.clock import Clock
 from engine.event import Cause
 from engine.skill import Action, Service
@@ -131,6 +132,14 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     def resources(self) -> tuple[str, ...]:
         """Names of the robots and devices this state commands; leased while it runs."""
+        return ()
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget | ToolChange, ...]:
+        """Where this state takes arms; asked by a check, before any run, and on objects with some parameters unknown.
+
+        Args:
+            stored: The entries that the store of the cell begins with.
+        """
         return ()
 
     async def on_pause(self, ctx: Context) -> None:

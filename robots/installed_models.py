@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from engine.arm_target import DrawnCell
 from engine.document.cell import Cell
 from engine.robot_models import RobotModels, RobotSummary, ToolKind
 from robots.model.link_names import link_names
@@ -35,6 +36,13 @@ class InstalledModels:
             tool=_kind(model.tool),
             digital_outputs=model.digital_outputs,
         )
+
+    def drawn(self, cell: Cell) -> DrawnCell:
+        """Return the cell as it is drawn, in which arms can be put to targets."""
+        # A check that has no target needs no collision library.
+        from robots.planning.drawn_cell import FixturesOnly
+
+        return FixturesOnly(cell)
 
 
 def _kind(tool: ToolModel | None) -> ToolKind | None:

@@ -2,7 +2,8 @@
 
 from engine.check.cell_check import check_cell, check_entries_document
 from engine.check.check import check_behavior, check_file, check_given, check_survey, read_beside
-from engine.check.finding import CODES, Finding, Severity, invalid, require_sound
+from engine.check.drawn_targets import check_targets
+from engine.check.finding import CODES, Finding, Severity, invalid, place_of, require_sound
 from engine.check.page import page_name, page_text
 from engine.check.stored import check_stored, names_by_kind
 
@@ -17,10 +18,12 @@ __all__ = [
     "check_given",
     "check_stored",
     "check_survey",
+    "check_targets",
     "invalid",
     "names_by_kind",
     "page_name",
     "page_text",
+    "place_of",
     "read_beside",
     "require_sound",
 ]

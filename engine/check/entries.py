@@ -24,10 +24,15 @@ Steps = tuple[str, ...]
 def with_written(entries: Entries, subjects: Iterable[Subject]) -> Entries:
     """Return the entries with those that states of the behaviors write themselves, as far as their names are known."""
     found = {kind: set(names) for kind, names in entries.items()}
-    for subject in subjects:
-        for kind, name in _written(subject):
-            found.setdefault(kind, set()).add(name)
+    for kind, name in entries_written(subjects):
+        found.setdefault(kind, set()).add(name)
     return found
+
+
+def entries_written(subjects: Iterable[Subject]) -> Iterator[tuple[str, str]]:
+    """Yield kind and name of the entries that states of the behaviors write themselves, as far as they are known."""
+    for subject in subjects:
+        yield from _written(subject)
 
 
 def _written(subject: Subject) -> Iterator[tuple[str, str]]:

@@ -39,6 +39,8 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "unknown-in-cell": ("error", "the cell has nothing of this kind and name"),
     "maybe-unknown-in-cell": ("warning", "a name that the cell does not have, on some way or until a run adds it"),
     "unreachable-joints": ("error", "an arm of the cell has other joints, or cannot have these angles"),
+    "unreachable-target": ("warning", "an arm of the cell cannot reach a target"),
+    "target-in-collision": ("warning", "an arm at a target would be in itself or in a fixture of the cell as drawn"),
     "missing-unit": ("warning", "a parameter without a unit is handed on to where a unit is due"),
     "unit-mismatch": ("warning", "a parameter is handed on to where another unit is due"),
     "suspect-unit": ("warning", "a number is so large that it seems to be in another unit"),

@@ -8,15 +8,26 @@ from pathlib import Path
 from typing import Annotated, Literal, TextIO
 
 import typer
+from msgspec.structs import replace
 
 from engine.authoring.python_file import is_python_name, load_python_behavior
 from engine.cell_names import cell_names
-from engine.check import Finding, check_behavior, check_cell, check_entries_document, check_survey, invalid, page_text
+from engine.check import (
+    Finding,
+    check_behavior,
+    check_cell,
+    check_entries_document,
+    check_survey,
+    check_targets,
+    invalid,
+    page_text,
+    place_of,
+)
 from engine.cli.check_fix import fix_file, fix_lines
 from engine.cli.check_store import stored_names
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
-from engine.document import survey_behavior
+from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries import SECTIONS, load_entries
 from engine.document.project import PROJECT_FILE, load_project
@@ -25,6 +36,7 @@ from engine.errors import DocumentError, FlexcellError, Position
 from engine.plan import Catalogue
 from engine.registry import load_states
 
+TargetLevel = Literal["warning", "error", "off"]
 _ENTRIES = tuple((key, "entries") for key in SECTIONS.values())
 
 
@@ -56,6 +68,13 @@ def check(
     fix_likely: Annotated[
         bool, typer.Option("--fix-likely", help="As --fix, and the first of several fixes. No node is deleted.")
     ] = False,
+    targets: Annotated[
+        TargetLevel,
+        typer.Option(
+            help="What targets count as that an arm of the cell cannot reach, or where it would be in itself or a"
+            " fixture as drawn; `off` does not look."
+        ),
+    ] = "warning",
     explain: Annotated[
         str, typer.Option(help="Print what a kind of finding means and what to do about it.", metavar="CODE")
     ] = "",
@@ -71,7 +90,11 @@ def check(
     chosen = "json" if json else format_
     told = sys.stdout if chosen == "text" else sys.stderr
     is_kept = not (fix or fix_likely) or _fix(files, catalogues, told, likely=fix_likely)
-    findings = [finding for file in files for finding in findings_of(file, catalogues[file.parent], store, around)]
+    findings = [
+        finding
+        for file in files
+        for finding in findings_of(file, catalogues[file.parent], store, around, targets=targets)
+    ]
     if chosen == "json":
         sys.stdout.write(as_json(findings) + "\n")
     elif chosen == "sarif":
@@ -100,7 +123,9 @@ def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], told: Text
     return is_kept
 
 
-def findings_of(file: Path, catalogue: Catalogue, store: str = "", cell: Cell | None = None) -> tuple[Finding, ...]:
+def findings_of(
+    file: Path, catalogue: Catalogue, store: str = "", cell: Cell | None = None, *, targets: TargetLevel = "warning"
+) -> tuple[Finding, ...]:
     """Return the findings of one document of any kind; each mistake in it is one.
 
     Args:
@@ -108,24 +133,44 @@ def findings_of(file: Path, catalogue: Catalogue, store: str = "", cell: Cell | 
         catalogue: The states by name.
         store: Where named entries are looked for; by default among those that the cell is seeded with.
         cell: The cell in which a behavior is to run, or of which entries are; by default the one that is named.
+        targets: What targets count as that an arm cannot be at.
     """
     try:
         if is_python_name(str(file)):
             behavior = load_python_behavior(str(file))
-            return check_behavior(behavior, catalogue, stored_names(behavior, store) if store else None, cell=cell)
+            known = stored_names(behavior, store) if store else None
+            findings = check_behavior(behavior, catalogue, known, cell=cell)
+            return findings + _at_targets(behavior, catalogue, cell, targets)
         if file.name == PROJECT_FILE:
             load_project(file)
             return ()
         kind = document_kind(file)
         if kind == "behavior":
-            survey = survey_behavior(file)
-            known = stored_names(survey.behavior, store) if store and survey.behavior is not None else None
-            return check_survey(survey, file, catalogue, known, cell=cell)
+            return _of_behavior(file, catalogue, store, cell, targets)
         if kind == "cell":
             return check_cell(load_cell(file))
         return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
     except DocumentError as error:
         return tuple(invalid(each, file) for each in (error, *error.others))
+
+
+def _of_behavior(
+    file: Path, catalogue: Catalogue, store: str, cell: Cell | None, targets: TargetLevel
+) -> tuple[Finding, ...]:
+    survey = survey_behavior(file)
+    behavior = survey.behavior
+    known = stored_names(behavior, store) if store and behavior is not None else None
+    findings = check_survey(survey, file, catalogue, known, cell=cell)
+    more = _at_targets(behavior, catalogue, cell, targets) if behavior is not None else ()
+    return tuple(sorted((*findings, *more), key=place_of)) if more else findings
+
+
+def _at_targets(behavior: Behavior, catalogue: Catalogue, cell: Cell | None, level: TargetLevel) -> tuple[Finding, ...]:
+    if level == "off":
+        return ()
+    found = check_targets(behavior, catalogue, cell=cell)
+    # What keeps the arms from being put anywhere stays an error.
+    return tuple(replace(each, severity=level) if each.severity == "warning" else each for each in found)
 
 
 def document_kind(file: Path) -> str:

@@ -59,6 +59,11 @@ class StateSignature:
         return self.state.resources is not State.resources
 
     @property
+    def has_arm_targets(self) -> bool:
+        """Whether its class says where it takes arms."""
+        return self.state.arm_targets is not State.arm_targets
+
+    @property
     def summary(self) -> str:
         """The first line of its documentation."""
         return self.doc.partition("\n")[0]

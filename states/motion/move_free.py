@@ -7,6 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
+from engine.arm_target import ArmTarget, StoredTargets
 from engine.cause import cause_of, under
 from engine.errors import SkillFailed
 from engine.skills import planning
@@ -14,6 +15,7 @@ from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import KeepOrientation, Margin, MotionTarget, Patience, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.motion.foreseen import foreseen_joints, foreseen_pose
 from states.motion.free_end import reason_of, stayed_blocked
 from states.motion.free_target import (
     GoalJoints,
@@ -74,6 +76,20 @@ class MoveFree(State, frozen=True, kw_only=True):
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
+        """The target, but where it lies in front of joints."""
+        if self.joints is not None:
+            return () if self.back_m else foreseen_joints(self.robot, self.joints, stored, parameter="joints")
+        return foreseen_pose(
+            self.robot,
+            self.pose,
+            stored,
+            parameter="pose",
+            offset_m=self.offset_m,
+            back_m=self.back_m,
+            match=self.match,
+        )
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""

@@ -6,9 +6,11 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import JointTrapVel, Speed
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.motion.foreseen import foreseen_joints
 from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
 
 
@@ -26,6 +28,10 @@ class MoveJoints(State, frozen=True, kw_only=True):
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
+        """The joints."""
+        return foreseen_joints(self.robot, self.target, stored, parameter="target")
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""

@@ -6,11 +6,13 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.arm_target import ArmTarget, StoredTargets
 from engine.errors import StateError
 from engine.messages import Pose
 from engine.skills.motion import CartLinTask, ForwardKinematics
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.motion.foreseen import foreseen_joints, foreseen_pose
 from states.motion.line_time import line_duration_s
 from states.motion.target import (
     NO_OFFSET,
@@ -60,6 +62,14 @@ class MoveLinear(State, frozen=True, kw_only=True):
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
+        """The end of the line, where it does not go from joints, or from where the arm is."""
+        if self.joints is not None and self.offset_m == NO_OFFSET and not self.back_m:
+            return foreseen_joints(self.robot, self.joints, stored, parameter="joints")
+        return foreseen_pose(
+            self.robot, self.target, stored, parameter="target", offset_m=self.offset_m, back_m=self.back_m
+        )
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""

@@ -6,9 +6,11 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import CartTrapVel, PoseMatch, Speed
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.motion.foreseen import foreseen_pose
 from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
 
 
@@ -32,6 +34,12 @@ class MovePose(State, frozen=True, kw_only=True):
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
+        """The pose."""
+        return foreseen_pose(
+            self.robot, self.target, stored, parameter="target", offset_m=self.offset_m, match=self.match
+        )
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""

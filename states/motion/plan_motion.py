@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills import planning
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.motion.foreseen import foreseen_joints, foreseen_pose
 from states.motion.free_end import reason_of
 from states.motion.free_target import GoalJoints, GoalPose, Seed, free_label, require_one, resolve_free
 from states.motion.target import NO_OFFSET, Offset, RobotName
@@ -49,6 +51,12 @@ class PlanMotion(State, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         require_one(self.joints, self.pose)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
+        """The target."""
+        if self.joints is not None:
+            return foreseen_joints(self.robot, self.joints, stored, parameter="joints")
+        return foreseen_pose(self.robot, self.pose, stored, parameter="pose", offset_m=self.offset_m, match=self.match)
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the planner and judge its answer."""

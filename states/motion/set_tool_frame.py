@@ -6,6 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
+from engine.arm_target import StoredTargets, ToolChange
 from engine.messages import Quaternion, Vector3
 from engine.skills.arm_control import SetEndEffectorFrame
 from engine.state import Context, Outcome, State
@@ -27,6 +28,10 @@ class SetToolFrame(State, frozen=True, kw_only=True):
     def resources(self) -> tuple[str, ...]:
         """The arm."""
         return (self.robot,)
+
+    def arm_targets(self, stored: StoredTargets) -> tuple[ToolChange, ...]:
+        """What poses mean afterwards."""
+        return (ToolChange(robot=self.robot),)
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the arm."""

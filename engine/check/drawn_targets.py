@@ -1,0 +1,149 @@
+"""Checks that arms can be where a behavior takes them: in reach, and free in their cell as it is drawn.
+
+Parts are left out, as they are there to be touched; what arms hold is not known. Entries count with the values that the
+store is seeded with, but for those that the behavior itself writes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+
+from engine.arm_target import ArmTarget, DrawnCell, ToolChange
+from engine.check.entries import entries_written
+from engine.check.finding import Finding, new_finding, place_of
+from engine.check.made_state import UNKNOWN, given_values, made_state
+from engine.check.parameters import default_values
+from engine.check.subject import Catalogue, Subject, new_subjects
+from engine.document.behavior import Behavior
+from engine.document.cell import Cell, load_cell
+from engine.document.collection_pause import without_collection
+from engine.document.entries import EntriesDocument, NamedAngles, load_entries
+from engine.document.expression_cost import MAX_STEPS
+from engine.document.step_meter import METER
+from engine.errors import CellError, DocumentError
+from engine.messages import Pose
+from engine.robot_models import robot_models
+
+_CODES = {"unreachable": "unreachable-target", "collision": "target-in-collision"}
+_MAX_CHECK_STEPS = 200 * MAX_STEPS
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Seeded:
+    """The entries of a seed; `written` are those that only a run knows, as kind and name."""
+
+    document: EntriesDocument | None
+    written: Collection[tuple[str, str]]
+
+    def joints(self, name: str) -> tuple[float, ...] | None:
+        """Return an entry of kind `joints`."""
+        if self.document is None or ("joints", name) in self.written:
+            return None
+        found = self.document.joints.get(name)
+        return found.joints if isinstance(found, NamedAngles) else found
+
+    def pose(self, name: str) -> Pose | None:
+        """Return an entry of kind `pose`."""
+        if self.document is None or ("pose", name) in self.written:
+            return None
+        return self.document.poses.get(name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Told:
+    """A target, and the node that names it."""
+
+    subject: Subject
+    path: str
+    target: ArmTarget
+
+
+@without_collection
+def check_targets(
+    behavior: Behavior,
+    catalogue: Catalogue,
+    *,
+    cell: Cell | None = None,
+    parameters: Mapping[str, object] | None = None,
+    drawn: DrawnCell | None = None,
+) -> tuple[Finding, ...]:
+    """Return the targets in a behavior, and in those it refers to, that an arm of its cell cannot be at.
+
+    Args:
+        behavior: The behavior as loaded.
+        catalogue: The states by name.
+        cell: The cell that it is to run in; by default the one that it names. Without any, nothing is looked at.
+        parameters: What a run gives it; the rest has its defaults.
+        drawn: The cell as it is drawn, where somebody keeps it; else it is made.
+    """
+    models = robot_models()
+    around = cell or _own_cell(behavior)
+    if around is None or (models is None and drawn is None):
+        return ()
+    subjects = new_subjects(behavior, catalogue)
+    stored = _Seeded(document=_seed(around), written=frozenset(entries_written(subjects)))
+    with METER.limited(_MAX_CHECK_STEPS, "this check"):
+        told = list(_told(subjects, stored, {**default_values(subjects[0]), **(parameters or {})}))
+    if not told:
+        return ()
+    if drawn is None:
+        assert models is not None
+        drawn = models.drawn(around)
+    try:
+        found = [_finding(each, drawn) for each in told]
+    except CellError as error:
+        position = behavior.source.position(("cell",))
+        return (new_finding("invalid-cell", f"the cell cannot be built: {error}", path="root", position=position),)
+    return tuple(sorted((each for each in found if each is not None), key=place_of))
+
+
+def _told(subjects: tuple[Subject, ...], stored: _Seeded, known: Mapping[str, object]) -> Iterator[_Told]:
+    found = [(subject, path, each) for subject in subjects for path, each in _asked(subject, subjects, stored, known)]
+    # Poses of an arm whose tool is put elsewhere mean a place that only the run knows.
+    changed = {each.robot for _, _, each in found if isinstance(each, ToolChange)}
+    for subject, path, each in found:
+        if isinstance(each, ArmTarget) and each.robot != UNKNOWN and (each.pose is None or each.robot not in changed):
+            yield _Told(subject=subject, path=path, target=each)
+
+
+def _asked(
+    subject: Subject, subjects: tuple[Subject, ...], stored: _Seeded, known: Mapping[str, object]
+) -> Iterator[tuple[str, ArmTarget | ToolChange]]:
+    # A behavior that is referred to is given its parameters by each reference: only constants are known.
+    given = known if subject is subjects[0] else dict.fromkeys(subject.behavior.parameters, UNKNOWN)
+    for placed in subject.nodes.values():
+        signature = subject.signature(placed.node)
+        if signature is None or not signature.has_arm_targets:
+            continue
+        state = made_state(signature, given_values(subject, placed, given))
+        if state is None:
+            continue
+        try:
+            yield from [(placed.path, each) for each in state.arm_targets(stored)]
+        except Exception:
+            # With stand-ins for unknown values it may fail in any way: then nothing is known of it.
+            continue
+
+
+def _finding(told: _Told, drawn: DrawnCell) -> Finding | None:
+    target, subject = told.target, told.subject
+    fault = drawn.fault(target)
+    if fault is None:
+        return None
+    message = f"`{target.parameter}`: {fault.message}"
+    return subject.finding(_CODES[fault.kind], message, told.path, "with", target.parameter, hint=fault.hint)
+
+
+def _own_cell(behavior: Behavior) -> Cell | None:
+    try:
+        return load_cell(behavior.cell_file) if behavior.cell_file is not None else None
+    except DocumentError:
+        return None  # told as `invalid-cell`
+
+
+def _seed(cell: Cell) -> EntriesDocument | None:
+    try:
+        return load_entries(cell.seed_file).document if cell.seed_file is not None else None
+    except DocumentError:
+        return None  # told of the cell
