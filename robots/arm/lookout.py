@@ -60,6 +60,10 @@ class Lookout:
         if self.blind:
             looking.close()
             return Trouble(reason=self.blind)
+        if gone := self._workspace.planners.watch_gone:
+            # Whatever moves now would be told too late; the arm waits at rest for another one to start.
+            looking.close()
+            return Trouble(reason=f"nobody looks at its way: {gone}")
         try:
             async with asyncio.timeout(_CHECK_S):
                 check = await looking

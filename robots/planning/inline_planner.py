@@ -27,6 +27,10 @@ class InlinePlanner:
     def __init__(self, clock: Clock | None = None) -> None:
         self._clock = clock
         self._planner = ScenePlanner(check_s=INLINE_CHECK_S)
+        self.gone = ""
+
+    def start(self) -> None:
+        """It is always there."""
 
     async def __aenter__(self) -> Self:
         return self

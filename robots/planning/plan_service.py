@@ -12,6 +12,15 @@ from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanR
 class PlanService(Protocol):
     """Who answers planning requests on an event loop. All of them raise as `plan` does."""
 
+    @property
+    def gone(self) -> str:
+        """Why who answered is gone, so that an answer takes as long as another one takes to start; else empty."""
+        ...
+
+    def start(self) -> None:
+        """Have one started in the background where none is there."""
+        ...
+
     async def __aenter__(self) -> Any:
         """Start."""
         ...

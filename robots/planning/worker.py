@@ -55,6 +55,7 @@ class PlanningWorker:
         self._starting: asyncio.Task[_Wire] | None = None
         self._numbers = 0
         self._closed = False
+        self.gone = ""
 
     @property
     def pid(self) -> int:
@@ -158,7 +159,7 @@ class PlanningWorker:
 
     def _started_or_not(self, starting: asyncio.Task[_Wire]) -> None:
         if not starting.cancelled() and starting.exception() is None:
-            self._wire = starting.result()
+            self._wire, self.gone = starting.result(), ""
         if self._starting is starting:
             self._starting = None
 
@@ -167,7 +168,7 @@ class PlanningWorker:
         try:
             self._process = start_child(_START, (theirs.fileno(),), what=_WHAT)
             theirs.close()
-            _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._how_it_ended), sock=ours)
+            _, wire = await asyncio.get_running_loop().create_connection(lambda: _Wire(self._it_ended), sock=ours)
         except BaseException:
             # Whatever went wrong, cancellation included, no process may be left behind.
             ours.close()
@@ -193,8 +194,9 @@ class PlanningWorker:
             process.kill()
             process.wait()
 
-    def _how_it_ended(self) -> str:
-        return how_it_ended(self._process, what=_WHAT)
+    def _it_ended(self) -> str:
+        self.gone = how_it_ended(self._process, what=_WHAT)
+        return self.gone
 
 
 _Answer = Answered | Reported | Failed
@@ -203,8 +205,9 @@ _Answer = Answered | Reported | Failed
 class _Wire(asyncio.Protocol):
     """The client's end of the socket."""
 
-    def __init__(self, how_it_ended: Callable[[], str]) -> None:
-        self._how_it_ended = how_it_ended
+    def __init__(self, it_ended: Callable[[], str]) -> None:
+        self._it_ended = it_ended
+        self._why_lost = ""
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(FromWorker).decode
         self._transport: asyncio.Transport | None = None
@@ -220,7 +223,7 @@ class _Wire(asyncio.Protocol):
     def ask(self, ask: Ask, time_s: float) -> asyncio.Future[_Answer]:
         future: asyncio.Future[_Answer] = asyncio.get_running_loop().create_future()
         if self.lost:
-            future.set_exception(_gone(self._how_it_ended()))
+            future.set_exception(_gone(self._why_lost))
             return future
         self._asked[ask.number] = (future, time_s)
         self._send(ask)
@@ -251,7 +254,7 @@ class _Wire(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         self.lost = True
-        reason = self._how_it_ended()
+        self._why_lost = reason = self._it_ended()
         waiting = [future for future, _ in self._asked.values()]
         self._asked.clear()
         for future in (self.ready, *waiting):

@@ -32,6 +32,9 @@ class Planners:
 
     async def plan(self, request: PlanRequest) -> PlanAnswer:
         """Return a confirmed way, or why there is none."""
+        if self.watch_gone:
+            # It is wanted as soon as an arm is on the way.
+            self._service("watch").start()
         return await self._service("plans").plan(request)
 
     async def check_way(self, request: WayRequest) -> WayCheck:
@@ -49,6 +52,11 @@ class Planners:
     async def look(self, request: LookRequest) -> CollisionReport:
         """Return what an arm touches."""
         return await self._service("watch").look(request)
+
+    @property
+    def watch_gone(self) -> str:
+        """Why nobody can look at a way soon: who did has died, and another one is not there yet; else empty."""
+        return self._service("watch").gone
 
     def begin(self) -> None:
         """Start both services in the background."""

@@ -295,6 +295,22 @@ async def test_an_arm_whose_watching_process_dies_stops_and_goes_on_with_a_new_o
 
 
 @pytest.mark.virtual
+async def test_a_change_that_nobody_can_look_at_stops_the_arm_at_once() -> None:
+    """Who looked has died, and the next one takes seconds to start: nobody waits for an answer meanwhile."""
+    async with fake_cell() as cell:
+        await go(cell, THERE)
+        handle = await cell.begun(free(ACROSS))
+        cell.planner.gone, cell.planner.silent_s = "the planning process was ended by SIGKILL", 3.0
+        cell.cameras.see()
+        await cell.bus.clock.sleep(0.02)
+        assert (cell.told[-1].phase, "SIGKILL" in cell.told[-1].reason) == ("braking", True)
+        cell.planner.gone, cell.planner.silent_s = "", 0.0
+        end = await handle.result()
+        assert end.result is not None, end.cause
+        assert (end.status, end.result.stops) == (GoalStatus.SUCCEEDED, 1)
+
+
+@pytest.mark.virtual
 async def test_an_arm_whose_check_is_not_answered_in_time_stops() -> None:
     async with fake_cell() as cell:
         await go(cell, THERE)

@@ -50,6 +50,7 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
     async with PlanningWorker() as planner:
         first = planner.pid
         assert first not in (0, os.getpid())
+        assert planner.gone == ""
         answer = await planner.plan(msgspec.structs.replace(SHELF, speed=1.0))
         assert isinstance(answer, Plan)
         assert answer.timed is not None
@@ -110,7 +111,9 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         os.kill(first, signal.SIGKILL)
         with pytest.raises(RobotError, match="SIGKILL"):
             await doomed
+        assert planner.gone == "the planning process was ended by SIGKILL"
         assert isinstance(await planner.plan(SHELF), Plan)
+        assert planner.gone == ""
         assert planner.pid not in (0, first)
         last = planner.pid
     assert planner.pid == 0

@@ -41,10 +41,15 @@ class FragilePlanner:
         self._inner = InlinePlanner(clock)
         self._clock = clock
         self.failing = ""
+        self.gone = ""
         self.silent_s = 0.0
         self.plans = 0
         self.checks = 0
         self.closed = False
+
+    def start(self) -> None:
+        """Be there again."""
+        self.gone = ""
 
     async def __aenter__(self) -> FragilePlanner:
         return self
