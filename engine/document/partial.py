@@ -6,7 +6,7 @@ follow from its absence. A run is never made of such a behavior.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -86,10 +86,11 @@ def _with_kind(kept: Plain) -> Plain:
     return kept if kinds or wrapped else {**kept, "state": UNREADABLE}
 
 
-def _without(behavior: Behavior, found: Iterable[Breach]) -> Plain:
+def _without(behavior: Behavior, found: Sequence[Breach]) -> Plain:
     """Return the data without what breaks a rule; a node that cannot be understood becomes one of an unknown state."""
     data, nodes = behavior.source.data, dict(behavior.nodes())
-    for breach in found:
+    # From the end, as what is left out of a list moves what comes behind it.
+    for breach in reversed(found):
         here = behavior.data_path(breach.path) if breach.path else ()
         if breach.excess:
             data = _changed(data, (*here, *breach.excess), None)
@@ -115,7 +116,10 @@ def _changed(data: object, path: DataPath, value: Plain | None) -> object:
     step, *rest = path
     if isinstance(step, int):
         items = list(cast("list[object]", data))
-        items[step] = _changed(items[step], tuple(rest), value) if rest else value
+        if rest or value is not None:
+            items[step] = _changed(items[step], tuple(rest), value) if rest else value
+        else:
+            del items[step]
         return items
     mapping = cast("Plain", data)
     if rest:

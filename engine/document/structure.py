@@ -28,7 +28,7 @@ class Breach:
     """A rule that is broken: at the node `path`, or by what the behavior itself declares where that is empty.
 
     Without what stands at `excess`, keys from the node inward, the rule is kept; None where the node cannot be
-    understood at all.
+    understood at all. What comes before in a list, or stands around another, is told first.
     """
 
     path: str
@@ -195,6 +195,7 @@ def _counts(behavior: Behavior, path: str, container: Concurrency) -> Iterator[B
     for index, entry in enumerate(container.conditions):
         for outcome, when in entry.items():
             children = sum(isinstance(due, str) for due in when.values())
+            excess = ("concurrency", "conditions", index) if not children else None
             for name, due in when.items():
                 if isinstance(due, str) or (name == AT_LEAST and due <= children):
                     continue
@@ -204,7 +205,9 @@ def _counts(behavior: Behavior, path: str, container: Concurrency) -> Iterator[B
                     message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
                 else:
                     message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
-                yield Breach(path=path, error=DocumentError(message, where=where, hint=hint), excess=keys)
+                # Of a condition without children nothing is left, and it goes with the first that is wrong in it.
+                yield Breach(path=path, error=DocumentError(message, where=where, hint=hint), excess=excess or keys)
+                excess = None
 
 
 def _bare(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:

@@ -144,6 +144,36 @@ def test_a_key_that_resembles_another_one_by_chance_is_only_told() -> None:
     assert [each.message for each in survey_behavior(Path("x.yaml"), text).mistakes] == ["unknown key `outs`"]
 
 
+@pytest.mark.parametrize(
+    ("condition", "told"),
+    [
+        ("{good: {at_least: 1}}", ["there are only 0 children in this condition"]),
+        ("{good: {one: 3}}", ["`one`: 3 is no outcome"]),
+        ("{good: {one: 3, at_least: 2}}", ["`one`: 3 is no outcome", "there are only 0 children in this condition"]),
+        ("{good: {one: 3, two: done}}", ["`one`: 3 is no outcome"]),
+        ("{good: {one: a}}, {bad: {at_least: 1}}, {bad: {two: 1}}", ["there are only 0 children", "`two`: 1 is no"]),
+    ],
+)
+def test_a_condition_of_which_nothing_is_left_is_left_out(condition: str, told: list[str]) -> None:
+    """Each mistake in it is told, and the check goes on around it."""
+    text = f"""flexcell: 1
+name: many
+outcomes: [good, bad]
+success: [good]
+root:
+  concurrency:
+    states: {{one: {{state: test.Give}}, two: {{state: test.Wrote}}}}
+    conditions: [{condition}]
+    otherwise: bad
+"""
+    survey = survey_behavior("many.yaml", text)
+    findings = [each.message for each in check_survey(survey, "many.yaml", CATALOGUE)]
+    for message in told:
+        assert any(message in each for each in findings), findings
+    assert "there is no state `test.Wrote`" in findings
+    assert len(findings) == len(told) + 1
+
+
 def test_a_run_is_refused_with_the_first_and_knows_the_others() -> None:
     text = behavior_of(["5", "{}"])
     with pytest.raises(DocumentError, match="`s0`: expected mapping, got integer") as refusal:
