@@ -17,7 +17,7 @@ from tests.tiers import nightly
         nightly("pick_and_place", "ur10"),
         nightly("plate_transfer", "irb4600"),
         ("plate_transfer_shared", "irb4600_shared"),
-        ("test_cylinder", "servo_arm"),
+        nightly("test_cylinder", "servo_arm"),
     ],
 )
 def test_the_same_seed_gives_the_same_events_and_the_same_place_to_the_last_bit(

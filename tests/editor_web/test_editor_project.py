@@ -12,6 +12,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 from tests.editor_web.browsing import fetched
 from tests.editor_web.editing import at_editor, card, file_text, idle, save
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
+from tests.tiers import nightly
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 FILES = sorted(file for file in BEHAVIORS.glob("*/*.yaml") if "\nroot:" in file.read_text(encoding="utf-8"))
@@ -34,7 +35,7 @@ def come_back(page: Page) -> None:
     page.evaluate("() => dispatchEvent(new Event('focus'))")
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", [*FILES[::3], *map(nightly, FILES[1::3] + FILES[2::3])], ids=lambda file: file.stem)
 def test_a_behavior_of_the_project_opens_and_saves_without_a_changed_byte(
     browser: Browser, shop: Workshop, file: Path
 ) -> None:

@@ -23,7 +23,7 @@ PLACE_M = (-0.2, 0.98, 0.05)
 REST_RAD_S = 0.02
 
 
-@pytest.mark.parametrize("seed", [None, 0, 1, *map(nightly, (2, 3, 4))])
+@pytest.mark.parametrize("seed", [None, 0, *map(nightly, (1, 2, 3, 4))])
 def test_the_payload_stands_at_the_place_pose_wherever_it_stood_within_its_jitter(
     tmp_path: Path, seed: int | None
 ) -> None:

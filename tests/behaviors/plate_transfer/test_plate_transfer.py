@@ -9,6 +9,7 @@ import pytest
 
 from tests.behaviors.application import Application, causes, changed_cell, shipped_cell, without_parts
 from tests.behaviors.stopping import stop_in
+from tests.tiers import nightly
 
 BEHAVIOR = "plate_transfer/plate_transfer.yaml"
 CELL = "irb4600"
@@ -16,7 +17,7 @@ LEFT_M = (1.1, 0.7, 0.704)
 REST_RAD_S = 0.02
 
 
-@pytest.mark.parametrize("seed", [None, 0, 1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [None, 0, *map(nightly, (1, 2, 3, 4))])
 def test_the_plate_lies_on_the_left_pedestal_wherever_it_lay_within_its_jitter(
     tmp_path: Path, seed: int | None
 ) -> None:

@@ -15,6 +15,7 @@ from engine.skills.people import ContactCount, CountContacts, Reach
 from engine.skills.planning import FreeMotionResult
 from tests.behaviors.application import Application, causes, shipped_cell
 from tests.behaviors.stopping import stop_in
+from tests.tiers import nightly
 
 BEHAVIOR = "plate_transfer_shared/plate_transfer_shared.yaml"
 CELL = "irb4600_shared"
@@ -54,7 +55,7 @@ def free_motion(done: Application, path: str) -> FreeMotionResult:
     return msgspec.convert(ends[-1].result, FreeMotionResult)
 
 
-@pytest.mark.parametrize("seed", [None, 1])
+@pytest.mark.parametrize("seed", [None, nightly(1)])
 def test_a_hand_in_the_way_is_gone_around_and_the_plate_lies_straight_on_the_left_pedestal(
     tmp_path: Path, seed: int | None
 ) -> None:

@@ -27,7 +27,7 @@ def test_it_ends_with_the_cylinder_in_its_rack_wherever_it_is_killed(tmp_path: P
     file = tmp_path / "trials.json"
     command = [sys.executable, "-P", str(ROOT / "benchmarks" / "crashes.py"), "--json", str(file)]
     done = subprocess.run(
-        [*command, "--subject", "cylinder", "--every", "61"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [*command, "--subject", "cylinder", "--every", "80"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
     trials = msgspec.json.decode(file.read_bytes(), type=dict[str, list[Trial]])["cylinder"]

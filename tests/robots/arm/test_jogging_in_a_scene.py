@@ -25,6 +25,7 @@ from engine.skills.planning_scene import CheckCollision, CollisionReport, PutObs
 from tests.robots.arm.simulated import Simulated, simulated
 from tests.robots.fake_port import FakeStream
 from tests.robots.workspace.fake_cell import FakeCell, fake_cell
+from tests.tiers import nightly
 
 DOWN = (0.0, 0.0, -0.25, 0.0, 0.0, 0.0)
 ROUND = (1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -74,7 +75,7 @@ async def test_the_tool_told_to_go_through_the_table_stands_above_it() -> None:
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("speed", [0.1, 0.5, 2.0])
+@pytest.mark.parametrize("speed", [nightly(0.1), 0.5, 2.0])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 async def test_a_joint_stops_before_an_obstacle_at_any_speed(speed: float, sign: float) -> None:
     """Nothing solid: only the scene knows of it."""
@@ -230,7 +231,7 @@ async def test_a_jog_is_rejected_where_the_scene_cannot_be_looked_at() -> None:
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *map(nightly, (1, 2))])
 async def test_no_jog_in_any_direction_touches_what_stands_around(seed: int) -> None:
     """Three posts at random places around the arm, four jogs of the tool one after the other, fast and askew."""
     random = np.random.default_rng(seed)

@@ -8,14 +8,22 @@ import pytest
 from benchmarks.wiping import FORCE_N, PANDA, UR10, Subject, Wiping, rms, three_passes
 from engine.skills.arm_control import ControllerName
 from robots.port import ArmSettings, MotionEnd
+from tests.tiers import nightly
 
 SETTLED_S = 0.8
-ARMS = pytest.mark.parametrize("subject", [PANDA, UR10], ids=["panda", "ur10"])
-LAWS = pytest.mark.parametrize("law", ["joint_impedance", "cartesian_impedance"])
+ARMS_AND_LAWS = pytest.mark.parametrize(
+    ("subject", "law"),
+    [
+        (PANDA, "joint_impedance"),
+        (UR10, "cartesian_impedance"),
+        nightly(PANDA, "cartesian_impedance"),
+        nightly(UR10, "joint_impedance"),
+    ],
+    ids=["panda-joint", "ur10-cartesian", "panda-cartesian", "ur10-joint"],
+)
 
 
-@ARMS
-@LAWS
+@ARMS_AND_LAWS
 def test_on_a_flat_surface_ten_newtons_stay_within_half_a_newton_while_moving(
     subject: Subject, law: ControllerName
 ) -> None:
@@ -26,8 +34,7 @@ def test_on_a_flat_surface_ten_newtons_stay_within_half_a_newton_while_moving(
     assert made.record.wrenches()[-1, 2] == pytest.approx(FORCE_N, abs=0.5)
 
 
-@ARMS
-@LAWS
+@ARMS_AND_LAWS
 def test_on_an_unknown_slope_every_pass_presses_better_than_the_one_before(
     subject: Subject, law: ControllerName
 ) -> None:
