@@ -23,6 +23,7 @@ from robots.sim.cell_scene import scene_of
 
 _IN_M = 0.005
 """What is no deeper in a fixture than this touches it, as fingers do that reach round a part on a table."""
+_BEYOND_RAD = 1e-6
 _WORLD = "world"
 
 
@@ -51,12 +52,14 @@ class FixturesOnly:
         if arm is None:
             arm = self._arms[target.robot] = _Arm(self._scene, target.robot)
         if target.pose is None:
-            return arm.fault_at(np.array([target.joints]))
-        place = arm.in_world(target.pose)
-        if place is None:
-            return None
+            # Joints that the arm has not, or not so far, are another finding.
+            joints = np.array([target.joints])
+            return arm.fault_at(joints) if arm.has(joints) else None
         match = Match[target.match.upper()]
         try:
+            place = arm.in_world(target.pose)
+            if place is None:
+                return None
             # The list of all takes a hundred times as long, and mostly nobody needs it.
             if arm.fault_at(arm.inverse.nearest(place, seed=arm.home, match=match)[None]) is None:
                 return None
@@ -64,6 +67,8 @@ class FixturesOnly:
         except RobotError as error:
             message = f"`{target.robot}` does not get there: {error.message}"
             return TargetFault(kind="unreachable", message=message, hint=error.hint or "")
+        except ValueError as error:
+            return TargetFault(kind="unreachable", message=str(error), hint="give metres, and a quaternion x y z w")
 
     @cached_property
     def _scene(self) -> PlanningScene:
@@ -98,10 +103,16 @@ class _Arm:
             return Rigid.from_pose(pose)
         return self._base.then(Rigid.from_pose(pose)) if pose.frame == self._base_frame else None
 
+    def has(self, rows: Array) -> bool:
+        """Tell whether configurations (k, n) are some of this arm, within its limits."""
+        limits = self._checker.model.limits
+        lower, upper = np.array(limits.lower_rad), np.array(limits.upper_rad)
+        return rows.shape[1:] == lower.shape and bool(
+            ((rows >= lower - _BEYOND_RAD) & (rows <= upper + _BEYOND_RAD)).all()
+        )
+
     def fault_at(self, rows: Array) -> TargetFault | None:
         """Return what is wrong with all configurations (k, n); None where one of them is right."""
-        if rows.shape[1:] != (self._checker.dof,):
-            return None  # told as joints that the arm has not
         touching: tuple[NamePair, ...] = ()
         for row in rows:
             found = self._inside(row)

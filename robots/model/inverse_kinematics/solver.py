@@ -218,7 +218,9 @@ class InverseKinematics:
 
 
 def _request_seed(target: Rigid, seed: Array) -> int:
-    return zlib.crc32(np.concatenate((target.xyz, target.xyzw, seed)).round(9).tobytes())
+    numbers = np.concatenate((target.xyz, target.xyzw, seed))
+    # Rounding multiplies, and a place may be as far as a number can say.
+    return zlib.crc32(numbers.clip(-1e9, 1e9).round(9).tobytes())
 
 
 def _shortfall(attempt: Attempt) -> float:

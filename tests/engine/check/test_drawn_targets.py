@@ -151,3 +151,35 @@ def test_a_cell_that_cannot_be_built_is_told_once(tmp_path: Path) -> None:
     (finding,) = findings_of(file, CATALOGUE)
     assert (finding.code, finding.severity, finding.position.line) == ("invalid-cell", "error", 3)
     assert "no robot model is called pandra" in finding.message
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ("{xyz: [0.5, 0, 0.3], xyzw: [0, 0, 0, 0]}", "is not a pose"),
+        ("{xyz: [1.0e+300, 0, 0.3], xyzw: [1, 0, 0, 0]}", "out of reach"),
+        ("{xyz: [-5.0e+9, 0, 0.3], xyzw: [1, 0, 0, 0]}", "out of reach"),
+        # Any length will do, as it does for the arm.
+        ("{xyz: [0.5, 0, 0.3], xyzw: [5, 0, 0, 0]}", ""),
+    ],
+)
+def test_numbers_that_are_no_place_end_no_check(tmp_path: Path, target: str, told: str) -> None:
+    """They are told like a place out of reach."""
+    findings = found(tmp_path, f"motion.MovePose robot: left, target: {target}")
+    assert [each.code for each in findings] == (["unreachable-target"] if told else [])
+    assert all(told in each.message for each in findings)
+
+
+@pytest.mark.parametrize("joints", ["[1.0e+300, 0, 0, -1, 0, 1, 0]", "[0, 0]", "[9, 9, 9, 9, 9, 9, 9]"])
+def test_joints_that_the_arm_cannot_have_are_another_finding(tmp_path: Path, joints: str) -> None:
+    """`unreachable-joints` has told of them."""
+    given = f"with: {{robot: left, target: {joints}}}, transitions: {{reached: good, failed: good}}"
+    node = f"      n0: {{state: motion.MoveJoints, {given}}}"
+    (tmp_path / "cell.yaml").write_text(CELL, encoding="utf-8")
+    (tmp_path / "entries.yaml").write_text(ENTRIES, encoding="utf-8")
+    head = "flexcell: 1\nname: test\ncell: cell.yaml\noutcomes: [good]\nsuccess: [good]\nroot:\n  machine:\n"
+    file = tmp_path / "main.yaml"
+    file.write_text(f"{head}    initial: n0\n    states:\n{node}\n", encoding="utf-8")
+    codes = {finding.code for finding in findings_of(file, CATALOGUE)}
+    assert codes.isdisjoint({"unreachable-target", "target-in-collision"})
+    assert codes
