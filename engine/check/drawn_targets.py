@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from engine.arm_target import ArmTarget, DrawnCell, ToolChange
+from engine.check.check import MAX_CHECK_STEPS
 from engine.check.entries import entries_written
 from engine.check.finding import Finding, new_finding, place_of
 from engine.check.made_state import UNKNOWN, given_values, made_state
@@ -19,14 +20,12 @@ from engine.document.behavior import Behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.collection_pause import without_collection
 from engine.document.entries import EntriesDocument, NamedAngles, load_entries
-from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import CellError, DocumentError
 from engine.messages import Pose
 from engine.robot_models import robot_models
 
 _CODES = {"unreachable": "unreachable-target", "collision": "target-in-collision"}
-_MAX_CHECK_STEPS = 200 * MAX_STEPS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,7 +50,7 @@ class _Seeded:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Told:
+class _Named:
     """A target, and the node that names it."""
 
     subject: Subject
@@ -60,51 +59,41 @@ class _Told:
 
 
 @without_collection
-def check_targets(
-    behavior: Behavior,
-    catalogue: Catalogue,
-    *,
-    cell: Cell | None = None,
-    parameters: Mapping[str, object] | None = None,
-    drawn: DrawnCell | None = None,
-) -> tuple[Finding, ...]:
+def check_targets(behavior: Behavior, catalogue: Catalogue, *, cell: Cell | None = None) -> tuple[Finding, ...]:
     """Return the targets in a behavior, and in those it refers to, that an arm of its cell cannot be at.
 
     Args:
         behavior: The behavior as loaded.
         catalogue: The states by name.
         cell: The cell that it is to run in; by default the one that it names. Without any, nothing is looked at.
-        parameters: What a run gives it; the rest has its defaults.
-        drawn: The cell as it is drawn, where somebody keeps it; else it is made.
     """
     models = robot_models()
     around = cell or _own_cell(behavior)
-    if around is None or (models is None and drawn is None):
+    if around is None or models is None:
         return ()
     subjects = new_subjects(behavior, catalogue)
     stored = _Seeded(document=_seed(around), written=frozenset(entries_written(subjects)))
-    with METER.limited(_MAX_CHECK_STEPS, "this check"):
-        told = list(_told(subjects, stored, {**default_values(subjects[0]), **(parameters or {})}))
-    if not told:
+    with METER.limited(MAX_CHECK_STEPS, "this check"):
+        targets = list(_targets(subjects, stored))
+    if not targets:
         return ()
-    if drawn is None:
-        assert models is not None
-        drawn = models.drawn(around)
+    drawn = models.drawn(around)
     try:
-        found = [_finding(each, drawn) for each in told]
+        found = [_finding(each, drawn) for each in targets]
     except CellError as error:
         position = behavior.source.position(("cell",))
         return (new_finding("invalid-cell", f"the cell cannot be built: {error}", path="root", position=position),)
     return tuple(sorted((each for each in found if each is not None), key=place_of))
 
 
-def _told(subjects: tuple[Subject, ...], stored: _Seeded, known: Mapping[str, object]) -> Iterator[_Told]:
+def _targets(subjects: tuple[Subject, ...], stored: _Seeded) -> Iterator[_Named]:
+    known = default_values(subjects[0])
     found = [(subject, path, each) for subject in subjects for path, each in _asked(subject, subjects, stored, known)]
     # Poses of an arm whose tool is put elsewhere mean a place that only the run knows.
     changed = {each.robot for _, _, each in found if isinstance(each, ToolChange)}
     for subject, path, each in found:
         if isinstance(each, ArmTarget) and each.robot != UNKNOWN and (each.pose is None or each.robot not in changed):
-            yield _Told(subject=subject, path=path, target=each)
+            yield _Named(subject=subject, path=path, target=each)
 
 
 def _asked(
@@ -126,13 +115,13 @@ def _asked(
             continue
 
 
-def _finding(told: _Told, drawn: DrawnCell) -> Finding | None:
-    target, subject = told.target, told.subject
+def _finding(named: _Named, drawn: DrawnCell) -> Finding | None:
+    target, subject = named.target, named.subject
     fault = drawn.fault(target)
     if fault is None:
         return None
     message = f"`{target.parameter}`: {fault.message}"
-    return subject.finding(_CODES[fault.kind], message, told.path, "with", target.parameter, hint=fault.hint)
+    return subject.finding(_CODES[fault.kind], message, named.path, "with", target.parameter, hint=fault.hint)
 
 
 def _own_cell(behavior: Behavior) -> Cell | None:

@@ -46,7 +46,7 @@ class FixturesOnly:
         Raises:
             CellError: the cell cannot be built.
         """
-        if target.robot not in {arm.placement.name for arm in self._scene.arms}:
+        if target.robot not in self._cell.document.robots:
             return None
         arm = self._arms.get(target.robot)
         if arm is None:
@@ -89,10 +89,9 @@ class _Arm:
 
     def __init__(self, scene: PlanningScene, name: str) -> None:
         self._name = name
-        self._placement = scene.arm(name).placement
-        alone = msgspec.structs.replace(scene, arms=(scene.arm(name),))
-        self._checker = ExactChecker(alone, name)
-        base = Rigid.from_pose(self._placement.base)
+        arm = scene.arm(name)
+        self._checker = ExactChecker(msgspec.structs.replace(scene, arms=(arm,)), name)
+        base = Rigid.from_pose(arm.placement.base)
         self._base, self._base_frame = base, f"{name}/{self._checker.model.base_link}"
         self.home = np.array(self._checker.model.home_rad)
         self.inverse = InverseKinematics(ArmKinematics(self._checker.model, base=base))

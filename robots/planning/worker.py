@@ -207,7 +207,6 @@ class _Wire(asyncio.Protocol):
 
     def __init__(self, it_ended: Callable[[], str]) -> None:
         self._it_ended = it_ended
-        self._why_lost = ""
         self._reader = FrameReader()
         self._decode = msgspec.msgpack.Decoder(FromWorker).decode
         self._transport: asyncio.Transport | None = None
@@ -223,7 +222,7 @@ class _Wire(asyncio.Protocol):
     def ask(self, ask: Ask, time_s: float) -> asyncio.Future[_Answer]:
         future: asyncio.Future[_Answer] = asyncio.get_running_loop().create_future()
         if self.lost:
-            future.set_exception(_gone(self._why_lost))
+            future.set_exception(_gone(self._it_ended()))
             return future
         self._asked[ask.number] = (future, time_s)
         self._send(ask)
@@ -254,7 +253,7 @@ class _Wire(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         self.lost = True
-        self._why_lost = reason = self._it_ended()
+        reason = self._it_ended()
         waiting = [future for future, _ in self._asked.values()]
         self._asked.clear()
         for future in (self.ready, *waiting):
