@@ -19,6 +19,8 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,13 +49,12 @@ CHECKS = {
     "types": ["pyright", "--warnings"],
     "layers": ["lint-imports"],
 }
-SLOW_CHECKS = {
-    "advisories": ["python", ".ci/audit.py"],
-    # Once, and not by each test process for itself.
-    "kernels": ["python", "-m", "tests.compile_kernels"],
-}
+SLOW_CHECKS = {"advisories": ["python", ".ci/audit.py"]}
+# Once, and not by each test process for itself.
+COMPILE_KERNELS = ["python", "-m", "tests.compile_kernels"]
 MESA_DRIVERS = ("*/dri/swrast_dri.so", "*/libgallium-*.so")
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+# The first has no windows of its own, whose pages cost as much as the one that is tested.
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 
 
 def main(arguments: list[str]) -> int:
@@ -86,15 +87,14 @@ def demo(options: list[str]) -> int:
 def test(options: list[str]) -> int:
     """Run lint, types, import contracts and the tests; pytest's own line is the last one."""
     install("development")
-    checks = CHECKS
-    if "--fast" not in options:
+    if "--fast" in options:
+        _run_checks(CHECKS)
+    else:
         ensure_browser()
         ensure_graphics()
-        checks = {**CHECKS, **SLOW_CHECKS}
-    for name, command in checks.items():
-        started_s = time.monotonic()
-        _check([BIN / command[0], *command[1:]])
-        _say(f"{name}: {time.monotonic() - started_s:.0f} s")
+        # The type checker and the compiler of the kernels keep one processor busy each.
+        with _beside([BIN / COMPILE_KERNELS[0], *COMPILE_KERNELS[1:]]):
+            _run_checks({**CHECKS, **SLOW_CHECKS})
     return _become([PYTHON, "-m", "pytest", "-n", "2", "-q", *options])
 
 
@@ -150,24 +150,22 @@ def _requirements(project: Path) -> dict[str, Any]:
 
 
 def ensure_browser() -> None:
-    """Find a Chromium for the browser tests; as root on Debian, install one."""
-    if os.environ.get("FLEXCELL_CHROMIUM") or any(shutil.which(name) for name in BROWSERS):
+    """Find a Chromium for the browser tests; as root on Debian, install one, without windows if there is."""
+    if (
+        os.environ.get("FLEXCELL_CHROMIUM")
+        or shutil.which(BROWSERS[0])
+        or _apt_installed(BROWSERS[0], "fonts-dejavu-core")
+    ):
         return
-    if shutil.which("apt-get") and hasattr(os, "geteuid") and os.geteuid() == 0:
-        _apt("chromium", "fonts-dejavu-core")
-        return
-    raise SystemExit(_fail("the browser tests need Chromium: install it, or set FLEXCELL_CHROMIUM to its path"))
+    if not any(map(shutil.which, BROWSERS)) and not _apt_installed("chromium", "fonts-dejavu-core"):
+        raise SystemExit(_fail("the browser tests need Chromium: install it, or set FLEXCELL_CHROMIUM to its path"))
 
 
 def ensure_graphics() -> None:
     """Have depth images rendered in software; as root on Debian, install what is missing. Without it rays do."""
     present = ctypes.util.find_library("EGL") and any(map(_is_there, MESA_DRIVERS))
-    if present or not shutil.which("apt-get") or not hasattr(os, "geteuid") or os.geteuid() != 0:
-        return
-    try:
-        _apt("libegl1", "libegl-mesa0", "libgl1-mesa-dri")
-    except subprocess.CalledProcessError:
-        _say("OpenGL cannot be installed; depth images are made by rays")
+    if not present and not _apt_installed("libegl1", "libegl-mesa0", "libgl1-mesa-dri"):
+        _say("OpenGL is not there; depth images are made by rays")
 
 
 def _is_there(pattern: str) -> bool:
@@ -193,18 +191,23 @@ def _make_venv() -> None:
         return
     if importlib.util.find_spec("ensurepip") is None:
         package = f"python{sys.version_info.major}.{sys.version_info.minor}-venv"
-        if shutil.which("apt-get") and hasattr(os, "geteuid") and os.geteuid() == 0:
-            _apt(package)
-        else:
+        if not _apt_installed(package):
             raise SystemExit(_fail(f"this Python cannot make virtual environments: install {package}"))
     _check([sys.executable, "-m", "venv", VENV])
 
 
-def _apt(*packages: str) -> None:
+def _apt_installed(*packages: str) -> bool:
+    """Install packages as root on Debian; says whether they are there now."""
+    if not shutil.which("apt-get") or not hasattr(os, "geteuid") or os.geteuid() != 0:
+        return False
     _say(f"installing {', '.join(packages)}")
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    for command in (["update", "-qq"], ["install", "-y", "-qq", "--no-install-recommends", *packages]):
-        subprocess.run(["apt-get", *command], check=True, env=environment, stdout=subprocess.DEVNULL)
+    try:
+        for command in (["update", "-qq"], ["install", "-y", "-qq", "--no-install-recommends", *packages]):
+            subprocess.run(["apt-get", *command], check=True, env=environment, stdout=subprocess.DEVNULL)
+    except subprocess.CalledProcessError:
+        return False
+    return True
 
 
 def _fingerprint() -> str:
@@ -215,6 +218,28 @@ def _fingerprint() -> str:
     for path in (PROJECT, ROOT / "hatch_build.py", *map(_lock_file, LOCKED), *sorted(sources)):
         digest.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()
+
+
+def _run_checks(checks: dict[str, list[str]]) -> None:
+    for name, command in checks.items():
+        started_s = time.monotonic()
+        _check([BIN / command[0], *command[1:]])
+        _say(f"{name}: {time.monotonic() - started_s:.0f} s")
+
+
+@contextmanager
+def _beside(command: list[str | Path]) -> Generator[None]:
+    """Run a command beside what is done meanwhile; it must have succeeded in the end."""
+    running = subprocess.Popen(command, cwd=ROOT)
+    try:
+        yield
+        code = running.wait()
+    except BaseException:
+        running.terminate()
+        running.wait()
+        raise
+    if code != 0:
+        raise subprocess.CalledProcessError(code, command)
 
 
 def _check(command: list[str | Path]) -> None:

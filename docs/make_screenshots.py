@@ -28,7 +28,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 ROOT = Path(__file__).parent.parent
 OUT = ROOT / "docs" / "screenshots"
 LOGIN = re.compile(r"http://\S+/login\?t=\S+")
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 LIMIT_MS = 240_000
 Scheme = Literal["light", "dark"]
 DESK, LARGE, PHONE = (1280, 800), (1920, 1080), (390, 844)

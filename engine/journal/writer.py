@@ -119,7 +119,11 @@ class GroupWriter:
 
     def wake(self) -> None:
         """Tell the thread that somebody waits."""
-        self._wake.set()
+        if self._thread is None:
+            self.flush()
+        # What is set already is not yet cleared, and what is queued is looked at after that.
+        elif not self._wake.is_set():
+            self._wake.set()
 
     def wake_soon(self) -> None:
         """Tell the thread, after a while, that something is there; called on an event loop."""

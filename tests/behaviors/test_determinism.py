@@ -14,9 +14,9 @@ from tests.tiers import nightly
 @pytest.mark.parametrize(
     ("name", "cell"),
     [
-        nightly("pick_and_place", "ur10"),
+        ("pick_and_place", "ur10"),
         nightly("plate_transfer", "irb4600"),
-        ("plate_transfer_shared", "irb4600_shared"),
+        nightly("plate_transfer_shared", "irb4600_shared"),
         nightly("test_cylinder", "servo_arm"),
     ],
 )

@@ -13,11 +13,12 @@ import pytest
 from benchmarks import bus, engine
 from benchmarks.comparison import Measured, Result, Row, Table
 from benchmarks.sample import Sample
+from tests.tiers import nightly
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize(("script", "tables"), [("engine.py", engine.TABLES), ("bus.py", bus.TABLES)])
+@pytest.mark.parametrize(("script", "tables"), [nightly("engine.py", engine.TABLES), ("bus.py", bus.TABLES)])
 def test_a_quick_run_prints_every_table_with_every_peer(script: str, tables: Sequence[Table], tmp_path: Path) -> None:
     """Tiny sizes, one process a row; the figures mean nothing and are not looked at."""
     file = tmp_path / "figures.json"

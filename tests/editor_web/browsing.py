@@ -18,7 +18,7 @@ from tests.editor_web.limits import GUARD_S
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 OF_COLOURS = ("color-contrast", "link-in-text-block")
 """The rules of axe-core that look at colours."""
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 Scheme = Literal["light", "dark"]
 SCHEMES: tuple[Scheme, Scheme] = ("light", "dark")
 Size = tuple[int, int]
@@ -30,7 +30,9 @@ def browser_program() -> str:
     """The browser to drive: FLEXCELL_CHROMIUM, else the first one installed."""
     named = os.environ.get("FLEXCELL_CHROMIUM")
     found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
-    assert found, "no Chromium: install the package `chromium`, or set FLEXCELL_CHROMIUM to its program"
+    assert found, (
+        "no Chromium: install `chromium-headless-shell` or `chromium`, or set FLEXCELL_CHROMIUM to its program"
+    )
     return found
 
 

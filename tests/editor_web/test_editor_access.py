@@ -14,6 +14,7 @@ from editor_web.access import VIEWER
 from tests.editor_web.browsing import PHONE, Scheme, require_accessible, require_fit
 from tests.editor_web.editing import at_editor, card, file_text, idle
 from tests.editor_web.workshop import SHIFT_ID, Workshop
+from tests.tiers import nightly
 
 EDITOR_LIMIT_BYTES = 250_000
 
@@ -44,7 +45,7 @@ def test_axe_finds_nothing_in_any_part_of_the_editor(browser: Browser, shop: Wor
         require_accessible(page, "keys", part="dialog")
 
 
-@pytest.mark.parametrize(("width", "height"), [(1280, 800), (1920, 1080), PHONE])
+@pytest.mark.parametrize(("width", "height"), [nightly(1280, 800), (1920, 1080), PHONE])
 def test_it_fits_the_screen(browser: Browser, shop: Workshop, width: int, height: int) -> None:
     """Nothing to scroll sideways; save and run in view."""
     with at_editor(browser, shop, SHIFT_ID, size=(width, height)) as page:

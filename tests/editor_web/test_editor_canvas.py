@@ -8,6 +8,7 @@ from playwright.sync_api import Browser, Page, expect
 from engine.document import Behavior, load_behavior
 from tests.editor_web.editing import at_editor, card, drag, file_text, idle, pill, port, save
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
+from tests.tiers import nightly
 
 TREE_ID = "behaviors/tries.yaml"
 TREE = """
@@ -387,7 +388,7 @@ WATCH = f"""() => {{
 }}"""
 
 
-@pytest.mark.parametrize("keys", [("-", "f"), ("Control+d",), ("Enter",)])
+@pytest.mark.parametrize("keys", [("-", "f"), nightly(("Control+d",)), nightly(("Enter",))])
 def test_the_canvas_is_busy_until_all_that_is_on_it_rests(
     browser: Browser, shop: Workshop, keys: tuple[str, ...]
 ) -> None:

@@ -22,6 +22,7 @@ from tests.editor_web.teach_site import CELL, TeachSite
 from tests.editor_web.viser_page import ViserPage, served_view
 from tests.editor_web.workshop import NAP_ID, Workshop
 from tests.robots.panda_arm import home
+from tests.tiers import nightly
 
 LAPTOP: Size = (1280, 800)
 HOME = tuple(home().tolist())
@@ -282,7 +283,7 @@ def test_what_no_page_calls_itself_is_refused(site: TeachSite, name: str) -> Non
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [LAPTOP, PHONE], ids=["laptop", "phone"])
+@pytest.mark.parametrize("size", [nightly(LAPTOP), PHONE], ids=["laptop", "phone"])
 def test_the_preview_is_accessible(browser: Browser, site: TeachSite, scheme: Scheme, size: Size) -> None:
     """Beside the form; on a phone as a sheet as wide as the screen, which Escape closes."""
     with editing(browser, site, "turn", scheme=scheme, size=size) as page:

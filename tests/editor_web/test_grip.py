@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import AsyncGenerator, Callable, Generator
 from contextlib import asynccontextmanager
+from itertools import count
 from typing import Any
 
 import pytest
@@ -23,7 +24,8 @@ from tests.editor_web.limits import GUARD_S
 from tests.editor_web.teach_site import TeachSite
 from tests.editor_web.viser_page import VISER, ViserPage
 
-PAGE = "grip1"
+PAGES = count(1)
+"""A page of its own for each hand: the handle of the one before may not have gone yet."""
 HANDLE = "/handle"
 RESTS_RAD_S = 0.01
 REST_S = 0.6
@@ -40,8 +42,8 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
 class Hand:
     """A page with its 3D view and its grip, and the mouse on it."""
 
-    def __init__(self, site: TeachSite, view: ViserPage, grip: Socket) -> None:
-        self.site, self.view, self.grip = site, view, grip
+    def __init__(self, site: TeachSite, page: str, view: ViserPage, grip: Socket) -> None:
+        self.site, self.page, self.view, self.grip = site, page, view, grip
         self._holding: asyncio.Task[None] | None = None
 
     async def say(self, **message: object) -> None:
@@ -137,13 +139,14 @@ async def hand_at(site: TeachSite) -> AsyncGenerator[Hand]:
     """A page that looks at the arm, which stands at home."""
     await asyncio.to_thread(lambda: site.call(site.let_go()))
     await asyncio.to_thread(lambda: site.call(site.go_home()))
+    page = f"grip{next(PAGES)}"
     async with (
-        connect(site, f"/cell/{PAGE}/", subprotocols=[VISER]) as socket,
-        connect(site, f"/api/v1/cell/grip/{PAGE}") as grip,
+        connect(site, f"/cell/{page}/", subprotocols=[VISER]) as socket,
+        connect(site, f"/api/v1/cell/grip/{page}") as grip,
     ):
         view = ViserPage(socket=socket)
         await view.send_camera()
-        hand = Hand(site, view, grip)
+        hand = Hand(site, page, view, grip)
         yield hand
         await hand.fall_silent()
 
@@ -315,9 +318,12 @@ async def test_an_arm_that_there_is_not_has_no_handle(site: TeachSite) -> None:
 
 async def test_a_viewer_has_no_handle_not_even_under_the_name_of_an_operators_page(site: TeachSite) -> None:
     with pytest.raises((InvalidStatus, ConnectionClosed)):
-        async with connect(site, f"/api/v1/cell/grip/{PAGE}", role=VIEWER) as socket:
+        async with connect(site, f"/api/v1/cell/grip/grip{next(PAGES)}", role=VIEWER) as socket:
             await socket.recv()
-    async with hand_at(site) as hand, connect(site, f"/cell/{PAGE}/", role=VIEWER, subprotocols=[VISER]) as other:
+    async with (
+        hand_at(site) as hand,
+        connect(site, f"/cell/{hand.page}/", role=VIEWER, subprotocols=[VISER]) as other,
+    ):
         viewer = ViserPage(socket=other)
         await viewer.send_camera()
         await hand.take()
@@ -328,7 +334,7 @@ async def test_a_viewer_has_no_handle_not_even_under_the_name_of_an_operators_pa
 
 @pytest.mark.parametrize("message", ["", "[]", '{"k": "take", "arm": 3}', '{"k": "take", "arm": "left", "way": "fly"}'])
 async def test_what_is_no_message_ends_the_connection(site: TeachSite, message: str) -> None:
-    async with connect(site, f"/api/v1/cell/grip/{PAGE}") as grip:
+    async with connect(site, f"/api/v1/cell/grip/grip{next(PAGES)}") as grip:
         await grip.send(message)
         with pytest.raises(ConnectionClosed):
             await grip.recv()

@@ -13,6 +13,7 @@ from tests.editor_web.browsing import DESK, Scheme, Size, opened_page, require_a
 from tests.editor_web.fake_behaviors import BROKEN, SINGLE, TRANSFER
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.site import Site
+from tests.tiers import nightly
 
 # Longer than any test: what is active stays so.
 LASTING_S = 3600.0
@@ -187,7 +188,7 @@ def test_every_light_and_dark_page_is_accessible(visit: Visit, site: Site) -> No
             require_accessible(page, f"login, {scheme}")
 
 
-@pytest.mark.parametrize(("width", "height"), [(390, 844), (820, 1180), (1366, 768), (3840, 2160)])
+@pytest.mark.parametrize(("width", "height"), [(390, 844), nightly(820, 1180), nightly(1366, 768), (3840, 2160)])
 def test_it_fits_every_screen(visit: Visit, width: int, height: int) -> None:
     """Nothing to scroll sideways, the start button in view, the graph drawn large enough to see."""
     with visit(address(TRANSFER.id), size=(width, height)) as page:

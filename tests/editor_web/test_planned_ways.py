@@ -30,6 +30,7 @@ from tests.editor_web.browsing import (
 from tests.editor_web.fake_planner import CONFIRMED, CONFIRMED_ID, FakePlanner, Plan
 from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.workshop import Workshop
+from tests.tiers import nightly
 
 ASKED = Supervision(autonomy="low", demand_operator=True)
 GREEN, VIOLET, TABLE = (22, 163, 74), (68, 1, 84), (228, 224, 223)
@@ -166,7 +167,7 @@ def test_what_the_view_shows_is_chosen_by_keyboard_and_kept(browser: Browser, tm
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [DESK, PHONE])
+@pytest.mark.parametrize("size", [DESK, nightly(PHONE)])
 def test_questions_blocked_ways_and_the_menu_are_accessible_and_fit(
     browser: Browser, tmp_path: Path, loopback: str, size: Size, scheme: Scheme
 ) -> None:

@@ -13,6 +13,7 @@ from engine.event import Commanded, GateReached, OperatorChanged
 from engine.supervision import Supervision
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit, switch, until
 from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
+from tests.tiers import nightly
 
 LAPTOP: Size = (1280, 800)
 
@@ -262,7 +263,7 @@ def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> No
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+@pytest.mark.parametrize("size", [nightly(LAPTOP), PHONE])
 def test_an_operated_run_is_accessible_and_fits(browser: Browser, shop: Workshop, size: Size, scheme: Scheme) -> None:
     """With everything open that can be; nothing to scroll sideways."""
     run = shop.start(supervision=Supervision(autonomy="off", demand_operator=True))

@@ -20,6 +20,7 @@ from tests.editor_web.real_server import dashboard_of
 from tests.editor_web.stop_process import StopProcess, stop_button, stop_news, tell_of_stop
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
 from tests.engine.cli.process import started
+from tests.tiers import nightly
 
 KEY = "Control+Shift+Backspace"
 
@@ -135,7 +136,9 @@ def test_stop_by_the_engine_alone_ends_every_run(browser: Browser, shop: Worksho
     ]
 
 
-@pytest.mark.parametrize("address", ["/", "/runs", "/past", "/teach", f"/behaviors/{SHIFT_ID}", f"/edit/{SHIFT_ID}"])
+@pytest.mark.parametrize(
+    "address", ["/", "/teach", f"/edit/{SHIFT_ID}", *map(nightly, ("/runs", "/past", f"/behaviors/{SHIFT_ID}"))]
+)
 def test_stop_stands_on_every_page_of_an_operator(browser: Browser, shop: Workshop, address: str) -> None:
     """It is what a click at its place hits, on a small screen too."""
     for size in ((1366, 768), PHONE):

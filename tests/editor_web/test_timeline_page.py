@@ -17,6 +17,7 @@ from engine.event import Event, Exited
 from tests.editor_web.browsing import DESK, PHONE, Scheme, Size, opened_page, require_accessible
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
 from tests.engine.replay.bench import record_run
+from tests.tiers import nightly
 
 SORT_ID = "behaviors/sort.yaml"
 SORT = """
@@ -285,7 +286,7 @@ def test_a_run_that_nobody_knows_is_said_to_be_none(browser: Browser, shop: Work
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [DESK, PHONE])
+@pytest.mark.parametrize("size", [DESK, nightly(PHONE)])
 def test_everything_is_accessible(
     browser: Browser, sorted_shop: tuple[Workshop, str], scheme: Scheme, size: Size
 ) -> None:

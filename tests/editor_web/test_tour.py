@@ -10,6 +10,7 @@ from engine.document import load_behavior
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit
 from tests.editor_web.editing import LAPTOP, card, drag, idle, pill, port
 from tests.editor_web.workshop import Workshop
+from tests.tiers import nightly
 
 MADE = "behaviors/first_steps.yaml"
 
@@ -49,6 +50,7 @@ def require_two_states(shop: Workshop) -> None:
     ]
 
 
+@pytest.mark.nightly
 def test_the_whole_tour_by_mouse(browser: Browser, shop: Workshop) -> None:
     """Each step waits for what is really done; nobody is asked to press Next."""
     with opened_page(browser, shop.running, size=LAPTOP) as page:
@@ -186,7 +188,7 @@ def test_a_viewer_is_not_invited_to_what_he_may_not_do(browser: Browser, shop: W
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+@pytest.mark.parametrize("size", [nightly(LAPTOP), PHONE])
 def test_the_tour_is_accessible_and_fits(browser: Browser, shop: Workshop, size: Size, scheme: Scheme) -> None:
     """Invitation, card, card in a dialog; on a phone it begins at the menu."""
     with opened_page(browser, shop.running, size=size, scheme=scheme) as page:

@@ -27,7 +27,7 @@ def trials(folder: Path, subject: str, *options: str) -> list[Trial]:
     return msgspec.json.decode(file.read_bytes(), type=dict[str, list[Trial]])[subject]
 
 
-@pytest.mark.parametrize("every_th", [4, nightly(1)])
+@pytest.mark.parametrize("every_th", [8, nightly(1)])
 def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path, every_th: int) -> None:
     """Nothing is left out; what was in mid-work, in two branches at most, may have happened twice."""
     made = trials(tmp_path, "press", "--every", str(every_th))
@@ -37,7 +37,7 @@ def test_work_that_may_be_done_again_ends_the_same(tmp_path: Path, every_th: int
     assert max(len(trial.effects) for trial in made) <= len(every) + 2
 
 
-@pytest.mark.parametrize("every_th", [3, nightly(1)])
+@pytest.mark.parametrize("every_th", [5, nightly(1)])
 def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(tmp_path: Path, every_th: int) -> None:
     """States that ask have their effect exactly once; those that take an outcome at most once."""
     made = trials(tmp_path, "glue", "--every", str(every_th))
@@ -48,14 +48,15 @@ def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(
 
 
 @pytest.mark.parametrize("every_th", [20, nightly(7)])
-@pytest.mark.parametrize("subject", ["press", "glue"])
+@pytest.mark.parametrize("subject", [nightly("press"), "glue"])
 def test_crashes_in_a_row_while_it_is_resumed_change_nothing(tmp_path: Path, subject: str, every_th: int) -> None:
     """The next engine dies at its first event, then one at its fourth, then one at its ninth."""
     made = trials(tmp_path, subject, "--every", str(every_th), "--again", "1", "4", "9")
     assert max(trial.engines for trial in made) == 5
 
 
-@pytest.mark.parametrize("every_th", [150, nightly(61)])
+@pytest.mark.nightly
+@pytest.mark.parametrize("every_th", [61])
 def test_the_two_arm_transfer_in_physics_is_resumed_with_its_parts_in_the_grippers(
     tmp_path: Path, every_th: int
 ) -> None:

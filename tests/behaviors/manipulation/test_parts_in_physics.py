@@ -107,7 +107,7 @@ def told(ran: Ran) -> tuple[str | None, str]:
 @pytest.mark.parametrize(
     ("cell", "steps", "seed"),
     [
-        pytest.param("dual_panda", PANDA_HAND, None, id="panda_hand"),
+        pytest.param("dual_panda", PANDA_HAND, None, id="panda_hand", marks=pytest.mark.nightly),
         pytest.param("ur10", ROBOTIQ, 3, id="robotiq_2f85-3"),
         pytest.param("dual_panda", PANDA_HAND, 3, id="panda_hand-3", marks=pytest.mark.nightly),
         pytest.param("ur10", ROBOTIQ, None, id="robotiq_2f85", marks=pytest.mark.nightly),

@@ -32,7 +32,12 @@ def went(ran: Ran) -> int:
     [
         pytest.param("[0.11, -0.28, 0.0275]", "hca_south", id="where another part is"),
         pytest.param("[0.065, -0.28, 0.0275]", "hca_south", id="15 mm into another part, between which no finger is"),
-        pytest.param("[0.052, -0.28, 0.0275]", "hca_south", id="2 mm into the side of another part, all the way down"),
+        pytest.param(
+            "[0.052, -0.28, 0.0275]",
+            "hca_south",
+            id="2 mm into the side of another part, all the way down",
+            marks=pytest.mark.nightly,
+        ),
         pytest.param("[-0.11, -0.28, 0.011]", "tray_south", id="15 mm into the floor of the tray"),
     ],
 )

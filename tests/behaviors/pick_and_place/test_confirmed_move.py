@@ -16,6 +16,7 @@ from engine.skills.planning import PathPreview
 from engine.supervision import Supervision
 from tests.behaviors.application import BEHAVIORS, Application, causes, shipped_cell
 from tests.engine.cli.command import FLEXCELL
+from tests.tiers import nightly
 
 BEHAVIOR = "pick_and_place/confirmed_move.yaml"
 PLAN = "root/plan"
@@ -84,7 +85,7 @@ def test_without_an_operator_the_way_is_gone_at_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("lines", "outcome"), [("wait\nanswer\nwait\n", "reached"), ("wait\nforce root/plan no_way\n", "refused")]
+    ("lines", "outcome"), [("wait\nanswer\nwait\n", "reached"), nightly("wait\nforce root/plan no_way\n", "refused")]
 )
 def test_an_operator_on_the_terminal_agrees_or_refuses(tmp_path: Path, lines: str, outcome: str) -> None:
     """As a script on standard input, the way the guide shows it."""

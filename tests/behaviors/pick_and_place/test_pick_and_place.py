@@ -23,7 +23,7 @@ PLACE_M = (-0.2, 0.98, 0.05)
 REST_RAD_S = 0.02
 
 
-@pytest.mark.parametrize("seed", [None, 0, *map(nightly, (1, 2, 3, 4))])
+@pytest.mark.parametrize("seed", [0, *map(nightly, (None, 1, 2, 3, 4))])
 def test_the_payload_stands_at_the_place_pose_wherever_it_stood_within_its_jitter(
     tmp_path: Path, seed: int | None
 ) -> None:
@@ -84,7 +84,7 @@ def test_a_place_pose_that_is_taught_anew_moves_the_payload_there(tmp_path: Path
     assert "part payload does not lie at its region" in causes(result)
 
 
-@pytest.mark.parametrize("path", ["root/approach_place", "root/place/down"])
+@pytest.mark.parametrize("path", ["root/approach_place", nightly("root/place/down")])
 def test_stopped_in_mid_motion_the_arm_rests_and_keeps_the_payload(tmp_path: Path, path: str) -> None:
     stopped = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), meanwhile=stop_in(path))
     result = stopped.run(tmp_path)

@@ -9,13 +9,14 @@ import pytest
 
 from engine.event import Exited
 from tests.behaviors.application import Application, causes, shipped_cell
+from tests.tiers import nightly
 
 BEHAVIOR = "pick_and_place/start_wait_free.yaml"
 WAIT_RAD = (-1.1, -1.4915, 1.8008, -1.8801, -1.5708, -1.1)
 START_RAD = (-2.0762, -1.4915, 1.8008, -1.8801, -1.5708, -2.0762)
 
 
-@pytest.mark.parametrize("planner", ["fast", "RRTConnect"])
+@pytest.mark.parametrize("planner", ["fast", nightly("RRTConnect")])
 def test_it_goes_there_and_back_around_the_box(tmp_path: Path, planner: str) -> None:
     """Straight from joints to joints the tool would cut through it, as the next test shows."""
     done = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), parameters={"rounds": 2, "planner": planner})

@@ -104,6 +104,7 @@ def test_a_hand_that_stays_over_the_place_is_waited_for_and_then_named(tmp_path:
     assert contacts.number == 0
 
 
+@pytest.mark.nightly
 def test_a_hand_that_is_there_before_the_way_is_looked_for_is_waited_for_as_well(tmp_path: Path) -> None:
     """Over the left pedestal for some seconds from the start: at first there is no way to there."""
     contacts = Contacts()

@@ -16,6 +16,7 @@ from engine.store.kinds import Pose, read_as
 from engine.teaching.proposal import proposed
 from engine.teaching.roles import Taught
 from tests.behaviors.application import BEHAVIORS, Application, causes, changed_cell, shipped_cell
+from tests.tiers import nightly
 
 ENTRIES = {(record.kind, record.name): record for record in load_entries(BEHAVIORS / "entries" / "ur10.yaml").records()}
 PLACE_M = (-0.2, 0.98, 0.05)
@@ -50,7 +51,9 @@ def written(folder: Path, steps: list[Taught]) -> str:
     return str(file)
 
 
-@pytest.mark.parametrize("steps", [SHORT, WITH_APPROACHES], ids=["approaches by the tool's axis", "taught approaches"])
+@pytest.mark.parametrize(
+    "steps", [nightly(SHORT), WITH_APPROACHES], ids=["approaches by the tool's axis", "taught approaches"]
+)
 def test_the_payload_is_where_it_was_shown(steps: list[Taught], tmp_path: Path) -> None:
     """The check finds nothing, the run ends well, and the part stands at the place."""
     file = written(tmp_path, steps)
@@ -61,6 +64,7 @@ def test_the_payload_is_where_it_was_shown(steps: list[Taught], tmp_path: Path) 
     assert math.dist(done.last("payload").xyz, PLACE_M) < 0.01
 
 
+@pytest.mark.nightly
 def test_an_entry_that_is_taught_anew_moves_the_same_behavior_elsewhere(tmp_path: Path) -> None:
     """The document has names, no numbers."""
     cell = changed_cell(

@@ -43,6 +43,7 @@ def ran(cell: Cell, store: Path | None = None) -> Transfer:
     return transfer
 
 
+@pytest.mark.nightly
 def test_the_run_is_the_same_with_either_store(server: Mongod, tmp_path: Path) -> None:
     """Byte for byte, in virtual time."""
     with_file = ran(cell_as_it_is(), tmp_path / "store.db")

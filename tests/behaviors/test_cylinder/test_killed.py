@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[3]
 BEHAVIOR = "behaviors/test_cylinder/test_cylinder.yaml"
 
 
+@pytest.mark.nightly
 def test_it_ends_with_the_cylinder_in_its_rack_wherever_it_is_killed(tmp_path: Path) -> None:
     """Judged by the behavior, which looks where the cylinder stands; what had ended is not done again."""
     file = tmp_path / "trials.json"

@@ -23,7 +23,7 @@ UNDEFINED = {"undefined-key", "undeclared-name"}
 MAYBE = {"maybe-undefined-key"}
 SEEDS = range(3)
 SETTINGS = settings(
-    max_examples=150,
+    max_examples=60,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )

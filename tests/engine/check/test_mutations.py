@@ -90,7 +90,7 @@ def changed(document: Any, path: tuple[str | int, ...], how: str, value: object)
 
 
 @settings(
-    max_examples=300,
+    max_examples=100,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.large_base_example],
 )

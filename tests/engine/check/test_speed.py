@@ -10,6 +10,7 @@ import pytest
 from engine.check import check_behavior
 from engine.document import parse_behavior
 from engine.registry import load_states
+from tests.tiers import nightly
 
 CATALOGUE = load_states()
 HEAD = "flexcell: 1\nname: large\noutcomes: [done, failed]\nsuccess: [done]\nuserdata: {n: 0}\n"
@@ -61,7 +62,8 @@ def wide(size: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("make", "size"), [(chain_with_data, 10_000), (ring_of_copies, 3000), (jumps, 3000), (wide, 1500)]
+    ("make", "size"),
+    [(chain_with_data, 3000), nightly(chain_with_data, 10_000), (ring_of_copies, 3000), (jumps, 3000), (wide, 1500)],
 )
 def test_a_large_behavior_is_checked_within_seconds(make: Callable[[int], str], size: int) -> None:
     """Generous: what takes seconds here took minutes when it grew with the square of the size."""

@@ -251,7 +251,7 @@ def test_the_log_of_another_version_is_refused() -> None:
         covered(behavior_of(MACHINE)).add(events_of(other))
 
 
-@settings(deadline=None, max_examples=100, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(cases(), STOPS)
 def test_nothing_that_happens_is_missed(case: Case, stop_at_s: float) -> None:
     """In any behavior: every entry, transition and diversion counts once, and every decision has its condition."""

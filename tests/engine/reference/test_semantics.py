@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
@@ -13,16 +14,30 @@ from tests.engine.reference.interpreter import Interpreter, TooLong
 from tests.engine.reference.random_behaviors import STOPS, Case, cases
 
 COMPARING = settings(
-    max_examples=200,
+    max_examples=80,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much],
 )
 
 
 @given(cases(), STOPS)
-@COMPARING
+@settings(COMPARING, max_examples=300)
 def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -> None:
     """Status, outcome, userdata, and every activation with its times."""
+    compare(case, stop_at_s)
+
+
+@pytest.mark.nightly
+@pytest.mark.timeout(3600)
+@given(cases(), STOPS)
+@settings(COMPARING, max_examples=10_000)
+def test_the_engine_does_what_the_reference_does_ten_thousand_times(case: Case, stop_at_s: float) -> None:
+    """As above."""
+    compare(case, stop_at_s)
+
+
+def compare(case: Case, stop_at_s: float) -> None:
+    """Let both run it."""
     reference = Interpreter(case.behavior)
     try:
         status, outcome, userdata = reference.run(stop_at_s)

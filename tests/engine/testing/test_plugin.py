@@ -14,6 +14,7 @@ import pytest
 from engine.clock import run_virtual
 from tests.engine.cli.command import flexcell
 from tests.engine.replay.bench import record_run
+from tests.tiers import nightly
 
 WAIT = """flexcell: 1
 name: wait
@@ -70,7 +71,9 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("parallel", [(), ("-n", "2"), ("-p", "no:randomly")], ids=["plain", "xdist", "in order"])
+@pytest.mark.parametrize(
+    "parallel", [(), nightly(("-n", "2")), nightly(("-p", "no:randomly"))], ids=["plain", "xdist", "in order"]
+)
 def test_each_recording_is_a_test(project: Path, parallel: tuple[str, ...]) -> None:
     tested = run_pytest(project, "-rA", *parallel)
     assert tested.code == 1
@@ -118,6 +121,7 @@ def test_without_recordings_it_does_nothing(project: Path) -> None:
 
 FIXTURES = """
 import sys
+from tests.tiers import nightly
 
 def test_a_behavior(flexcell_run):
     ran = flexcell_run("wait.yaml", parameters={"pause": 3600})

@@ -89,7 +89,7 @@ def _told(events: Sequence[Event], since_s: float, shift_s: float) -> list[str]:
 
 
 @given(specimen=trees(durations=[0.5, 1.0, 2.0, 0.0], polling=False), data=st.data())
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
 def test_a_tree_goes_on_as_if_it_had_not_been_cut(specimen: Specimen, data: st.DataObject) -> None:
     """At any moment between two instants: the same leaves at the same times, the same statuses, the same end."""
     plan = tree_plan(json.dumps(specimen.document()))

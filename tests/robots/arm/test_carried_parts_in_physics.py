@@ -25,6 +25,7 @@ from engine.skills.planning_scene import AllowContact, AttachPart, DetachPart, P
 from tests.robots.arm.every_skill import cart_dmp, joint_dmp
 from tests.robots.sim.demo_cell import ABOVE_PICK, DOWN, LIFT, PICK, joint_state, opened_cell, pick
 from tests.robots.workspace.free_cell import box
+from tests.tiers import nightly
 
 PART = "hca_north"
 ENDED = tuple[GoalStatus, str]
@@ -102,7 +103,7 @@ async def _cart_primitive(opened: Carrying) -> Action[Any, Any]:
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("make", [_joint_trap, _cart_trap, _line, _joint_primitive, _cart_primitive])
+@pytest.mark.parametrize("make", [_joint_trap, _line, _cart_primitive, *map(nightly, (_cart_trap, _joint_primitive))])
 async def test_a_motion_that_would_push_the_part_into_something_is_refused_with_both_names(
     tmp_path: Path, make: Callable[[Carrying], Any]
 ) -> None:

@@ -10,6 +10,7 @@ from engine.skills.arm_control import ControllerName, SetController
 from engine.skills.contact import MoveUntilContact
 from engine.skills.motion import CartTrapVel
 from tests.robots.arm.simulated import HOME, simulated
+from tests.tiers import nightly
 
 ABOVE = CartTrapVel(pose=Pose(xyz=(-0.1, 0.1, 0.02), xyzw=(1.0, 0.0, 0.0, 0.0)), speed=0.5)
 # The pads end so far before the tool centre point (robots/tools/panda_hand/tool.yaml and the hand's URDF).
@@ -18,7 +19,7 @@ TIP_M = 0.0584 + 0.04525 + 0.0185 / 2 - 0.1034
 
 @pytest.mark.virtual
 @pytest.mark.parametrize("law", ["joint_impedance", "cartesian_impedance"])
-@pytest.mark.parametrize(("speed_m_s", "peak_n"), [(0.005, 15.0), (0.02, 60.0)])
+@pytest.mark.parametrize(("speed_m_s", "peak_n"), [nightly(0.005, 15.0), (0.02, 60.0)])
 async def test_the_table_is_found_within_two_millimetres_and_the_arm_rests_pressing_no_harder_than_asked_for(
     speed_m_s: float, peak_n: float, law: ControllerName
 ) -> None:

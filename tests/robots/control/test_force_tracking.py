@@ -16,6 +16,7 @@ from tests.robots.control.limit_watch import STEP_S, LimitWatch, limits
 from tests.robots.control.plane_arm import plane_state
 from tests.robots.control.spring_wall import Bench, Wall
 from tests.robots.panda_arm import home, panda_kinematics
+from tests.tiers import nightly
 
 FORCE_N = 10.0
 LEFT_M, RIGHT_M, WALL_M = 0.3, 0.6, 0.5
@@ -87,7 +88,8 @@ def test_along_a_straight_wall_the_force_is_steady_within_a_tenth_of_a_newton(st
 
 
 @pytest.mark.parametrize(
-    ("stiffness_n_m", "delay"), [(1000.0, 20), (5000.0, 20), (10000.0, 20), (20000.0, 15), (40000.0, 5)]
+    ("stiffness_n_m", "delay"),
+    [(1000.0, 20), nightly(5000.0, 20), nightly(10000.0, 20), nightly(20000.0, 15), (40000.0, 5)],
 )
 def test_default_gains_are_stable_on_soft_and_stiff_surfaces_for_an_arm_that_lags(
     stiffness_n_m: float, delay: int

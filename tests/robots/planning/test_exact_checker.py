@@ -155,7 +155,7 @@ def _cell(model: str, *, x: float, gripper: str | None = "own", other: bool = Fa
     "cell",
     [
         pytest.param(_cell("panda", x=-0.55, other=True), id="two pandas"),
-        pytest.param(_cell("ur10", x=-0.6, gripper="robotiq_2f85"), id="ur10"),
+        pytest.param(_cell("ur10", x=-0.6, gripper="robotiq_2f85"), id="ur10", marks=pytest.mark.nightly),
         pytest.param(_cell("irb4600", x=-1.2, gripper="magnet"), id="irb4600"),
     ],
 )

@@ -20,8 +20,11 @@ from robots.planning.planner_names import OMPL_PLANNERS, PLANNERS
 from robots.planning.request import JointGoal, KeepOrientation, Plan, PlanAnswer, PlanRequest, PoseGoal, Refusal
 from robots.planning.scene import AttachedPart
 from robots.port import Array
+from tests.tiers import nightly
 
 PLANNER = ScenePlanner(check_s=2e-5)
+# They take seconds, as RRTstar does.
+SLOW = ("RRT", "InformedRRTstar")
 CASES = {case.title: case.request for case in cases()}
 IRB_BOX, SHELF = CASES["IRB4600, one box"], CASES["Panda, table and shelf"]
 HOME = robot_model("panda").home_rad
@@ -58,7 +61,7 @@ def test_where_nothing_is_in_the_way_the_way_is_the_straight_line() -> None:
     assert len(way(answer)) == 2
 
 
-@pytest.mark.parametrize("planner", ["stomp", *OMPL_PLANNERS])
+@pytest.mark.parametrize("planner", ["stomp", *(nightly(name) if name in SLOW else name for name in OMPL_PLANNERS)])
 def test_every_planner_finds_a_confirmed_way_around_a_box(planner: str) -> None:
     confirm(IRB_BOX, way(plan(IRB_BOX, planner=planner, time_s=30.0)))
 

@@ -11,6 +11,7 @@ from robots.port import MotionEnd, Tolerance
 from robots.sim.motion_board import SimMotion
 from robots.sim.world import SimWorld
 from tests.robots.sim.sim_cell import HOME, both_hosts_nightly, one_arm, opened, smooth, unhurried, until
+from tests.tiers import nightly
 
 GOAL = HOME + np.array([0.6, 0.3, -0.3, 0.3, 0.2, -0.2, 0.4])
 DURATION_S = 1.2
@@ -153,7 +154,7 @@ async def test_a_cancel_during_a_hold_ends_the_motion_at_rest(host: str, when: s
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("early_ms", [150, 60, 20, 5, 2, 1, 0, -1, -5, -10, -19, -20, -21, -30])
+@pytest.mark.parametrize("early_ms", [60, 5, 0, -10, -20, -30, *map(nightly, (150, 20, 2, 1, -1, -5, -19, -21))])
 async def test_a_hold_just_before_the_natural_end_is_safe(early_ms: int) -> None:
     """While it brakes by itself, settles, or is about to report; both answers come, and the end."""
     async with opened(one_arm()) as world:
@@ -210,7 +211,7 @@ async def test_fingers_cancelled_while_they_are_held_stay_there() -> None:
 
 
 @pytest.mark.virtual
-@pytest.mark.parametrize("early_ms", [50, 10, 1, 0, -10, -30, -50, -60, -61, -70])
+@pytest.mark.parametrize("early_ms", [10, 0, -50, -61, *map(nightly, (50, 1, -10, -30, -60, -70))])
 async def test_fingers_held_just_before_their_end_arrive_when_they_are_resumed(early_ms: int) -> None:
     async with opened(one_arm()) as world:
         gripper = world.gripper("left")

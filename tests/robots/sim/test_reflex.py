@@ -11,7 +11,17 @@ import pytest
 from engine.errors import RobotError
 from robots.port import ArmPort, ArmSettings, MotionEnd, Tolerance
 from robots.sim.world import SimWorld
-from tests.robots.sim.sim_cell import ABOVE_PART, HOME, both_hosts, move, one_arm, opened, smooth, until
+from tests.robots.sim.sim_cell import (
+    ABOVE_PART,
+    HOME,
+    both_hosts,
+    both_hosts_nightly,
+    move,
+    one_arm,
+    opened,
+    smooth,
+    until,
+)
 
 TORQUE = ArmSettings(collision_torque_nm=(15.0,) * 7)
 FORCE = ArmSettings(collision_force_n=20.0)
@@ -65,7 +75,7 @@ async def test_it_presses_less_and_shorter_than_without_a_reflex() -> None:
     assert await pressed(FORCE) < 0.35 * await pressed(ArmSettings())
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = await tripped(world, push_s=100.0)
@@ -79,7 +89,7 @@ async def test_a_push_trips_an_arm_that_does_not_move_and_it_gives_way(host: str
         assert np.abs(arm.sample().position_rad - HOME).max() < 0.01
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_nothing_starts_before_it_is_told_to_recover(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = await tripped(world)

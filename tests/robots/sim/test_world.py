@@ -18,6 +18,7 @@ from tests.robots.sim.sim_cell import (
     HOME,
     PANDA,
     both_hosts,
+    both_hosts_nightly,
     move,
     one_arm,
     opened,
@@ -62,7 +63,7 @@ async def test_two_arms_move_at_the_same_time_in_real_time_as_well() -> None:
         assert [(await motion.report()).end for motion in motions] == [MotionEnd.CANCELED] * 2
 
 
-@both_hosts
+@both_hosts_nightly
 async def test_a_cancelled_motion_ends_at_rest_on_its_path_and_the_next_is_accepted_at_once(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
