@@ -79,6 +79,7 @@ class Execution:
         """Let everybody else on the loop have a turn; due by count, never by the clock, so that runs repeat."""
         self.steps = 0.0
         await asyncio.sleep(0)
+        await self.recorder.keep_up()
 
     def visit(self, path: str) -> int:
         """Count an activation of `path` and return which one it is, from 1."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -122,7 +121,7 @@ class ForEach:
             if not goes_on:
                 return Outcome(BROKEN, cause=explain(loop.child, left))
             if number % _FAIRNESS == 0:
-                await asyncio.sleep(0)
+                await execution.give_way()
         nothing = Cause(message="there was nothing to go through", where=path)
         return ContainerOutcome(EXHAUSTED, reason=diagnosis.reason if len(items) else nothing)
 

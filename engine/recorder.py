@@ -77,6 +77,14 @@ class Recorder:
         """Call `listener` when what was recorded cannot be made durable and no commit waits to be told."""
         self._journal.on_failure(listener)
 
+    async def keep_up(self) -> None:
+        """Let the journal write where it has fallen far behind; due now and then while events come without a wait.
+
+        Raises:
+            JournalError: it cannot be written; the run must stop.
+        """
+        await self._journal.keep_up()
+
     def keep_world(self, state: bytes) -> None:
         """Keep the simulated world as it is now with the next commit."""
         self._journal.keep_world(state)

@@ -14,7 +14,7 @@ from engine.journal.batch import WorldState
 from engine.journal.database import JournalDatabase, journal_fault
 from engine.journal.port import RunOrigin
 from engine.journal.presence import Presence
-from engine.journal.writer import WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
+from engine.journal.writer import MOST_WAITING, WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
 
 JOURNAL_FILE = "journal.db"
 
@@ -54,6 +54,11 @@ class SqliteRunJournal:
             self._writer.wake_soon()
         elif waiting >= WAKE_AT_EVENTS:
             self._writer.wake()
+
+    async def keep_up(self) -> None:
+        """Return at once, unless so much waits that it would fill the memory."""
+        if len(self._queue) > MOST_WAITING:
+            await self.commit()
 
     def keep_world(self, state: bytes) -> None:
         """Take the state of the simulated world; the next commit stores it together with the events so far."""
@@ -105,8 +110,8 @@ class Journal:
 
         Args:
             place: The directory or file.
-            inline: Write on the calling thread inside `commit`, so that a run in virtual time
-                stays deterministic; otherwise one writer thread commits for all runs together.
+            inline: Write on the calling thread inside `commit`, and whenever much has gathered, so that a run in
+                virtual time stays deterministic; otherwise one writer thread commits for all runs together.
             busy_timeout_s: How long to wait for another process that holds the file locked.
 
         Raises:

@@ -20,6 +20,9 @@ class NullRunJournal:
     def append(self, event: Event) -> None:
         """Forget the event."""
 
+    async def keep_up(self) -> None:
+        """Return at once."""
+
     def keep_world(self, state: bytes) -> None:
         """Forget it."""
 

@@ -75,10 +75,18 @@ class RunJournal(Protocol):
         ...
 
     def append(self, event: Event) -> None:
-        """Take an event; it is on the disk after the next commit, or sooner. Never fails, never waits.
+        """Take an event; it is on the disk after the next commit, or sooner. Never fails, waits for no other thread.
 
         The event and what it holds must not be changed afterwards. A `RunEnded` also sets the
         status of the run.
+        """
+        ...
+
+    async def keep_up(self) -> None:
+        """Return at once, unless events come faster than they are written: then as `commit`.
+
+        Raises:
+            JournalError: as `commit`.
         """
         ...
 

@@ -15,7 +15,9 @@ from engine.journal.batch import Batch, WorldState
 from engine.journal.database import JournalDatabase, RunRefused
 
 WAKE_AT_EVENTS = 4096
-"""So many uncommitted events wake the writer by themselves, which bounds the memory they take."""
+"""So many uncommitted events wake the writer by themselves."""
+MOST_WAITING = 4 * WAKE_AT_EVENTS
+"""A run whose own events come faster than the writer writes waits for it above so many."""
 WAKE_AFTER_S = 0.25
 """So long after the first of them it is woken too: a run that only waits has no effect that is due a commit."""
 
@@ -118,7 +120,7 @@ class GroupWriter:
         self._thread.start()
 
     def wake(self) -> None:
-        """Tell the thread that somebody waits."""
+        """Have what is queued written: by the thread, or at once where there is none."""
         if self._thread is None:
             self.flush()
         # What is set already is not yet cleared, and what is queued is looked at after that.
@@ -208,7 +210,9 @@ def _by_ledger(items: Sequence[Item]) -> dict[Ledger, _Group]:
         if isinstance(item, Waiter):
             continue
         ledger, what = item
-        group = groups.setdefault(ledger, _Group())
+        group = groups.get(ledger)
+        if group is None:
+            group = groups[ledger] = _Group()
         if isinstance(what, WorldState):
             group.world = what
         else:

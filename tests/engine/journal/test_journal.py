@@ -37,6 +37,27 @@ async def test_what_was_committed_is_read_back_while_the_journal_is_open(tmp_pat
         assert read_events(tmp_path, "run-1") == (said(1), said(2), said(3))
 
 
+async def test_an_inline_journal_writes_while_events_gather_without_a_commit(tmp_path: Path) -> None:
+    """A loop of hours in virtual time has its events on the disk, not in memory."""
+    with Journal.open(tmp_path, inline=True) as journal:
+        run = begun(journal)
+        for seq in range(1, 20_001):
+            run.append(said(seq))
+        assert len(read_events(tmp_path, "run-1")) > 20_000 - 5_000
+
+
+async def test_a_run_that_is_faster_than_the_writer_waits_for_it(tmp_path: Path) -> None:
+    """What comes without a wait in between is on the disk when it goes on; a few events are not waited for."""
+    with Journal.open(tmp_path) as journal:
+        run = begun(journal)
+        run.append(said(1))
+        await run.keep_up()
+        for seq in range(2, 50_001):
+            run.append(said(seq))
+        await run.keep_up()
+        assert len(read_events(tmp_path, "run-1")) == 50_000
+
+
 @BOTH
 async def test_closing_writes_what_no_commit_asked_for_and_may_be_repeated(tmp_path: Path, inline: bool) -> None:
     """`close` flushes; closing again does nothing."""
