@@ -56,6 +56,9 @@ class _CrashingRun:
         self.inner.append(event)
         self.counter.reached("event")
 
+    async def keep_up(self) -> None:
+        await self.inner.keep_up()
+
     def keep_world(self, state: bytes) -> None:
         self.inner.keep_world(state)
 

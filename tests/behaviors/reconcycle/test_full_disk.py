@@ -33,6 +33,9 @@ class FullDisk:
     def append(self, event: Event) -> None:
         """Take it."""
 
+    async def keep_up(self) -> None:
+        """Nothing waits."""
+
     def keep_world(self, state: bytes) -> None:
         """Take it."""
 
