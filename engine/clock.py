@@ -53,6 +53,9 @@ class Lockstep(Protocol):
         ...
 
 
+Rank = tuple[int, bool]
+"""How deep inside of others something is that decides, and whether it is the thing itself and not what is around it."""
+
 _GRID_S = 1e-9
 _CLOSING_S = 60.0
 """How long, in virtual time, a task may take to end after it was cancelled because the loop is closed."""
@@ -144,7 +147,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._timers = 0
         self._working = 0
         self._outside = 0
-        self._idle_waiters: list[tuple[float, asyncio.Future[None]]] = []
+        self._idle_waiters: list[tuple[Rank, asyncio.Future[None]]] = []
 
     def time(self) -> float:
         """Virtual seconds since the loop was made."""
@@ -177,10 +180,10 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         due: list[asyncio.TimerHandle] = getattr(self, "_scheduled")  # noqa: B009 - asyncio's own, of no public name
         return sum(not each.cancelled() for each in due) > timers
 
-    async def idle(self, depth: float) -> None:
-        """Return when nothing more is ready at this instant; the deepest waiter goes first, alone."""
+    async def idle(self, rank: Rank) -> None:
+        """Return when nothing more is ready at this instant; the waiter of the highest rank goes first, alone."""
         waiter: asyncio.Future[None] = self.create_future()
-        entry = (depth, waiter)
+        entry = (rank, waiter)
         self._idle_waiters.append(entry)
         try:
             await waiter

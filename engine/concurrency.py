@@ -92,7 +92,7 @@ class Concurrency:
             task.add_done_callback(partial(_arrive, arrived, name, ended))
         while len(finished) < len(tasks):
             await ended.wait()
-            await execution.settlement.settled(depth=path.count("/"))
+            await execution.settlement.settled(path)
             ended.clear()
             for name in sorted(arrived, key=self._rank.__getitem__):
                 finished[name] = _as_outcome(tasks[name].result())

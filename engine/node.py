@@ -222,7 +222,7 @@ class Node:
             await asyncio.wait({body, timer.future}, return_when=asyncio.FIRST_COMPLETED)
             if not body.done():
                 # What ends at this very instant is in time; everything inside decides before we do.
-                await execution.settlement.settled(depth=self.path.count("/") - 0.5)
+                await execution.settlement.settled(self.path, around=True)
         except asyncio.CancelledError:
             await preempt((body,), overdue(execution, self.path))
             raise

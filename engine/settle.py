@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from contextvars import Context, ContextVar
 from typing import cast
 
-from engine.clock import VirtualLoop
+from engine.clock import Rank, VirtualLoop
 from engine.ready_queue import ready_queue
 
 _LONGEST_S = 0.05
@@ -27,7 +27,7 @@ class Settlement:
     """
 
     def __init__(self) -> None:
-        self._waiters: list[tuple[float, asyncio.Future[None]]] = []
+        self._waiters: list[tuple[Rank, asyncio.Future[None]]] = []
         self._since_s: float | None = None
         self._nobodys = Context()
 
@@ -40,14 +40,20 @@ class Settlement:
         finally:
             _OWNER.reset(token)
 
-    async def settled(self, *, depth: float) -> None:
-        """Return when the present instant has played out; deeper containers decide before shallower ones."""
+    async def settled(self, path: str | None, *, around: bool = False) -> None:
+        """Return when the present instant has played out, and all that decides inside of `path` has decided.
+
+        Args:
+            path: The container that is to decide; None for who looks at the run as a whole.
+            around: Whether what decides is around that container, as its timeout is.
+        """
+        rank = (path.count("/") if path is not None else -1, not around)
         loop = asyncio.get_running_loop()
         if isinstance(loop, VirtualLoop):
-            await loop.idle(depth)
+            await loop.idle(rank)
             return
         waiter: asyncio.Future[None] = loop.create_future()
-        entry = (depth, waiter)
+        entry = (rank, waiter)
         self._waiters.append(entry)
         if self._since_s is None:
             self._look_later(loop, since_s=loop.time())

@@ -233,7 +233,7 @@ class Control:
 
     async def settled(self) -> None:
         """Return when all has happened that a command makes happen at once."""
-        await self._settlement.settled(depth=-1.0)
+        await self._settlement.settled(None)
 
     def view(self) -> ControlView:
         """Return the present state."""

@@ -179,7 +179,7 @@ class Leaves:
             await asyncio.sleep(0)
             waited_s = 0.0
             while not task.done():
-                await self._execution.settlement.settled(depth=self._path.count("/"))
+                await self._execution.settlement.settled(self._path)
                 if self._execution.suspensions.held(activation.path):
                     await self._execution.suspensions.until_free(activation.path)
                 elif task.done() or self._calls == 0 or waited_s >= CHECK_S:

@@ -206,12 +206,12 @@ class TreeRunner:
                 await self._reactive.ask(until=self._is_due, news=self._news)
             else:
                 await self._news.wait()
-        await self._execution.settlement.settled(depth=self._path.count("/"))
+        await self._execution.settlement.settled(self._path)
         suspensions = self._execution.suspensions
         while suspensions.active and suspensions.held(self._path):
             await suspensions.until_free(self._path)
             self._reactive.forget_answers()
-            await self._execution.settlement.settled(depth=self._path.count("/"))
+            await self._execution.settlement.settled(self._path)
 
     def _is_due(self) -> bool:
         return self._alarms.due or bool(self._leaves.unread) or self._reactive.tick_due

@@ -35,6 +35,8 @@ _WHAT = "the planning process"
 # The first start on a machine compiles everything.
 _START_S = 300.0
 _OVERDUE_S = 5.0
+# Before its first answer a process loads the models of all arms, on a machine that may have much else to do.
+_LOADING_S = 60.0
 # What a request that is no search may take.
 _LOOK_S = 1.0
 
@@ -125,7 +127,7 @@ class PlanningWorker:
         number = self._numbers
         answer = wire.ask(make(number), time_s)
         # Others before it in turn take their time too.
-        allowed_s = wire.promised_s + _OVERDUE_S
+        allowed_s = wire.promised_s + (_OVERDUE_S if wire.has_answered else _LOADING_S)
         try:
             async with asyncio.timeout(allowed_s):
                 found = await asyncio.shield(answer)
@@ -213,6 +215,7 @@ class _Wire(asyncio.Protocol):
         self._asked: dict[int, tuple[asyncio.Future[_Answer], float]] = {}
         self.ready: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self.lost = False
+        self.has_answered = False
 
     @property
     def promised_s(self) -> float:
@@ -247,6 +250,7 @@ class _Wire(asyncio.Protocol):
             if isinstance(message, Ready):
                 self.ready.set_result(None)
                 continue
+            self.has_answered = True
             future, _ = self._asked.pop(message.number)
             if not future.done():
                 future.set_result(message)

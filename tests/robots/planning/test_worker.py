@@ -123,6 +123,22 @@ async def test_plans_come_from_another_process_which_dies_and_is_replaced_and_th
         await planner.plan(SHELF)
 
 
+async def test_a_process_that_hangs_is_ended_and_one_that_still_loads_the_arms_is_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("robots.planning.worker._OVERDUE_S", -0.999)
+    looks = LookRequest(scene=SHELF.scene, arm=ARM, joints_rad=SHELF.start_rad)
+    async with PlanningWorker() as planner:
+        assert not (await planner.look(looks)).touching
+        monkeypatch.setattr("robots.planning.worker._OVERDUE_S", 0.0)
+        frozen = planner.pid
+        os.kill(frozen, signal.SIGSTOP)
+        with pytest.raises(RobotError, match=r"has not answered within 1\.0 s and was ended"):
+            await planner.look(looks)
+        assert planner.pid == 0
+        assert not (await planner.look(looks)).touching
+
+
 def test_in_virtual_time_planning_is_inline_takes_the_time_of_its_work_and_repeats() -> None:
     async def story() -> list[object]:
         clock = LoopClock()
