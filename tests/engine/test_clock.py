@@ -116,7 +116,7 @@ def test_the_deepest_waiter_for_idleness_goes_first_and_alone() -> None:
         order: list[str] = []
 
         async def container(name: str, depth: int) -> None:
-            await loop.idle(depth)
+            await loop.idle((depth, True))
             order.append(name)
             await asyncio.sleep(0)
             order.append(f"{name} settled")
