@@ -33,7 +33,7 @@ from benchmarks.stop_server import FLEXCELL, Server, server
 from tests.editor_web.browsing import browser_program
 
 _BLOCK_S = 0.6
-_STARTED_AT_ONCE = 2
+_STARTED_AT_ONCE = 1
 _INTO_S = 0.03
 CONDITIONS = ("free", "state", "interpreter", "expression", "clients", "suspended", "killed")
 PATHS = ("page", "http", "cli", "signal")

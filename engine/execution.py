@@ -76,7 +76,11 @@ class Execution:
         return _Counted(self)
 
     async def give_way(self) -> None:
-        """Let everybody else on the loop have a turn; due by count, never by the clock, so that runs repeat."""
+        """Let everybody else on the loop have a turn, the journal's writer too; due by count, so that runs repeat.
+
+        Raises:
+            JournalError: the journal can no longer be written.
+        """
         self.steps = 0.0
         await asyncio.sleep(0)
         await self.recorder.keep_up()

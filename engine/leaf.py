@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, cast
+from typing import Any
 
 import msgspec
 
@@ -191,7 +191,7 @@ class PausingState:
 
 
 def _mapping(given: object) -> dict[str, object]:
-    return cast("dict[str, object]", given) if type(given) is dict else msgspec.convert(given, dict[str, object])
+    return msgspec.convert(given, dict[str, object])
 
 
 def _plain(value: object) -> dict[str, object]:

@@ -27,8 +27,6 @@ def plain_value(value: object, *, key: str, where: str) -> object:
     Raises:
         UserdataError: it would come back from a journal as something else, or not at all; says which part.
     """
-    if type(value) in _WHOLE:
-        return value
     try:
         for at, problem in _problems(value, ""):
             inside = f" (at {at.removeprefix('.')})" if at else ""

@@ -11,6 +11,7 @@ from typing import Any, Literal
 
 from playwright.sync_api import APIResponse, Browser, ConsoleMessage, Locator, Page, Route, expect
 
+import bootstrap
 import hatch_build
 from editor_web.server import Dashboard
 from tests.editor_web.limits import GUARD_S
@@ -18,7 +19,6 @@ from tests.editor_web.limits import GUARD_S
 AXE = hatch_build.SOURCE / "node_modules" / "axe-core" / "axe.min.js"
 OF_COLOURS = ("color-contrast", "link-in-text-block")
 """The rules of axe-core that look at colours."""
-BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 Scheme = Literal["light", "dark"]
 SCHEMES: tuple[Scheme, Scheme] = ("light", "dark")
 Size = tuple[int, int]
@@ -29,7 +29,7 @@ PHONE: Size = (390, 844)
 def browser_program() -> str:
     """The browser to drive: FLEXCELL_CHROMIUM, else the first one installed."""
     named = os.environ.get("FLEXCELL_CHROMIUM")
-    found = named or next((path for name in BROWSERS if (path := shutil.which(name))), None)
+    found = named or next((path for name in bootstrap.BROWSERS if (path := shutil.which(name))), None)
     assert found, (
         "no Chromium: install `chromium-headless-shell` or `chromium`, or set FLEXCELL_CHROMIUM to its program"
     )

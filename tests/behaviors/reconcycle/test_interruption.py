@@ -12,12 +12,11 @@ from engine.event import AnyEvent, Exited, GoalFinished, GoalSent, RunEnded
 from engine.journal import list_runs
 from tests.engine.cli.process import events_in, started, until
 from tests.robots.sim.demo_cell import patient_copy
-from tests.tiers import nightly
 
 BEHAVIOR = Path(__file__).resolve().parents[3] / "behaviors" / "reconcycle" / "two_arm_transfer.yaml"
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, nightly(signal.SIGTERM)])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_both_arms_come_to_rest_in_mid_motion(tmp_path: Path, number: signal.Signals) -> None:
     """Every goal that was sent has a confirmed end before the run ends, and every state left once.
 

@@ -16,7 +16,6 @@ from engine.errors import StoreError
 from engine.store import Store
 from engine.store.mongo import MongoStore
 from tests.engine.store.mongod import RUNS_HERE, Mongod
-from tests.tiers import nightly
 
 # A server takes 301 MB of it for its journal.
 SMALL, LARGE = "340m", "800m"
@@ -60,7 +59,7 @@ async def write_on(server: Mongod, store: Store) -> None:
         await store.put("record", "after", {"n": 1})
 
 
-@pytest.mark.parametrize("replicated", [nightly(True), False], ids=["replicated", "standalone"])
+@pytest.mark.parametrize("replicated", [True, False], ids=["replicated", "standalone"])
 async def test_a_full_disk_is_told_and_nothing_that_was_acknowledged_is_lost(disk: Disk, replicated: bool) -> None:
     """The server says so, or ends itself, which it is told by then; each way the entries are there afterwards."""
     server = Mongod(replicated=replicated, folder=disk.folder)

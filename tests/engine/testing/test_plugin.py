@@ -121,7 +121,6 @@ def test_without_recordings_it_does_nothing(project: Path) -> None:
 
 FIXTURES = """
 import sys
-from tests.tiers import nightly
 
 def test_a_behavior(flexcell_run):
     ran = flexcell_run("wait.yaml", parameters={"pause": 3600})
