@@ -1,10 +1,10 @@
 """How long STOP takes: `python -P -m benchmarks.stop [--trials N] [--paths page http cli signal] [--conditions …]`.
 
-A real `flexcell serve` moves an arm; STOP is given by a click in the page in Chromium, over the relay's HTTP port, by
-`flexcell stop`, or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or holding the
-interpreter) or busy with the costliest expressions, 200 clients ask all the time, or the engine is suspended or
-killed. Told are the times until STOP is acknowledged (in the page: until it says so) and until the world's own
-process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
+A real `flexcell serve` moves an arm; STOP is given by a click of the mouse on the page in Chromium, over the relay's
+HTTP port, by `flexcell stop`, or by SIGINT, while the engine is free, its event loop blocked by a state (sleeping, or
+holding the interpreter) or busy with the costliest expressions, 200 clients ask all the time, or the engine is
+suspended or killed. Told are the times until STOP is acknowledged (in the page: from the click until it says so) and
+until the world's own process measures that everything rests (the arm is in mid-motion, at 0.4 of its speed).
 """
 
 from __future__ import annotations
@@ -17,12 +17,14 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager, nullcontext
+from collections.abc import Callable, Generator
+from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from functools import partial
+from http.client import HTTPConnection
 from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import urlsplit
 
 import httpx
 import numpy as np
@@ -33,24 +35,36 @@ from benchmarks.stop_server import FLEXCELL, Server, server
 from tests.editor_web.browsing import browser_program
 
 _BLOCK_S = 0.6
-_STARTED_AT_ONCE = 1
 _INTO_S = 0.03
 CONDITIONS = ("free", "state", "interpreter", "expression", "clients", "suspended", "killed")
 PATHS = ("page", "http", "cli", "signal")
 # A suspended process gets no signal, and a killed one neither.
 _SENSELESS = {("signal", "suspended"), ("signal", "killed")}
 _HOW = {"state": "sleep", "interpreter": "hold", "expression": "expression"}
-_PRESS = """() => new Promise((said) => {
+# Both as the page's own clock has them: what drives the browser takes longer than the page where all share two cores.
+_LISTEN = """() => {
   const news = document.querySelector('.stop-news')
-  const look = () => /acknowledged|at rest/.test(news.textContent) && said()
-  new MutationObserver(look).observe(news, { subtree: true, childList: true, characterData: true })
-  document.querySelector('.stop-button').click()
-})"""
+  const epochMs = (eventMs) => Date.now() - performance.now() + eventMs
+  window.stopTimes = new Promise((told) => {
+    let pressedMs
+    const look = () => /acknowledged|at rest/.test(news.textContent) && told([pressedMs, epochMs(performance.now())])
+    document.querySelector('.stop-button').addEventListener(
+      'click', (click) => { pressedMs = epochMs(click.timeStamp) }, { once: true, capture: true })
+    new MutationObserver(look).observe(news, { subtree: true, childList: true, characterData: true })
+  })
+}"""
 _PUT_AWAY = """() => new Promise((gone) => {
   const look = () => document.querySelector('.stop-report') ? setTimeout(look, 5) : gone()
   document.querySelector('.stop-away')?.click()
   look()
 })"""
+
+
+class Press(NamedTuple):
+    """When STOP was given and when it was acknowledged, on the monotonic clock."""
+
+    pressed_s: float
+    acknowledged_s: float
 
 
 @dataclass(kw_only=True)
@@ -82,11 +96,9 @@ def _measure(path: str, condition: str, trials: int) -> Times:
     ends = condition == "killed" or path == "signal"
     with tempfile.TemporaryDirectory() as folder, _browser() if path == "page" else nullcontext() as browser:
         if ends:
-            for number in range(0, trials, _STARTED_AT_ONCE):
-                numbers = range(number, min(number + _STARTED_AT_ONCE, trials))
-                for running in _started([Path(folder) / str(each) for each in numbers]):
-                    with _presser(path, running, browser) as press:
-                        _trial(running, times, press)
+            for number in range(trials):
+                with server(Path(folder) / str(number)) as running, _presser(path, running, browser) as press:
+                    _trial(running, times, press)
         else:
             with server(Path(folder) / "one") as running, _presser(path, running, browser) as press:
                 for _ in range(trials):
@@ -96,19 +108,7 @@ def _measure(path: str, condition: str, trials: int) -> Times:
     return times
 
 
-def _started(folders: Sequence[Path]) -> Generator[Server]:
-    """Start servers side by side, which takes most of a trial's time, and give them one after the other."""
-    with ExitStack() as stack:
-
-        def start(folder: Path) -> Server:
-            return stack.enter_context(server(folder))
-
-        with ThreadPoolExecutor() as threads:
-            started = list(threads.map(start, folders))
-        yield from started
-
-
-def _trial(running: Server, times: Times, press: Callable[[], float]) -> None:
+def _trial(running: Server, times: Times, press: Callable[[], Press]) -> None:
     with _clients(running) if times.condition == "clients" else nullcontext():
         running.start_run(_HOW.get(times.condition, "none"), _BLOCK_S)
         match times.condition:
@@ -119,16 +119,21 @@ def _trial(running: Server, times: Times, press: Callable[[], float]) -> None:
             case _:
                 pass
         time.sleep(_INTO_S)
-        began_s = time.monotonic()
-        times.acknowledged_s.append(press() - began_s)
-        times.at_rest_s.append(max(0.0, running.resting_since_s() - began_s))
+        pressed = press()
+        times.acknowledged_s.append(pressed.acknowledged_s - pressed.pressed_s)
+        times.at_rest_s.append(max(0.0, running.resting_since_s() - pressed.pressed_s))
 
 
 def _over_http(running: Server) -> float:
-    body = json.dumps({"token": running.record["stop_token"], "reason": "benchmark"})
-    answer = httpx.post(running.record["stop_url"], content=body, timeout=10.0, trust_env=False)
-    assert answer.json()["acknowledged"], answer.text
-    return time.monotonic()
+    # Not httpx, whose client reads all certificates of the machine before it sends anything.
+    url = urlsplit(str(running.record["stop_url"]))
+    connection = HTTPConnection(str(url.hostname), url.port, timeout=10.0)
+    with closing(connection):
+        connection.request("POST", url.path, json.dumps({"token": running.record["stop_token"], "reason": "benchmark"}))
+        answer = connection.getresponse().read()
+    said_s = time.monotonic()
+    assert json.loads(answer)["acknowledged"], answer
+    return said_s
 
 
 def _by_command(running: Server) -> float:
@@ -160,26 +165,30 @@ def _browser() -> Generator[Browser]:
 
 
 @contextmanager
-def _presser(path: str, running: Server, browser: Browser | None) -> Generator[Callable[[], float]]:
-    """Give what gives STOP in this way, and returns when it was acknowledged."""
+def _presser(path: str, running: Server, browser: Browser | None) -> Generator[Callable[[], Press]]:
+    """Give what gives STOP in this way."""
     if browser is None:
-        yield partial(_ACKNOWLEDGED[path], running)
+        yield lambda: Press(time.monotonic(), _ACKNOWLEDGED[path](running))
         return
     page = browser.new_page(locale="en-US")
     try:
         page.goto(login_link(running.record["url"], running.record["token"]))
-        page.get_by_role("button", name="Stop the cell").wait_for()
-        yield partial(_in_page, page)
+        button = page.get_by_role("button", name="Stop the cell")
+        button.wait_for()
+        box = button.bounding_box()
+        assert box is not None
+        yield partial(_in_page, page, box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     finally:
         page.close()
 
 
-def _in_page(page: Page) -> float:
-    page.evaluate(_PRESS)
-    said_s = time.monotonic()
-    # By the element itself: a click of the mouse waits for pictures, which come seldom while 200 clients ask.
+def _in_page(page: Page, x: float, y: float) -> Press:
+    page.evaluate(_LISTEN)
+    to_monotonic_s = time.monotonic() - time.time()
+    page.mouse.click(x, y)
+    pressed_ms, acknowledged_ms = page.evaluate("() => window.stopTimes")
     page.evaluate(_PUT_AWAY)
-    return said_s
+    return Press(1e-3 * pressed_ms + to_monotonic_s, 1e-3 * acknowledged_ms + to_monotonic_s)
 
 
 _ACKNOWLEDGED: dict[str, Callable[[Server], float]] = {

@@ -5,13 +5,12 @@ Imports next to nothing, so that the command is on its way within a few hundredt
 
 from __future__ import annotations
 
-import http.client
 import json
+import socket
 import sys
 import time
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
 from engine.state_names import SERVER_FILE
 
@@ -19,6 +18,7 @@ REASON = "flexcell stop"
 _ANSWER_S = 2.0
 _REST_S = 10.0
 _LOOK_S = 0.02
+_READ_BYTES = 65536
 
 
 def stop_cell(state: Path, reason: str) -> int:
@@ -35,9 +35,10 @@ def stop_cell(state: Path, reason: str) -> int:
         return 2
     try:
         status = _posted(url, token, reason)
-    except (OSError, http.client.HTTPException, ValueError) as error:
+        acknowledged = f"STOP acknowledged after {status['after_s'] * 1000:.0f} ms{_engine(status)}\n"
+    except (OSError, ValueError, TypeError, KeyError) as error:
         return _stopped_by_server(record, reason, error)
-    sys.stdout.write(f"STOP acknowledged after {status['after_s'] * 1000:.0f} ms{_engine(status)}\n")
+    sys.stdout.write(acknowledged)
     sys.stdout.flush()
     return _wait_for_rest(url, token, status)
 
@@ -48,7 +49,7 @@ def _wait_for_rest(url: str, token: str, status: dict[str, Any]) -> int:
         time.sleep(_LOOK_S)
         try:
             status = _posted(f"{url}/status", token, "")
-        except (OSError, http.client.HTTPException, ValueError):
+        except (OSError, ValueError):
             break
     if not status["at_rest"]:
         moving = ", ".join(each["name"] for each in status["devices"] if not each["at_rest"])
@@ -63,7 +64,7 @@ def _stopped_by_server(record: dict[str, Any], reason: str, error: Exception) ->
     sys.stderr.write(f"flexcell: the stop relay does not answer ({error}); asking the server\n")
     try:
         _posted(f"{record['url']}api/v1/cell/stop", str(record["token"]), reason, timeout_s=_REST_S)
-    except (OSError, http.client.HTTPException, ValueError, KeyError) as failure:
+    except (OSError, ValueError, KeyError) as failure:
         sys.stderr.write(f"flexcell: nobody takes STOP ({failure}); use the emergency stop\n")
         return 3
     sys.stdout.write("Stopped: the server has confirmed that every robot is at rest.\n")
@@ -71,19 +72,30 @@ def _stopped_by_server(record: dict[str, Any], reason: str, error: Exception) ->
 
 
 def _posted(url: str, token: str, reason: str, *, timeout_s: float = _ANSWER_S) -> dict[str, Any]:
-    """Post a stop and return the answer; raises OSError, HTTPException or ValueError."""
-    parts = urlsplit(url)
-    connection = http.client.HTTPConnection(parts.hostname or "", parts.port, timeout=timeout_s)
-    try:
-        headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/json"}
-        connection.request("POST", parts.path, json.dumps({"reason": reason}), headers)
-        response = connection.getresponse()
-        body = response.read()
-        if response.status >= 300:
-            raise ValueError(f"it answered {response.status}: {body[:200].decode('utf-8', 'replace')}")
-        return json.loads(body) if body else {}
-    finally:
-        connection.close()
+    """Post a stop and return the answer.
+
+    HTTP/1.0 by hand: http.client takes half as long to import as everything else that happens before STOP is sent.
+
+    Raises:
+        OSError: nobody is there, or does not answer.
+        ValueError: it answered something else.
+    """
+    authority, _, path = url.removeprefix("http://").partition("/")
+    host, _, port = authority.rpartition(":")
+    body = json.dumps({"reason": reason}).encode()
+    head = (
+        f"POST /{path} HTTP/1.0\r\nHost: {authority}\r\nAuthorization: Bearer {token}\r\n"
+        f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    )
+    with socket.create_connection((host.strip("[]"), int(port)), timeout=timeout_s) as connection:
+        connection.sendall(head.encode("latin-1") + body)
+        answer = b"".join(iter(lambda: connection.recv(_READ_BYTES), b""))
+    status, _, rest = answer.partition(b"\r\n")
+    content = rest.partition(b"\r\n\r\n")[2]
+    code = status.split()[1:2] if status.startswith(b"HTTP/") else []
+    if code not in ([b"200"], [b"204"]):
+        raise ValueError(f"it answered {answer[:200].decode('utf-8', 'replace')!r}")
+    return json.loads(content) if content else {}
 
 
 def _engine(status: dict[str, Any]) -> str:

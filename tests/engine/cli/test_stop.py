@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 import subprocess
 import sys
+from collections.abc import Generator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import msgspec
@@ -24,6 +28,24 @@ def record(folder: Path, endpoint: StopEndpoint) -> None:
         url="http://127.0.0.1:9/", token="none", pid=0, stop_url=endpoint.url, stop_token=endpoint.token
     )
     (folder / SERVER_FILE).write_bytes(msgspec.json.encode(written))
+
+
+@contextmanager
+def answering(data: bytes) -> Generator[str]:
+    """Answer the first connection with these bytes, after its request, and close; gives the address as a URL."""
+
+    def answer() -> None:
+        connection, _ = listener.accept()
+        with connection:
+            request = b""
+            while b"}" not in request:
+                request += connection.recv(4096)
+            connection.sendall(data)
+
+    with socket.create_server(("127.0.0.1", 0)) as listener, ThreadPoolExecutor(1) as threads:
+        answered = threads.submit(answer)
+        yield f"http://127.0.0.1:{listener.getsockname()[1]}"
+        answered.result(timeout=10.0)
 
 
 async def test_it_says_when_everything_rests(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,10 +80,34 @@ def test_its_help_is_that_of_every_command(tmp_path: Path) -> None:
 
 def test_the_plain_command_loads_nothing_that_it_does_not_need() -> None:
     code = (
+        "unwanted = {'asyncio', 'http.client', 'msgspec', 'rich', 'ssl', 'typer'}\n"
         "import sys; sys.argv = ['flexcell', 'stop', '--state', '/nowhere']\n"
         "from engine.cli.entry import main\n"
         "try: main()\n"
-        "except SystemExit: print(sorted({'asyncio', 'msgspec', 'typer', 'rich'} & set(sys.modules)))"
+        "except SystemExit: print(sorted(unwanted & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+NO_ANSWERS = (
+    b"",
+    b"\xff\x00 garbage",
+    b"HTTP/1.1 200 OK\r\n\r\n[",
+    b"HTTP/1.1 200 OK\r\n\r\n[1]",
+    b"HTTP/1.1 200 OK\r\n\r\n{}",
+    b"HTTP/1.1 401 No\r\n\r\n{}",
+)
+
+
+@pytest.mark.parametrize("answer", NO_ANSWERS)
+def test_whatever_answers_in_place_of_the_relay_the_server_is_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], answer: bytes
+) -> None:
+    with answering(answer) as relay, answering(b"HTTP/1.1 204 No Content\r\nx-served: 1\r\n\r\n") as server:
+        written = ServerRecord(url=f"{server}/", token="t", pid=0, stop_url=f"{relay}/stop", stop_token="t")
+        (tmp_path / SERVER_FILE).write_bytes(msgspec.json.encode(written))
+        assert stop_cell(tmp_path, "tea") == 0
+    said = capsys.readouterr()
+    assert "the stop relay does not answer" in said.err
+    assert said.out == "Stopped: the server has confirmed that every robot is at rest.\n"
