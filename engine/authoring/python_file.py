@@ -17,11 +17,6 @@ from engine.nearness import near_names
 from engine.type_preparation import prepare_types
 
 
-def is_python_name(name: str) -> bool:
-    """Tell whether a name given for a behavior is that of a Python file."""
-    return name.endswith(".py") or ".py:" in name
-
-
 def load_python_behavior(name: str) -> Behavior:
     """Run a Python file and return the behavior under a name at its top level.
 

@@ -67,9 +67,8 @@ def check_targets(behavior: Behavior, catalogue: Catalogue, *, cell: Cell | None
         catalogue: The states by name.
         cell: The cell that it is to run in; by default the one that it names. Without any, nothing is looked at.
     """
-    models = robot_models()
     around = cell or _own_cell(behavior)
-    if around is None or models is None:
+    if around is None or (models := robot_models()) is None:
         return ()
     subjects = new_subjects(behavior, catalogue)
     stored = _Seeded(document=_seed(around), written=frozenset(entries_written(subjects)))

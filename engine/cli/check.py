@@ -10,7 +10,6 @@ from typing import Annotated, Literal, TextIO
 import typer
 from msgspec.structs import replace
 
-from engine.authoring.python_file import is_python_name, load_python_behavior
 from engine.cell_names import cell_names
 from engine.check import (
     Finding,
@@ -23,18 +22,17 @@ from engine.check import (
     page_text,
     place_of,
 )
-from engine.cli.check_fix import fix_file, fix_lines
-from engine.cli.check_store import stored_names
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.entries import SECTIONS, load_entries
 from engine.document.project import PROJECT_FILE, load_project
+from engine.document.python_name import is_python_name
 from engine.document.recovery import load_around
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.plan import Catalogue
 from engine.registry import load_states
+from engine.state_catalogue import Catalogue
 
 TargetLevel = Literal["warning", "error", "off"]
 _ENTRIES = tuple((key, "entries") for key in SECTIONS.values())
@@ -110,6 +108,8 @@ def check(
 
 def _fix(files: Sequence[Path], catalogues: Mapping[Path, Catalogue], told: TextIO, *, likely: bool) -> bool:
     """Fix documents and tell what was done; False where one could not be written."""
+    from engine.cli.check_fix import fix_file, fix_lines
+
     is_kept = True
     for file in files:
         try:
@@ -137,8 +137,8 @@ def findings_of(
     """
     try:
         if is_python_name(str(file)):
-            behavior = load_python_behavior(str(file))
-            known = stored_names(behavior, store) if store else None
+            behavior = _made_in_python(file)
+            known = _stored_names(behavior, store) if store else None
             findings = check_behavior(behavior, catalogue, known, cell=cell)
             return findings + _at_targets(behavior, catalogue, cell, targets)
         if file.name == PROJECT_FILE:
@@ -159,10 +159,25 @@ def _of_behavior(
 ) -> tuple[Finding, ...]:
     survey = survey_behavior(file)
     behavior = survey.behavior
-    known = stored_names(behavior, store) if store and behavior is not None else None
+    known = _stored_names(behavior, store) if store and behavior is not None else None
     findings = check_survey(survey, file, catalogue, known, cell=cell)
     more = _at_targets(behavior, catalogue, cell, targets) if behavior is not None else ()
     return tuple(sorted((*findings, *more), key=place_of)) if more else findings
+
+
+# Imported where they are wanted: a check of a small document takes mostly what is imported for it.
+
+
+def _made_in_python(file: Path) -> Behavior:
+    from engine.authoring.python_file import load_python_behavior
+
+    return load_python_behavior(str(file))
+
+
+def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
+    from engine.cli.check_store import stored_names
+
+    return stored_names(behavior, store)
 
 
 def _at_targets(behavior: Behavior, catalogue: Catalogue, cell: Cell | None, level: TargetLevel) -> tuple[Finding, ...]:

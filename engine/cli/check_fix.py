@@ -6,8 +6,8 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from engine.authoring.python_file import is_python_name
 from engine.check.subject import Catalogue
+from engine.document.python_name import is_python_name
 from engine.document.yaml_source import MAX_BYTES, load_source
 from engine.editing.knowledge import Knowledge
 from engine.editing.mending.repair import Repaired, repair

@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from engine.authoring.export import to_yaml, write_behavior
-from engine.authoring.python_file import is_python_name
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior
+from engine.document.python_name import is_python_name
 from engine.errors import DocumentError
 from engine.registry import load_states
 

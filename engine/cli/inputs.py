@@ -7,11 +7,12 @@ from pathlib import Path
 
 import msgspec
 
-from engine.authoring.python_file import is_python_name, load_python_behavior
+from engine.authoring.python_file import load_python_behavior
 from engine.check import Finding, check_behavior, require_sound
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.parameter import Parameter
+from engine.document.python_name import is_python_name
 from engine.document.substitutes import Substitutes
 from engine.errors import ControlError, DocumentError, FlexcellError
 from engine.nearness import near_names

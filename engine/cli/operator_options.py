@@ -9,8 +9,8 @@ from typing import Annotated
 
 import typer
 
-from engine.authoring.python_file import is_python_name
 from engine.control import AutonomyLevel, LossPolicy, load_breakpoints
+from engine.document.python_name import is_python_name
 from engine.supervision import Supervision
 
 Autonomy = Annotated[

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from engine.authoring.python_file import is_python_name, load_python_behavior
+from engine.authoring.python_file import load_python_behavior
 from engine.cell import OpenCell
 from engine.cli.execution import Ended, Order, carry_out
 from engine.cli.exit_code import ExitCode
@@ -19,6 +19,7 @@ from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Ope
 from engine.cli.output_file import prepare, write
 from engine.cli.run_report import print_json, print_result
 from engine.document.cell import Cell, load_cell
+from engine.document.python_name import is_python_name
 from engine.errors import ControlError
 from engine.journal import Journal, NullJournal, encode_event_log
 from engine.launch import Resumption, plan_resume, require_simulation, resume_run
