@@ -13,6 +13,7 @@ from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.control.gate import Gate
 from engine.document.duration import LONGEST_S
+from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import StateError
 from engine.event import Abandoned, UserdataAppended, UserdataWritten
@@ -70,6 +71,11 @@ class Execution:
     """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
+
+    @property
+    def asks_before_nodes(self) -> bool:
+        """Whether there is more to a node than running it: somebody operates, it goes on, or others are due a turn."""
+        return bool(self.gate.armed or self.points or self.replaced or self.steps > MAX_STEPS)
 
     def counted(self) -> _Counted:
         """Count the steps of what is done inside, which never waits."""

@@ -14,10 +14,11 @@ from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import StateError, UserdataError
 from engine.event import Cause, Transitioned
 from engine.execution import Execution
-from engine.node import Entry, Node
+from engine.node import Node
 from engine.node_exit import ContainerOutcome, Left
 from engine.state import Outcome
 from engine.userdata import Scope
+from engine.work import Entry
 
 _ITEMS = "items"
 _TIMES = "times"
@@ -66,6 +67,11 @@ class ForEach:
         """Nothing: each round has a scope of its own."""
         return {}
 
+    @property
+    def constant(self) -> None:
+        """That depends on userdata."""
+        return None
+
     def enter(self, scope: Scope) -> Entry:
         """Evaluate the items once, for all rounds."""
         value = self.items.evaluate({name: scope.read(name, reader=self.position) for name in self.items.names})
@@ -110,7 +116,8 @@ class ForEach:
             resumed = point is not None and number == first and point.values
             own = point.values if point is not None and resumed else loop.round_values(number, items[number])
             inner = Scope(f"{path}#{number}", own, scope)
-            left = await loop.child.perform(inner, execution)
+            begun = loop.child.begin(inner, execution)
+            left = begun if isinstance(begun, Left) else await begun
             loop = execution.latest(f"{path}/", loop)
             goes_on = (left.target or left.outcome) in loop.next
             last = number == len(items) - 1

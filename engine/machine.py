@@ -12,12 +12,13 @@ from engine.errors import StateError
 from engine.event import Transitioned
 from engine.execution import Execution
 from engine.nearness import near_names
-from engine.node import NOTHING, Entry, Node
+from engine.node import Node
 from engine.node_exit import Left
 from engine.standstill import Standstill
 from engine.state import Outcome
 from engine.userdata import Scope
 from engine.waits import Laps
+from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +57,11 @@ class Machine:
         """The values its scope begins with."""
         return self.userdata
 
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING
@@ -71,14 +77,21 @@ class Machine:
         laps = Laps(path, execution.waits, execution.clock)
         standstill = Standstill(path, execution) if execution.clock.virtual else None
         machine = self
+        recorder = execution.recorder
         while True:
-            left = await machine.children[name].perform(inner, execution)
-            # After a hot change the transitions are those of the new version.
-            machine = execution.latest(f"{path}/", machine)
             child = machine.children[name]
+            begun = child.begin(inner, execution)
+            left = begun if isinstance(begun, Left) else await begun
+            if execution.replaced:
+                # After a hot change the transitions are those of the new version.
+                machine = execution.latest(f"{path}/", machine)
+                child = machine.children[name]
             diagnosis.take(child, left)
             target = machine._target(child, left)
-            self._record(execution, path, name, left.outcome, target)
+            if recorder.heard:
+                self._record(execution, path, name, left.outcome, target)
+            else:
+                recorder.count()
             if target not in machine.children:
                 return diagnosis.outcome(target, machine.nominal)
             if laps.step(most=execution.instant_limit):

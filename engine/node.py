@@ -6,10 +6,10 @@ The same wrapper surrounds a single state and a whole container; what differs is
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Awaitable, Coroutine, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 from engine.cause import cause_of, describe, under, whole_text
 from engine.control.gate import Order
@@ -18,68 +18,25 @@ from engine.document.expression_cost import MAX_STEPS
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
 from engine.execution import Execution
+from engine.first_step import after_first_step
 from engine.measure import Guard, Retry, Timeout
 from engine.node_exit import ContainerOutcome, Left, guard_closed
 from engine.point import Point
-from engine.preemption import Overdue, being_cancelled, goes_on, preempt
-from engine.state import Outcome, State
+from engine.preemption import Overdue, being_cancelled, goes_on, is_anybody_asked, preempt
+from engine.state import Outcome
 from engine.userdata import Scope
+from engine.work import NOTHING, Entry, Work
 
 _FAIRNESS = 256
 """Repetitions in a row without a wait after which everybody else has a turn."""
 _MOST_DOUBLED = 60
 
 
-@dataclass(frozen=True)
-class Entry:
-    """What a node was entered with: the state to run, its input values, and both as plain data.
+class Begun(NamedTuple):
+    """An attempt that has been entered: which activation of its node it is, and the rest of its work."""
 
-    `point` says where to go on inside a container that was entered before.
-    """
-
-    state: State | None = None
-    inputs: Mapping[str, object] = field(default_factory=dict[str, object])
-    shown: dict[str, object] = field(default_factory=dict[str, object])
-    point: Point | None = None
-
-
-NOTHING = Entry()
-
-
-class Work(Protocol):
-    """What a node does between entering and leaving."""
-
-    @property
-    def kind(self) -> str:
-        """The key of the node in documents."""
-        ...
-
-    @property
-    def children(self) -> Mapping[str, Node]:
-        """The nodes directly inside, by name, in document order."""
-        ...
-
-    @cached_property
-    def nominal(self) -> frozenset[str]:
-        """The outcomes that mean that nothing went wrong inside; asked at every transition."""
-        ...
-
-    @cached_property
-    def outcomes(self) -> tuple[str, ...]:
-        """All outcomes it can have."""
-        ...
-
-    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Return the values that its own scope begins with when it is entered with `inputs`."""
-        ...
-
-    def enter(self, scope: Scope) -> Entry:
-        """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
-        ...
-
-    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Do it."""
-        ...
+    visit: int
+    rest: Awaitable[Outcome]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,8 +73,50 @@ class Node:
     def _plain(self) -> bool:
         return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
 
-    async def perform(self, scope: Scope, execution: Execution) -> Left:
+    def begin(self, scope: Scope, execution: Execution) -> Left | Coroutine[Any, Any, Left]:
+        """Run the node, in the running task, up to where it first waits; return its end, or the rest to be awaited.
+
+        Raises:
+            FlexcellError: as `perform`.
+        """
+        if not self._is_plain_state or execution.asks_before_nodes:
+            return self.perform(scope, execution)
+        entry, refused = self._constant, None
+        if entry is None:
+            entry, refused = self._entered(scope, execution)
+        visit = self._record_entry(execution, entry)
+        try:
+            if refused is not None:
+                raise refused
+            begun = self.work.run(entry, self.path, visit, scope, execution)
+            awaited = begun.send(None)
+        except StopIteration as end:
+            outcome: Outcome = end.value
+            if is_anybody_asked() or execution.gate.armed:
+                return self.perform(scope, execution, begun=Begun(visit, _ended(outcome)))
+            self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
+            return Left(
+                outcome.name, None, outcome.cause, outcome.reason if type(outcome) is ContainerOutcome else None
+            )
+        except BaseException as error:
+            return self.perform(scope, execution, begun=Begun(visit, _raised(error)))
+        return self.perform(scope, execution, begun=Begun(visit, after_first_step(begun, awaited)))
+
+    @cached_property
+    def _constant(self) -> Entry | None:
+        return self.work.constant
+
+    @cached_property
+    def _is_plain_state(self) -> bool:
+        return self._plain and not self.work.children
+
+    async def perform(self, scope: Scope, execution: Execution, *, begun: Begun | None = None) -> Left:
         """Run the node to its end, whatever that is, past the gate before and after it.
+
+        Args:
+            scope: Where it reads and writes.
+            execution: Of the run.
+            begun: What is left of its first attempt, if that has begun.
 
         Raises:
             FlexcellError: the work raised, retries are used up and `on_error` is not set.
@@ -129,7 +128,10 @@ class Node:
             left = None
             order: Order | None = None
             try:
-                if point is not None and not point.active:
+                if begun is not None:
+                    first, begun = begun, None
+                    left = await self._attempted(first, execution)
+                elif point is not None and not point.active:
                     left = await self._gone_on(point, scope, execution)
                 elif gate.armed and point is None:
                     order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
@@ -276,35 +278,30 @@ class Node:
                 await asyncio.sleep(0)
 
     async def _attempt(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
-        recorder = execution.recorder
         path = self.path
         if point is not None and not (point.entered and self.work.children):
             point = None
         if execution.steps > MAX_STEPS:
             await execution.give_way()
-        visit = point.visit if point is not None and execution.goes_on else execution.visit(path)
         entry, refused = (
             self._entered(scope, execution) if point is None else (Entry(None, point.inputs, {}, point), None)
         )
-        if point is None or not execution.goes_on:
-            recorder.record(
-                Entered(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    visit=visit,
-                    kind=self.work.kind,
-                    inputs=entry.shown if point is None else dict(point.inputs),
-                )
-            )
-            if point is not None:
-                for key, value in point.values.items():
-                    execution.record_write(path, path, key, value)
-        execution.activity.nodes[path] = visit
+        if point is None:
+            visit = self._record_entry(execution, entry)
+        elif execution.goes_on:
+            visit = point.visit
+            execution.activity.nodes[path] = visit
+        else:
+            visit = self._record_entry(execution, Entry(None, point.inputs, dict(point.inputs), point))
+            for key, value in point.values.items():
+                execution.record_write(path, path, key, value)
+        work = self.work.run(entry, path, visit, scope, execution) if refused is None else _raised(refused)
+        return await self._attempted(Begun(visit, work), execution)
+
+    async def _attempted(self, begun: Begun, execution: Execution) -> Left:
+        path, visit = self.path, begun.visit
         try:
-            if refused is not None:
-                raise refused
-            outcome = await self.work.run(entry, path, visit, scope, execution)
+            outcome = await begun.rest
         except asyncio.CancelledError as stray:
             if being_cancelled():
                 self._record_exit(execution, visit, "", preempted=True)
@@ -343,11 +340,35 @@ class Node:
         named.__cause__ = error
         return named
 
+    def _record_entry(self, execution: Execution, entry: Entry) -> int:
+        """Record that it is entered now, and return which activation this is."""
+        path = self.path
+        visit = execution.visit(path)
+        recorder = execution.recorder
+        if recorder.heard:
+            recorder.record(
+                Entered(
+                    seq=recorder.next_seq(),
+                    time_s=recorder.now_s(),
+                    path=path,
+                    visit=visit,
+                    kind=self.work.kind,
+                    inputs=entry.shown,
+                )
+            )
+        else:
+            recorder.count()
+        execution.activity.nodes[path] = visit
+        return visit
+
     def _record_exit(
         self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
     ) -> None:
         recorder = execution.recorder
         execution.activity.nodes.pop(self.path, None)
+        if not recorder.heard:
+            recorder.count()
+            return
         recorder.record(
             Exited(
                 seq=recorder.next_seq(),
@@ -373,6 +394,14 @@ class Node:
                 cause=cause,
             )
         )
+
+
+async def _ended(outcome: Outcome) -> Outcome:
+    return outcome
+
+
+async def _raised(error: BaseException) -> Outcome:
+    raise error
 
 
 def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:

@@ -8,10 +8,11 @@ from functools import cached_property
 
 from engine.execution import Execution
 from engine.machine import Machine
-from engine.node import NOTHING, Entry, Node
+from engine.node import Node
 from engine.node_path import inside
 from engine.state import Outcome
 from engine.userdata import Scope
+from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +44,11 @@ class Priority:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """The values its scope begins with."""
         return self.machine.userdata
+
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
 
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""

@@ -14,11 +14,12 @@ from engine.event import Cause
 from engine.execution import Execution
 from engine.leaf import Leaf
 from engine.nearness import near_names
-from engine.node import Entry, Node, Work
+from engine.node import Node
 from engine.reference import Reference
 from engine.state import Outcome, State
 from engine.state_catalogue import Catalogue, find_state
 from engine.userdata import Scope
+from engine.work import NOTHING, Entry, Work
 
 SUBSTITUTE = "substitute"
 """The kind of a node that is stood in for, in events and wherever they are shown."""
@@ -57,9 +58,14 @@ class StandIn:
         """Nothing: it has no scope of its own."""
         return {}
 
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: what the original would be given may not even be there in a test."""
-        return Entry()
+        return NOTHING
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Wait, write the outputs, and end."""

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from engine.event import Entered, Event, Exited, StatusChanged
 from engine.execution import Execution
 from engine.leaf import Leaf
-from engine.node import Entry
 from engine.plan import Plan
 from engine.state import Outcome
 from engine.tree import Tree, TreeRunner, mark_of
 from engine.tree.history import Mark
 from engine.userdata import Scope
+from engine.work import Entry
 from tests.engine.tree.run_tree import Told, run_plan, tree_plan
 from tests.engine.tree.scripted_states import REMAINING
 from tests.engine.tree.specimen import Specimen, trees
