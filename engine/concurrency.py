@@ -10,6 +10,7 @@ from functools import cached_property, partial
 from engine.cause import under
 from engine.diagnosis import explain, went_wrong
 from engine.document.condition import Condition
+from engine.entry import NOTHING, Entry
 from engine.errors import StateError
 from engine.event import Cause
 from engine.execution import Execution
@@ -18,7 +19,6 @@ from engine.node_exit import ContainerOutcome, Left
 from engine.preemption import preempt
 from engine.state import Outcome
 from engine.userdata import Scope
-from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from engine.diagnosis import Diagnosis, explain
 from engine.document.count import whole_number
 from engine.document.expression import Template
 from engine.document.node import FOREACH_OUTCOMES
+from engine.entry import Entry
 from engine.errors import StateError, UserdataError
 from engine.event import Cause, Transitioned
 from engine.execution import Execution
@@ -18,7 +19,6 @@ from engine.node import Node
 from engine.node_exit import ContainerOutcome, Left
 from engine.state import Outcome
 from engine.userdata import Scope
-from engine.work import Entry
 
 _ITEMS = "items"
 _TIMES = "times"

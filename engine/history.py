@@ -37,14 +37,13 @@ from engine.foreach import ForEach
 from engine.grown_lists import GrownLists
 from engine.machine import Machine
 from engine.nearness import near_names
-from engine.node import Node
+from engine.node import Node, Work
 from engine.node_exit import Left, guard_closed
 from engine.plan import Plan
 from engine.point import Point
 from engine.priority import Priority
 from engine.reference import Reference
 from engine.tree import Mark, mark_of
-from engine.work import Work
 
 BY_OUTCOME = ("operator", "start")
 """`Diverted.by` whose target is an outcome and not a place to go to."""

@@ -16,6 +16,7 @@ from engine.contained import contained
 from engine.context import RunningContext
 from engine.document.expression import Template
 from engine.document.signature import StateSignature
+from engine.entry import Entry
 from engine.errors import FlexcellError, StateError, UserdataError
 from engine.execution import Execution
 from engine.nearness import near_names
@@ -23,7 +24,6 @@ from engine.node import Node
 from engine.nonfinite import without_nonfinite
 from engine.state import Context, Outcome, State
 from engine.userdata import Scope
-from engine.work import Entry
 
 
 @dataclass(frozen=True, kw_only=True)

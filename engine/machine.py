@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from engine.diagnosis import Diagnosis
+from engine.entry import NOTHING, Entry
 from engine.errors import StateError
 from engine.event import Transitioned
 from engine.execution import Execution
@@ -18,7 +19,6 @@ from engine.standstill import Standstill
 from engine.state import Outcome
 from engine.userdata import Scope
 from engine.waits import Laps
-from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,23 +9,24 @@ import asyncio
 from collections.abc import Awaitable, Coroutine, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
-from engine.cause import cause_of, describe, under, whole_text
+from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
 from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
+from engine.entry import NOTHING, Entry
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
-from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
+from engine.event import Cause
 from engine.execution import Execution
 from engine.first_step import after_first_step
 from engine.measure import Guard, Retry, Timeout
+from engine.node_events import log, record_diverted, record_entry, record_exit, record_retried
 from engine.node_exit import ContainerOutcome, Left, guard_closed
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, goes_on, is_anybody_asked, preempt
 from engine.state import Outcome
 from engine.userdata import Scope
-from engine.work import NOTHING, Entry, Work
 
 _FAIRNESS = 256
 """Repetitions in a row without a wait after which everybody else has a turn."""
@@ -37,6 +38,49 @@ class Begun(NamedTuple):
 
     visit: int
     rest: Awaitable[Outcome]
+
+
+class Work(Protocol):
+    """What a node does between entering and leaving."""
+
+    @property
+    def kind(self) -> str:
+        """The key of the node in documents."""
+        ...
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The nodes directly inside, by name, in document order."""
+        ...
+
+    @cached_property
+    def nominal(self) -> frozenset[str]:
+        """The outcomes that mean that nothing went wrong inside; asked at every transition."""
+        ...
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """All outcomes it can have."""
+        ...
+
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """Return the values that its own scope begins with when it is entered with `inputs`."""
+        ...
+
+    @property
+    def constant(self) -> Entry | None:
+        """What it is entered with whatever the values of its scope; None where that depends on them."""
+        ...
+
+    def enter(self, scope: Scope) -> Entry:
+        """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
+        ...
+
+    def run(
+        self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution
+    ) -> Coroutine[Any, Any, Outcome]:
+        """Do it."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +128,7 @@ class Node:
         entry, refused = self._constant, None
         if entry is None:
             entry, refused = self._entered(scope, execution)
-        visit = self._record_entry(execution, entry)
+        visit = record_entry(execution, self.path, self.work.kind, entry)
         try:
             if refused is not None:
                 raise refused
@@ -94,7 +138,7 @@ class Node:
             outcome: Outcome = end.value
             if is_anybody_asked() or execution.gate.armed:
                 return self.perform(scope, execution, begun=Begun(visit, _ended(outcome)))
-            self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
+            record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
             return Left(
                 outcome.name, None, outcome.cause, outcome.reason if type(outcome) is ContainerOutcome else None
             )
@@ -159,7 +203,7 @@ class Node:
     async def _gone_on(self, point: Point, scope: Scope, execution: Execution) -> Left:
         """Do with how it had ended what there was no time for any more: retry, on_error."""
         if not execution.goes_on:
-            self._record_diverted(execution, "start", point.left or point.diverted or "", point.cause)
+            record_diverted(execution, self.path, "start", point.left or point.diverted or "", point.cause)
         elif point.diverted is None and not point.passed and not self._plain:
             return await self._guarded(scope, execution, point)
         return self._stood(point)
@@ -185,13 +229,13 @@ class Node:
         return order if not gate.has_order_around(self.path) and goes_on() else None
 
     def _forced(self, outcome: str, execution: Execution) -> Left:
-        self._record_diverted(execution, "operator", outcome, None)
+        record_diverted(execution, self.path, "operator", outcome, None)
         return Left(outcome, None, Cause(message="forced by the operator", where=self.path, kind="Forced"))
 
     async def _guarded(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         try:
             if self.guard is not None and point is None and not self.is_open(self.guard, scope, execution):
-                self._record_diverted(execution, "guard", self.guard.target, None)
+                record_diverted(execution, self.path, "guard", self.guard.target, None)
                 return Left("", self.guard.target, reason=guard_closed(self.path))
             if self.timeout is None:
                 return await self._retried(scope, execution, point)
@@ -203,7 +247,7 @@ class Node:
             if self.on_error is None or being_cancelled():
                 raise
             cause = cause_of(error)
-            self._record_diverted(execution, "on_error", self.on_error, cause)
+            record_diverted(execution, self.path, "on_error", self.on_error, cause)
             return Left("", self.on_error, cause)
 
     def is_open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
@@ -236,7 +280,7 @@ class Node:
         if not body.cancelled() and (error := body.exception()) is not None:
             raise error
         cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
-        self._record_diverted(execution, "timeout", timeout.target, cause)
+        record_diverted(execution, self.path, "timeout", timeout.target, cause)
         return Left("", timeout.target, cause)
 
     async def _retried(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
@@ -261,17 +305,7 @@ class Node:
             point = None
             attempt += 1
             wait_s = min(retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED), LONGEST_S)
-            recorder = execution.recorder
-            recorder.record(
-                Retried(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=self.path,
-                    attempt=attempt,
-                    wait_s=wait_s,
-                    cause=again,
-                )
-            )
+            record_retried(execution, self.path, attempt, wait_s, again)
             if wait_s > 0:
                 await execution.sleep(self.path, wait_s)
             elif attempt % _FAIRNESS == 0:
@@ -287,12 +321,12 @@ class Node:
             self._entered(scope, execution) if point is None else (Entry(None, point.inputs, {}, point), None)
         )
         if point is None:
-            visit = self._record_entry(execution, entry)
+            visit = record_entry(execution, self.path, self.work.kind, entry)
         elif execution.goes_on:
             visit = point.visit
             execution.activity.nodes[path] = visit
         else:
-            visit = self._record_entry(execution, Entry(None, point.inputs, dict(point.inputs), point))
+            visit = record_entry(execution, path, self.work.kind, Entry(None, point.inputs, dict(point.inputs), point))
             for key, value in point.values.items():
                 execution.record_write(path, path, key, value)
         work = self.work.run(entry, path, visit, scope, execution) if refused is None else _raised(refused)
@@ -304,23 +338,23 @@ class Node:
             outcome = await begun.rest
         except asyncio.CancelledError as stray:
             if being_cancelled():
-                self._record_exit(execution, visit, "", preempted=True)
+                record_exit(execution, self.path, visit, "", preempted=True)
                 raise
             error = StateError("a CancelledError came out though nobody asked it to stop", where=self.position or path)
-            self._record_exit(execution, visit, "", cause=cause_of(error))
+            record_exit(execution, self.path, visit, "", cause=cause_of(error))
             raise error from stray
         except Exception as raised:
             error = self._named(raised)
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
-            self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
+            record_exit(execution, self.path, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
             raise error from error.__cause__
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
-            self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)
+            record_exit(execution, self.path, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError
-        self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
+        record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
         reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
         return Left(outcome.name, None, outcome.cause, reason)
 
@@ -340,61 +374,6 @@ class Node:
         named.__cause__ = error
         return named
 
-    def _record_entry(self, execution: Execution, entry: Entry) -> int:
-        """Record that it is entered now, and return which activation this is."""
-        path = self.path
-        visit = execution.visit(path)
-        recorder = execution.recorder
-        if recorder.heard:
-            recorder.record(
-                Entered(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    visit=visit,
-                    kind=self.work.kind,
-                    inputs=entry.shown,
-                )
-            )
-        else:
-            recorder.count()
-        execution.activity.nodes[path] = visit
-        return visit
-
-    def _record_exit(
-        self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
-    ) -> None:
-        recorder = execution.recorder
-        execution.activity.nodes.pop(self.path, None)
-        if not recorder.heard:
-            recorder.count()
-            return
-        recorder.record(
-            Exited(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                visit=visit,
-                outcome=outcome,
-                preempted=preempted,
-                cause=cause,
-            )
-        )
-
-    def _record_diverted(self, execution: Execution, by: str, target: str, cause: Cause | None) -> None:
-        recorder = execution.recorder
-        recorder.record(
-            Diverted(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                visit=execution.visits.get(self.path, 0),
-                by=by,
-                target=target,
-                cause=cause,
-            )
-        )
-
 
 async def _ended(outcome: Outcome) -> Outcome:
     return outcome
@@ -402,13 +381,6 @@ async def _ended(outcome: Outcome) -> Outcome:
 
 async def _raised(error: BaseException) -> Outcome:
     raise error
-
-
-def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
-    """Write a line into the event log of the run."""
-    recorder = execution.recorder
-    said = whole_text(message)
-    recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=said))
 
 
 def overdue(execution: Execution, path: str) -> Overdue:

@@ -19,7 +19,7 @@ from engine.foreach import ForEach
 from engine.leaf import Leaf
 from engine.measure import Guard, Retry, Timeout
 from engine.nearness import near_names
-from engine.node import Node
+from engine.node import Node, Work
 from engine.priority import Priority
 from engine.reference import Reference
 from engine.stand_in import SUBSTITUTE, require_used, stand_in_for
@@ -27,7 +27,6 @@ from engine.state import State
 from engine.state_catalogue import Catalogue, find_state
 from engine.tree import new_tree
 from engine.userdata_value import plain_value
-from engine.work import Work
 
 __all__ = ["Catalogue", "Plan", "new_plan"]
 

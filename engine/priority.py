@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from engine.entry import NOTHING, Entry
 from engine.execution import Execution
 from engine.machine import Machine
 from engine.node import Node
 from engine.node_path import inside
 from engine.state import Outcome
 from engine.userdata import Scope
-from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)

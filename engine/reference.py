@@ -11,12 +11,12 @@ import msgspec
 
 from engine.diagnosis import explain
 from engine.document.expression import Template
+from engine.entry import Entry
 from engine.execution import Execution
 from engine.node import Node
 from engine.node_exit import ContainerOutcome
 from engine.state import Outcome
 from engine.userdata import Scope
-from engine.work import Entry
 
 
 class Referred(Protocol):

@@ -9,17 +9,17 @@ from functools import cached_property, partial
 from engine.document.expression import compile_template
 from engine.document.signature import read_signature
 from engine.document.substitutes import Ending, Substitute, Substitutes
+from engine.entry import NOTHING, Entry
 from engine.errors import DocumentError, ExpressionError, Position, RegistryError, StateError
 from engine.event import Cause
 from engine.execution import Execution
 from engine.leaf import Leaf
 from engine.nearness import near_names
-from engine.node import Node
+from engine.node import Node, Work
 from engine.reference import Reference
 from engine.state import Outcome, State
 from engine.state_catalogue import Catalogue, find_state
 from engine.userdata import Scope
-from engine.work import NOTHING, Entry, Work
 
 SUBSTITUTE = "substitute"
 """The kind of a node that is stood in for, in events and wherever they are shown."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from engine.document.node import TREE_OUTCOMES
+from engine.entry import NOTHING, Entry
 from engine.execution import Execution
 from engine.node import Node
 from engine.state import Outcome
@@ -14,7 +15,6 @@ from engine.tree.history import marks_of
 from engine.tree.part import Part
 from engine.tree.runner import TreeRunner
 from engine.userdata import Scope
-from engine.work import NOTHING, Entry
 
 
 @dataclass(frozen=True, kw_only=True)

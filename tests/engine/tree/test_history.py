@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from engine.entry import Entry
 from engine.event import Entered, Event, Exited, StatusChanged
 from engine.execution import Execution
 from engine.leaf import Leaf
@@ -19,7 +20,6 @@ from engine.state import Outcome
 from engine.tree import Tree, TreeRunner, mark_of
 from engine.tree.history import Mark
 from engine.userdata import Scope
-from engine.work import Entry
 from tests.engine.tree.run_tree import Told, run_plan, tree_plan
 from tests.engine.tree.scripted_states import REMAINING
 from tests.engine.tree.specimen import Specimen, trees
