@@ -91,12 +91,6 @@ class Execution:
         await asyncio.sleep(0)
         await self.recorder.keep_up()
 
-    def visit(self, path: str) -> int:
-        """Count an activation of `path` and return which one it is, from 1."""
-        visit = self.visits.get(path, 0) + 1
-        self.visits[path] = visit
-        return visit
-
     def abandon(self, task: asyncio.Task[Any] | None, path: str, waited_s: float) -> None:
         """Give up a task that does not end; what it leased stays leased."""
         recorder = self.recorder

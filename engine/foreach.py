@@ -116,8 +116,7 @@ class ForEach:
             resumed = point is not None and number == first and point.values
             own = point.values if point is not None and resumed else loop.round_values(number, items[number])
             inner = Scope(f"{path}#{number}", own, scope)
-            begun = loop.child.begin(inner, execution)
-            left = begun if isinstance(begun, Left) else await begun
+            left = await loop.child.perform(inner, execution)
             loop = execution.latest(f"{path}/", loop)
             goes_on = (left.target or left.outcome) in loop.next
             last = number == len(items) - 1

@@ -107,7 +107,7 @@ class Leaf:
         if pausing is not None:
             execution.suspensions.attach(pausing)
         try:
-            outcome: Any = await state.run(context, **entry.inputs)
+            outcome: Any = await (state.run(context, **entry.inputs) if entry.inputs else state.run(context))
         except (FlexcellError, asyncio.CancelledError, GeneratorExit):
             raise
         except BaseException as error:

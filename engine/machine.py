@@ -80,14 +80,15 @@ class Machine:
         recorder = execution.recorder
         while True:
             child = machine.children[name]
-            begun = child.begin(inner, execution)
-            left = begun if isinstance(begun, Left) else await begun
+            left = await child.perform(inner, execution)
             if execution.replaced:
                 # After a hot change the transitions are those of the new version.
                 machine = execution.latest(f"{path}/", machine)
                 child = machine.children[name]
             diagnosis.take(child, left)
-            target = machine._target(child, left)
+            target = child.transitions.get(left.outcome) if left.target is None else left.target
+            if target is None:
+                raise machine._leads_nowhere(child, left)
             if recorder.heard:
                 self._record(execution, path, name, left.outcome, target)
             else:
@@ -104,17 +105,12 @@ class Machine:
                 raise machine._endless(path, target, said, "wait for what is to happen, with a timeout")
             name = target
 
-    def _target(self, child: Node, left: Left) -> str:
-        if left.target is not None:
-            return left.target
-        target = child.transitions.get(left.outcome)
-        if target is None:
-            raise StateError(
-                f"outcome {left.outcome!r} leads nowhere",
-                where=child.position or child.path,
-                hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
-            )
-        return target
+    def _leads_nowhere(self, child: Node, left: Left) -> StateError:
+        return StateError(
+            f"outcome {left.outcome!r} leads nowhere",
+            where=child.position or child.path,
+            hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
+        )
 
     def _record(self, execution: Execution, path: str, source: str, outcome: str, target: str) -> None:
         recorder = execution.recorder

@@ -6,7 +6,7 @@ The same wrapper surrounds a single state and a whole container; what differs is
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Coroutine, Mapping
+from collections.abc import Awaitable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
@@ -19,10 +19,9 @@ from engine.entry import NOTHING, Entry
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
 from engine.event import Cause
 from engine.execution import Execution
-from engine.first_step import after_first_step
 from engine.measure import Guard, Retry, Timeout
 from engine.node_events import log, record_diverted, record_entry, record_exit, record_retried
-from engine.node_exit import ContainerOutcome, Left, guard_closed
+from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, goes_on, is_anybody_asked, preempt
 from engine.state import Outcome
@@ -34,10 +33,10 @@ _MOST_DOUBLED = 60
 
 
 class Begun(NamedTuple):
-    """An attempt that has been entered: which activation of its node it is, and the rest of its work."""
+    """An attempt that has been entered: which activation of its node it is, and its work."""
 
     visit: int
-    rest: Awaitable[Outcome]
+    work: Awaitable[Outcome]
 
 
 class Work(Protocol):
@@ -76,9 +75,7 @@ class Work(Protocol):
         """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
         ...
 
-    def run(
-        self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution
-    ) -> Coroutine[Any, Any, Outcome]:
+    async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Do it."""
         ...
 
@@ -117,35 +114,6 @@ class Node:
     def _plain(self) -> bool:
         return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
 
-    def begin(self, scope: Scope, execution: Execution) -> Left | Coroutine[Any, Any, Left]:
-        """Run the node, in the running task, up to where it first waits; return its end, or the rest to be awaited.
-
-        Raises:
-            FlexcellError: as `perform`.
-        """
-        if not self._is_plain_state or execution.asks_before_nodes:
-            return self.perform(scope, execution)
-        entry, refused = self._constant, None
-        if entry is None:
-            entry, refused = self._entered(scope, execution)
-        visit = record_entry(execution, self.path, self.work.kind, entry)
-        try:
-            if refused is not None:
-                raise refused
-            begun = self.work.run(entry, self.path, visit, scope, execution)
-            awaited = begun.send(None)
-        except StopIteration as end:
-            outcome: Outcome = end.value
-            if is_anybody_asked() or execution.gate.armed:
-                return self.perform(scope, execution, begun=Begun(visit, _ended(outcome)))
-            record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
-            return Left(
-                outcome.name, None, outcome.cause, outcome.reason if type(outcome) is ContainerOutcome else None
-            )
-        except BaseException as error:
-            return self.perform(scope, execution, begun=Begun(visit, _raised(error)))
-        return self.perform(scope, execution, begun=Begun(visit, after_first_step(begun, awaited)))
-
     @cached_property
     def _constant(self) -> Entry | None:
         return self.work.constant
@@ -154,18 +122,36 @@ class Node:
     def _is_plain_state(self) -> bool:
         return self._plain and not self.work.children
 
-    async def perform(self, scope: Scope, execution: Execution, *, begun: Begun | None = None) -> Left:
+    async def perform(self, scope: Scope, execution: Execution) -> Left:
         """Run the node to its end, whatever that is, past the gate before and after it.
-
-        Args:
-            scope: Where it reads and writes.
-            execution: Of the run.
-            begun: What is left of its first attempt, if that has begun.
 
         Raises:
             FlexcellError: the work raised, retries are used up and `on_error` is not set.
             CancelledError: the node was preempted; its clean-up is done.
         """
+        if not self._is_plain_state or execution.asks_before_nodes:
+            return await self._perform(scope, execution, None)
+        # Nearly all activations of nearly all behaviors are these, and nothing happens to most of them.
+        path, work = self.path, self.work
+        entry, refused = self._constant, None
+        if entry is None:
+            entry, refused = self._entered(scope, execution)
+        visit = record_entry(execution, path, work.kind, entry)
+        try:
+            if refused is not None:
+                raise refused
+            outcome = await work.run(entry, path, visit, scope, execution)
+        except BaseException as error:
+            ended = _raised(error)
+        else:
+            if not (is_anybody_asked() or execution.gate.armed):
+                record_exit(execution, path, visit, outcome.name, cause=outcome.cause)
+                return left_with(outcome)
+            ended = _ended(outcome)
+        return await self._perform(scope, execution, Begun(visit, ended))
+
+    async def _perform(self, scope: Scope, execution: Execution, begun: Begun | None) -> Left:
+        """Perform a node of any kind in any circumstances; its first attempt may have ended already."""
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
         while True:
@@ -335,7 +321,7 @@ class Node:
     async def _attempted(self, begun: Begun, execution: Execution) -> Left:
         path, visit = self.path, begun.visit
         try:
-            outcome = await begun.rest
+            outcome = await begun.work
         except asyncio.CancelledError as stray:
             if being_cancelled():
                 record_exit(execution, self.path, visit, "", preempted=True)
@@ -355,8 +341,7 @@ class Node:
             record_exit(execution, self.path, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError
         record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
-        reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
-        return Left(outcome.name, None, outcome.cause, reason)
+        return left_with(outcome)
 
     def _entered(self, scope: Scope, execution: Execution) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""

@@ -10,7 +10,7 @@ from engine.execution import Execution
 
 def record_entry(execution: Execution, path: str, kind: str, entry: Entry) -> int:
     """Record that a node is entered now, and return which activation of it this is."""
-    visit = execution.visit(path)
+    visit = execution.visits[path] = execution.visits.get(path, 0) + 1
     recorder = execution.recorder
     if recorder.heard:
         recorder.record(

@@ -1,10 +1,9 @@
-"""A state's first step is taken on the spot; what is left of it goes the way of every node."""
+"""A state that nothing is asked about takes a short way; whatever happens to it goes the way of every node."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Generator
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import pytest
 
@@ -12,7 +11,6 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.event import Event
-from engine.first_step import after_first_step
 from engine.plan import new_plan
 from engine.run import Run
 from engine.state import Context, Outcome, State
@@ -83,59 +81,3 @@ def test_what_the_first_step_opens_belongs_to_the_task_that_goes_on() -> None:
         return result.outcome, result.duration_s
 
     assert run_virtual(main()) == ("good", pytest.approx(1.0))
-
-
-class Pause:
-    """What a coroutine waits for: gives its name to whoever drives it."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def __await__(self) -> Generator[str, Any, Any]:
-        return (yield self.name)
-
-
-async def patient() -> str:
-    """Wait twice, once more for each cancel."""
-    for name in ("first", "second"):
-        try:
-            await Pause(name)
-        except asyncio.CancelledError:
-            await Pause(f"clean-up of {name}")
-    return "end"
-
-
-def driven(orders: list[BaseException | None]) -> list[object]:
-    """Take the first step of `patient`, drive the rest as a task does, or with exceptions, and return what came."""
-    begun = patient()
-    awaited = begun.send(None)
-
-    async def go_on() -> str:
-        return await after_first_step(begun, awaited)
-
-    rest = go_on()
-    came: list[object] = [rest.send(None)]
-    try:
-        for order in orders:
-            came.append(rest.send(None) if order is None else rest.throw(order))
-    except StopIteration as end:
-        came.append(end.value)
-    except BaseException as error:
-        came.append(type(error))
-    return came
-
-
-def test_the_rest_waits_is_cancelled_and_ends_as_the_coroutine_itself() -> None:
-    cancel = asyncio.CancelledError
-    assert driven([None, None]) == ["first", "second", "end"]
-    assert driven([cancel(), None, None]) == ["first", "clean-up of first", "second", "end"]
-    assert driven([cancel(), None, cancel(), None]) == [
-        "first",
-        "clean-up of first",
-        "second",
-        "clean-up of second",
-        "end",
-    ]
-    assert driven([cancel(), cancel()]) == ["first", "clean-up of first", cancel]
-    assert driven([ValueError("x")]) == ["first", ValueError]
-    assert driven([GeneratorExit()]) == ["first", GeneratorExit]
