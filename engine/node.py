@@ -23,7 +23,7 @@ from engine.measure import Guard, Retry, Timeout
 from engine.node_events import log, record_diverted, record_entry, record_exit, record_retried
 from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
-from engine.preemption import Overdue, being_cancelled, goes_on, is_anybody_asked, preempt
+from engine.preemption import Overdue, being_cancelled, goes_on, preempt
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -144,7 +144,7 @@ class Node:
         except BaseException as error:
             ended = _raised(error)
         else:
-            if not (is_anybody_asked() or execution.gate.armed):
+            if not (execution.gate.armed or being_cancelled()):
                 record_exit(execution, path, visit, outcome.name, cause=outcome.cause)
                 return left_with(outcome)
             ended = _ended(outcome)

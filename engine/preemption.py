@@ -37,11 +37,6 @@ _FOR_ORDERS: set[asyncio.Task[Any]] = set()
 """Those of them that clean up for an order, and are to go on."""
 
 
-def is_anybody_asked() -> bool:
-    """Tell whether any task of this process was asked to end and has not."""
-    return bool(_ASKED)
-
-
 def being_cancelled() -> bool:
     """Tell whether the running branch has been asked to stop."""
     task = asyncio.current_task()

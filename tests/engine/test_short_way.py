@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from contextlib import suppress
 from typing import ClassVar
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Event
+from engine.event import Entered, Event
 from engine.plan import new_plan
 from engine.run import Run
 from engine.state import Context, Outcome, State
@@ -81,3 +82,33 @@ def test_what_the_first_step_opens_belongs_to_the_task_that_goes_on() -> None:
         return result.outcome, result.duration_s
 
     assert run_virtual(main()) == ("good", pytest.approx(1.0))
+
+
+class Deaf(State, frozen=True, kw_only=True):
+    """Take no notice of being cancelled."""
+
+    state_name: ClassVar[str] = "test.Deaf"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        with suppress(asyncio.CancelledError):
+            await asyncio.get_running_loop().create_future()
+        return Outcome("done")
+
+
+def test_a_loop_that_is_closed_over_a_state_that_takes_no_notice_enters_no_other() -> None:
+    """Whoever closes a loop cancels all of its tasks, and asks nobody."""
+    states = "deaf: {state: test.Deaf, transitions: {done: next}}, next: {state: test.Deaf, transitions: {done: good}}"
+    text = f"{HEAD}root:\n  machine: {{initial: deaf, states: {{{states}}}}}\n"
+    plan = new_plan(parse_behavior(text, file="t.yaml"), {"test.Deaf": Deaf})
+    heard: list[Event] = []
+    begun: list[object] = []
+
+    async def main() -> None:
+        run = Run(plan, run="r", bus=SkillBus(new_clock()))
+        run.watch(heard.append)
+        begun.append(asyncio.create_task(run.execute()))
+        await asyncio.sleep(0.1)
+
+    run_virtual(main())
+    assert [event.path for event in heard if isinstance(event, Entered)] == ["root", "root/deaf"]
