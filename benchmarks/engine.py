@@ -31,6 +31,7 @@ CHAIN = Table(
     "Chain of 1000 states: transitions",
     rows=(
         Row("flexcell", "flexcell:chain", (1000,), (20,)),
+        Row("flexcell, watched", "flexcell:watched_chain", (1000,), (20,), "every event is made and kept in a list"),
         Row("flexcell, journaled", "flexcell:journaled_chain", (1000,), (20,), "every event on the disk at the end"),
         Row("flexcell, behavior tree", "flexcell:tree_chain", (1000,), (20,), "a sequence of states"),
         Row("plain asyncio (floor)", "plain_asyncio:chain", (1000,), (20,), "awaits of an empty coroutine"),

@@ -10,10 +10,11 @@ from functools import cached_property, partial
 from engine.cause import under
 from engine.diagnosis import explain, went_wrong
 from engine.document.condition import Condition
+from engine.entry import NOTHING, Entry
 from engine.errors import StateError
 from engine.event import Cause
 from engine.execution import Execution
-from engine.node import NOTHING, Entry, Node, overdue
+from engine.node import Node, overdue
 from engine.node_exit import ContainerOutcome, Left
 from engine.preemption import preempt
 from engine.state import Outcome
@@ -58,6 +59,11 @@ class Concurrency:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """The values its scope begins with."""
         return self.userdata
+
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
 
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""

@@ -14,7 +14,7 @@ from engine.clock import Clock
 from engine.errors import FlexcellError
 from engine.event import Answered, Called, Cause, GoalFinished, GoalHeld, GoalResumed, GoalSent, Received
 from engine.execution import Execution
-from engine.node import log
+from engine.node_events import log
 from engine.nonfinite import without_nonfinite
 from engine.recorder import Recorder
 from engine.skill import Action, Service

@@ -34,6 +34,15 @@ class Diagnosis:
 
     def take(self, child: Node, left: Left) -> None:
         """Note how a child has ended."""
+        if left.cause is not None or left.target is not None or child.has_choice or self._is_decided:
+            self._weigh(child, left)
+        elif left.outcome in child.work.nominal:
+            # Nearly all that end do so.
+            self._reason = (child, left)
+        else:
+            self._weigh(child, left)
+
+    def _weigh(self, child: Node, left: Left) -> None:
         if went_wrong(child, left):
             self.cause = self._reason = explain(child, left)
             self._is_decided = True

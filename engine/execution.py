@@ -13,6 +13,7 @@ from engine.bus import SkillBus
 from engine.clock import Clock
 from engine.control.gate import Gate
 from engine.document.duration import LONGEST_S
+from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import StateError
 from engine.event import Abandoned, UserdataAppended, UserdataWritten
@@ -71,6 +72,11 @@ class Execution:
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
 
+    @property
+    def asks_before_nodes(self) -> bool:
+        """Whether there is more to a node than running it: somebody operates, it goes on, or others are due a turn."""
+        return bool(self.gate.armed or self.points or self.replaced or self.steps > MAX_STEPS)
+
     def counted(self) -> _Counted:
         """Count the steps of what is done inside, which never waits."""
         return _Counted(self)
@@ -84,12 +90,6 @@ class Execution:
         self.steps = 0.0
         await asyncio.sleep(0)
         await self.recorder.keep_up()
-
-    def visit(self, path: str) -> int:
-        """Count an activation of `path` and return which one it is, from 1."""
-        visit = self.visits.get(path, 0) + 1
-        self.visits[path] = visit
-        return visit
 
     def abandon(self, task: asyncio.Task[Any] | None, path: str, waited_s: float) -> None:
         """Give up a task that does not end; what it leased stays leased."""

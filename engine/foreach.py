@@ -11,10 +11,11 @@ from engine.diagnosis import Diagnosis, explain
 from engine.document.count import whole_number
 from engine.document.expression import Template
 from engine.document.node import FOREACH_OUTCOMES
+from engine.entry import Entry
 from engine.errors import StateError, UserdataError
 from engine.event import Cause, Transitioned
 from engine.execution import Execution
-from engine.node import Entry, Node
+from engine.node import Node
 from engine.node_exit import ContainerOutcome, Left
 from engine.state import Outcome
 from engine.userdata import Scope
@@ -65,6 +66,11 @@ class ForEach:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Nothing: each round has a scope of its own."""
         return {}
+
+    @property
+    def constant(self) -> None:
+        """That depends on userdata."""
+        return None
 
     def enter(self, scope: Scope) -> Entry:
         """Evaluate the items once, for all rounds."""

@@ -16,10 +16,11 @@ from engine.contained import contained
 from engine.context import RunningContext
 from engine.document.expression import Template
 from engine.document.signature import StateSignature
+from engine.entry import Entry
 from engine.errors import FlexcellError, StateError, UserdataError
 from engine.execution import Execution
 from engine.nearness import near_names
-from engine.node import Entry, Node
+from engine.node import Node
 from engine.nonfinite import without_nonfinite
 from engine.state import Context, Outcome, State
 from engine.userdata import Scope
@@ -54,13 +55,21 @@ class Leaf:
         """The outcomes its class calls success; all of them where it does not say."""
         return frozenset(self.state.success or self.state.outcomes)
 
+    @property
+    def constant(self) -> Entry | None:
+        """What it is entered with where neither parameters nor inputs depend on userdata."""
+        return self._constant
+
     @cached_property
     def _constant(self) -> Entry | None:
-        """The entry where neither parameters nor inputs depend on userdata."""
         if self.parameters.names or self.signature.inputs:
             return None
-        given = self.parameters.evaluate({})
-        return Entry(self._instance(given), {}, _plain(given))
+        try:
+            given = self.parameters.evaluate({})
+            return Entry(self._instance(given), {}, _plain(given))
+        except Exception:
+            # `enter` raises it again, where it is told and handled.
+            return None
 
     @cached_property
     def commands_hardware(self) -> bool:
@@ -91,15 +100,14 @@ class Leaf:
         if state is None:
             raise StateError("entered without a state", where=path)
         resources = self._resources(state) if self.commands_hardware else ()
-        holder = Holder(execution.run, path)
         if resources:
-            execution.bus.leases.acquire(resources, holder)
+            execution.bus.leases.acquire(resources, Holder(execution.run, path))
         context = RunningContext(execution, path, visit, self.autonomy)
         pausing = PausingState(state, context) if self._pauses else None
         if pausing is not None:
             execution.suspensions.attach(pausing)
         try:
-            outcome: Any = await state.run(context, **entry.inputs)
+            outcome: Any = await (state.run(context, **entry.inputs) if entry.inputs else state.run(context))
         except (FlexcellError, asyncio.CancelledError, GeneratorExit):
             raise
         except BaseException as error:
@@ -111,10 +119,11 @@ class Leaf:
             if pausing is not None:
                 await execution.suspensions.detach(pausing)
             if resources:
-                execution.bus.leases.release(resources, holder)
+                execution.bus.leases.release(resources, Holder(execution.run, path))
         if not isinstance(outcome, Outcome) or outcome.name not in self.state.outcomes:
             raise self._undeclared_outcome(outcome)
-        self._write(outcome, path, scope, execution)
+        if outcome.outputs:
+            self._write(outcome, path, scope, execution)
         return outcome if outcome.cause is None else Outcome(outcome.name, outcome.outputs, kept(outcome.cause))
 
     def _resources(self, state: State) -> tuple[str, ...]:

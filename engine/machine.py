@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from engine.diagnosis import Diagnosis
+from engine.entry import NOTHING, Entry
 from engine.errors import StateError
 from engine.event import Transitioned
 from engine.execution import Execution
 from engine.nearness import near_names
-from engine.node import NOTHING, Entry, Node
+from engine.node import Node
 from engine.node_exit import Left
 from engine.standstill import Standstill
 from engine.state import Outcome
@@ -56,6 +57,11 @@ class Machine:
         """The values its scope begins with."""
         return self.userdata
 
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""
         return NOTHING
@@ -71,14 +77,22 @@ class Machine:
         laps = Laps(path, execution.waits, execution.clock)
         standstill = Standstill(path, execution) if execution.clock.virtual else None
         machine = self
+        recorder = execution.recorder
         while True:
-            left = await machine.children[name].perform(inner, execution)
-            # After a hot change the transitions are those of the new version.
-            machine = execution.latest(f"{path}/", machine)
             child = machine.children[name]
+            left = await child.perform(inner, execution)
+            if execution.replaced:
+                # After a hot change the transitions are those of the new version.
+                machine = execution.latest(f"{path}/", machine)
+                child = machine.children[name]
             diagnosis.take(child, left)
-            target = machine._target(child, left)
-            self._record(execution, path, name, left.outcome, target)
+            target = child.transitions.get(left.outcome) if left.target is None else left.target
+            if target is None:
+                raise machine._leads_nowhere(child, left)
+            if recorder.heard:
+                self._record(execution, path, name, left.outcome, target)
+            else:
+                recorder.count()
             if target not in machine.children:
                 return diagnosis.outcome(target, machine.nominal)
             if laps.step(most=execution.instant_limit):
@@ -91,17 +105,12 @@ class Machine:
                 raise machine._endless(path, target, said, "wait for what is to happen, with a timeout")
             name = target
 
-    def _target(self, child: Node, left: Left) -> str:
-        if left.target is not None:
-            return left.target
-        target = child.transitions.get(left.outcome)
-        if target is None:
-            raise StateError(
-                f"outcome {left.outcome!r} leads nowhere",
-                where=child.position or child.path,
-                hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
-            )
-        return target
+    def _leads_nowhere(self, child: Node, left: Left) -> StateError:
+        return StateError(
+            f"outcome {left.outcome!r} leads nowhere",
+            where=child.position or child.path,
+            hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
+        )
 
     def _record(self, execution: Execution, path: str, source: str, outcome: str, target: str) -> None:
         recorder = execution.recorder

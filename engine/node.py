@@ -6,23 +6,25 @@ The same wrapper surrounds a single state and a whole container; what differs is
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Awaitable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
-from engine.cause import cause_of, describe, under, whole_text
+from engine.cause import cause_of, describe, under
 from engine.control.gate import Order
 from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
+from engine.entry import NOTHING, Entry
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
-from engine.event import Cause, Diverted, Entered, Exited, Logged, Retried
+from engine.event import Cause
 from engine.execution import Execution
 from engine.measure import Guard, Retry, Timeout
-from engine.node_exit import ContainerOutcome, Left, guard_closed
+from engine.node_events import log, record_diverted, record_entry, record_exit, record_retried
+from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, goes_on, preempt
-from engine.state import Outcome, State
+from engine.state import Outcome
 from engine.userdata import Scope
 
 _FAIRNESS = 256
@@ -30,20 +32,11 @@ _FAIRNESS = 256
 _MOST_DOUBLED = 60
 
 
-@dataclass(frozen=True)
-class Entry:
-    """What a node was entered with: the state to run, its input values, and both as plain data.
+class Begun(NamedTuple):
+    """An attempt that has been entered: which activation of its node it is, and its work."""
 
-    `point` says where to go on inside a container that was entered before.
-    """
-
-    state: State | None = None
-    inputs: Mapping[str, object] = field(default_factory=dict[str, object])
-    shown: dict[str, object] = field(default_factory=dict[str, object])
-    point: Point | None = None
-
-
-NOTHING = Entry()
+    visit: int
+    work: Awaitable[Outcome]
 
 
 class Work(Protocol):
@@ -71,6 +64,11 @@ class Work(Protocol):
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Return the values that its own scope begins with when it is entered with `inputs`."""
+        ...
+
+    @property
+    def constant(self) -> Entry | None:
+        """What it is entered with whatever the values of its scope; None where that depends on them."""
         ...
 
     def enter(self, scope: Scope) -> Entry:
@@ -116,6 +114,14 @@ class Node:
     def _plain(self) -> bool:
         return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
 
+    @cached_property
+    def _constant(self) -> Entry | None:
+        return self.work.constant
+
+    @cached_property
+    def _is_plain_state(self) -> bool:
+        return self._plain and not self.work.children
+
     async def perform(self, scope: Scope, execution: Execution) -> Left:
         """Run the node to its end, whatever that is, past the gate before and after it.
 
@@ -123,13 +129,39 @@ class Node:
             FlexcellError: the work raised, retries are used up and `on_error` is not set.
             CancelledError: the node was preempted; its clean-up is done.
         """
+        if not self._is_plain_state or execution.asks_before_nodes:
+            return await self._perform(scope, execution, None)
+        # Nearly all activations of nearly all behaviors are these, and nothing happens to most of them.
+        path, work = self.path, self.work
+        entry, refused = self._constant, None
+        if entry is None:
+            entry, refused = self._entered(scope, execution)
+        visit = record_entry(execution, path, work.kind, entry)
+        try:
+            if refused is not None:
+                raise refused
+            outcome = await work.run(entry, path, visit, scope, execution)
+        except BaseException as error:
+            ended = _raised(error)
+        else:
+            if not (execution.gate.armed or being_cancelled()):
+                record_exit(execution, path, visit, outcome.name, cause=outcome.cause)
+                return left_with(outcome)
+            ended = _ended(outcome)
+        return await self._perform(scope, execution, Begun(visit, ended))
+
+    async def _perform(self, scope: Scope, execution: Execution, begun: Begun | None) -> Left:
+        """Perform a node of any kind in any circumstances; its first attempt may have ended already."""
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
         while True:
             left = None
             order: Order | None = None
             try:
-                if point is not None and not point.active:
+                if begun is not None:
+                    first, begun = begun, None
+                    left = await self._attempted(first, execution)
+                elif point is not None and not point.active:
                     left = await self._gone_on(point, scope, execution)
                 elif gate.armed and point is None:
                     order = await gate.before(self.path, execution.visits.get(self.path, 0) + 1, scope)
@@ -157,7 +189,7 @@ class Node:
     async def _gone_on(self, point: Point, scope: Scope, execution: Execution) -> Left:
         """Do with how it had ended what there was no time for any more: retry, on_error."""
         if not execution.goes_on:
-            self._record_diverted(execution, "start", point.left or point.diverted or "", point.cause)
+            record_diverted(execution, self.path, "start", point.left or point.diverted or "", point.cause)
         elif point.diverted is None and not point.passed and not self._plain:
             return await self._guarded(scope, execution, point)
         return self._stood(point)
@@ -183,13 +215,13 @@ class Node:
         return order if not gate.has_order_around(self.path) and goes_on() else None
 
     def _forced(self, outcome: str, execution: Execution) -> Left:
-        self._record_diverted(execution, "operator", outcome, None)
+        record_diverted(execution, self.path, "operator", outcome, None)
         return Left(outcome, None, Cause(message="forced by the operator", where=self.path, kind="Forced"))
 
     async def _guarded(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         try:
             if self.guard is not None and point is None and not self.is_open(self.guard, scope, execution):
-                self._record_diverted(execution, "guard", self.guard.target, None)
+                record_diverted(execution, self.path, "guard", self.guard.target, None)
                 return Left("", self.guard.target, reason=guard_closed(self.path))
             if self.timeout is None:
                 return await self._retried(scope, execution, point)
@@ -201,7 +233,7 @@ class Node:
             if self.on_error is None or being_cancelled():
                 raise
             cause = cause_of(error)
-            self._record_diverted(execution, "on_error", self.on_error, cause)
+            record_diverted(execution, self.path, "on_error", self.on_error, cause)
             return Left("", self.on_error, cause)
 
     def is_open(self, guard: Guard, scope: Scope, execution: Execution) -> bool:
@@ -234,7 +266,7 @@ class Node:
         if not body.cancelled() and (error := body.exception()) is not None:
             raise error
         cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
-        self._record_diverted(execution, "timeout", timeout.target, cause)
+        record_diverted(execution, self.path, "timeout", timeout.target, cause)
         return Left("", timeout.target, cause)
 
     async def _retried(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
@@ -259,73 +291,57 @@ class Node:
             point = None
             attempt += 1
             wait_s = min(retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED), LONGEST_S)
-            recorder = execution.recorder
-            recorder.record(
-                Retried(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=self.path,
-                    attempt=attempt,
-                    wait_s=wait_s,
-                    cause=again,
-                )
-            )
+            record_retried(execution, self.path, attempt, wait_s, again)
             if wait_s > 0:
                 await execution.sleep(self.path, wait_s)
             elif attempt % _FAIRNESS == 0:
                 await asyncio.sleep(0)
 
     async def _attempt(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
-        recorder = execution.recorder
         path = self.path
         if point is not None and not (point.entered and self.work.children):
             point = None
         if execution.steps > MAX_STEPS:
             await execution.give_way()
-        visit = point.visit if point is not None and execution.goes_on else execution.visit(path)
         entry, refused = (
             self._entered(scope, execution) if point is None else (Entry(None, point.inputs, {}, point), None)
         )
-        if point is None or not execution.goes_on:
-            recorder.record(
-                Entered(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    visit=visit,
-                    kind=self.work.kind,
-                    inputs=entry.shown if point is None else dict(point.inputs),
-                )
-            )
-            if point is not None:
-                for key, value in point.values.items():
-                    execution.record_write(path, path, key, value)
-        execution.activity.nodes[path] = visit
+        if point is None:
+            visit = record_entry(execution, self.path, self.work.kind, entry)
+        elif execution.goes_on:
+            visit = point.visit
+            execution.activity.nodes[path] = visit
+        else:
+            visit = record_entry(execution, path, self.work.kind, Entry(None, point.inputs, dict(point.inputs), point))
+            for key, value in point.values.items():
+                execution.record_write(path, path, key, value)
+        work = self.work.run(entry, path, visit, scope, execution) if refused is None else _raised(refused)
+        return await self._attempted(Begun(visit, work), execution)
+
+    async def _attempted(self, begun: Begun, execution: Execution) -> Left:
+        path, visit = self.path, begun.visit
         try:
-            if refused is not None:
-                raise refused
-            outcome = await self.work.run(entry, path, visit, scope, execution)
+            outcome = await begun.work
         except asyncio.CancelledError as stray:
             if being_cancelled():
-                self._record_exit(execution, visit, "", preempted=True)
+                record_exit(execution, self.path, visit, "", preempted=True)
                 raise
             error = StateError("a CancelledError came out though nobody asked it to stop", where=self.position or path)
-            self._record_exit(execution, visit, "", cause=cause_of(error))
+            record_exit(execution, self.path, visit, "", cause=cause_of(error))
             raise error from stray
         except Exception as raised:
             error = self._named(raised)
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
-            self._record_exit(execution, visit, "", preempted=being_cancelled(), cause=cause_of(error))
+            record_exit(execution, self.path, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
                 log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
             raise error from error.__cause__
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
-            self._record_exit(execution, visit, outcome.name, preempted=True, cause=outcome.cause)
+            record_exit(execution, self.path, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError
-        self._record_exit(execution, visit, outcome.name, cause=outcome.cause)
-        reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
-        return Left(outcome.name, None, outcome.cause, reason)
+        record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
+        return left_with(outcome)
 
     def _entered(self, scope: Scope, execution: Execution) -> tuple[Entry, FlexcellError | None]:
         """Evaluate the entry; a failure counts as a failure of the node that was entered."""
@@ -343,43 +359,13 @@ class Node:
         named.__cause__ = error
         return named
 
-    def _record_exit(
-        self, execution: Execution, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
-    ) -> None:
-        recorder = execution.recorder
-        execution.activity.nodes.pop(self.path, None)
-        recorder.record(
-            Exited(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                visit=visit,
-                outcome=outcome,
-                preempted=preempted,
-                cause=cause,
-            )
-        )
 
-    def _record_diverted(self, execution: Execution, by: str, target: str, cause: Cause | None) -> None:
-        recorder = execution.recorder
-        recorder.record(
-            Diverted(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                visit=execution.visits.get(self.path, 0),
-                by=by,
-                target=target,
-                cause=cause,
-            )
-        )
+async def _ended(outcome: Outcome) -> Outcome:
+    return outcome
 
 
-def log(execution: Execution, path: str, message: str, *, level: str = "info") -> None:
-    """Write a line into the event log of the run."""
-    recorder = execution.recorder
-    said = whole_text(message)
-    recorder.record(Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level=level, message=said))
+async def _raised(error: BaseException) -> Outcome:
+    raise error
 
 
 def overdue(execution: Execution, path: str) -> Overdue:

@@ -26,6 +26,12 @@ class ContainerOutcome(Outcome, frozen=True):
     reason: Cause | None = None
 
 
+def left_with(outcome: Outcome) -> Left:
+    """Return how a node is left whose work has ended so."""
+    reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
+    return Left(outcome.name, None, outcome.cause, reason)
+
+
 def guard_closed(path: str) -> Cause:
     """Return why a node was not entered."""
     return Cause(message="the guard is closed", where=path, kind="Guard")

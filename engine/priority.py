@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
+from engine.entry import NOTHING, Entry
 from engine.execution import Execution
 from engine.machine import Machine
-from engine.node import NOTHING, Entry, Node
+from engine.node import Node
 from engine.node_path import inside
 from engine.state import Outcome
 from engine.userdata import Scope
@@ -43,6 +44,11 @@ class Priority:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """The values its scope begins with."""
         return self.machine.userdata
+
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
 
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the children evaluate theirs."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from engine.clock import Clock
 from engine.errors import JournalError
 from engine.event import Event
-from engine.journal import RunJournal
+from engine.journal import NullRunJournal, RunJournal
 
 Watcher = Callable[[Event], None]
 _log = logging.getLogger("flexcell.run")
@@ -28,8 +28,11 @@ class Recorder:
         self._clock_now_s = clock.now_s
         self._journal = journal
         self._start_s = clock.now_s() - after_s
+        self._keeps = not isinstance(journal, NullRunJournal)
         self._watchers: tuple[Watcher, ...] = ()
         self._seq = after_seq
+        self.heard = self._keeps
+        """Whether anybody keeps or watches events; while nobody does it is enough to `count` them."""
         self.ended = False
         """True once the end of the run is recorded; what states that were given up still say is not."""
 
@@ -42,6 +45,10 @@ class Recorder:
         """Return the number of the next event."""
         self._seq += 1
         return self._seq
+
+    def count(self) -> None:
+        """Number an event that nobody hears."""
+        self._seq += 1
 
     def record(self, event: Event) -> None:
         """Take an event made with `next_seq` and `now_s`."""
@@ -68,10 +75,12 @@ class Recorder:
     def watch(self, watcher: Watcher) -> None:
         """Call `watcher` with every event from now on."""
         self._watchers = (*self._watchers, watcher)
+        self.heard = True
 
     def unwatch(self, watcher: Watcher) -> None:
         """Stop calling it."""
         self._watchers = tuple(w for w in self._watchers if w is not watcher)
+        self.heard = self._keeps or bool(self._watchers)
 
     def on_lost(self, listener: Callable[[JournalError], None]) -> None:
         """Call `listener` when what was recorded cannot be made durable and no commit waits to be told."""

@@ -11,8 +11,9 @@ import msgspec
 
 from engine.diagnosis import explain
 from engine.document.expression import Template
+from engine.entry import Entry
 from engine.execution import Execution
-from engine.node import Entry, Node
+from engine.node import Node
 from engine.node_exit import ContainerOutcome
 from engine.state import Outcome
 from engine.userdata import Scope
@@ -79,6 +80,11 @@ class Reference:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """The values its scope begins with."""
         return {**self.target.userdata, **inputs}
+
+    @property
+    def constant(self) -> None:
+        """That depends on userdata."""
+        return None
 
     def enter(self, scope: Scope) -> Entry:
         """Evaluate its parameters and read what flows in."""

@@ -19,7 +19,8 @@ from engine.event import Cause, RunEnded
 from engine.execution import Execution
 from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
-from engine.node import Node, log
+from engine.node import Node
+from engine.node_events import log
 from engine.node_exit import Left
 from engine.plan import Plan
 from engine.preemption import preempt_for_good

@@ -9,12 +9,13 @@ from functools import cached_property, partial
 from engine.document.expression import compile_template
 from engine.document.signature import read_signature
 from engine.document.substitutes import Ending, Substitute, Substitutes
+from engine.entry import NOTHING, Entry
 from engine.errors import DocumentError, ExpressionError, Position, RegistryError, StateError
 from engine.event import Cause
 from engine.execution import Execution
 from engine.leaf import Leaf
 from engine.nearness import near_names
-from engine.node import Entry, Node, Work
+from engine.node import Node, Work
 from engine.reference import Reference
 from engine.state import Outcome, State
 from engine.state_catalogue import Catalogue, find_state
@@ -57,9 +58,14 @@ class StandIn:
         """Nothing: it has no scope of its own."""
         return {}
 
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
+
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: what the original would be given may not even be there in a test."""
-        return Entry()
+        return NOTHING
 
     async def run(self, entry: Entry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
         """Wait, write the outputs, and end."""

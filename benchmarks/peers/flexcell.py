@@ -87,6 +87,12 @@ def chain(watch: Stopwatch, states: int) -> Sample:
     return asyncio.run(_measured(watch, plan, states))
 
 
+def watched_chain(watch: Stopwatch, states: int) -> Sample:
+    """The same with somebody who takes every event."""
+    plan = _plan(_machine(states, "good", indent="  "))
+    return asyncio.run(_measured(watch, plan, states, watched=True))
+
+
 def tree_chain(watch: Stopwatch, states: int) -> Sample:
     """Run a behavior tree, a sequence of states that end at once."""
     plan = _plan(_tree("sequence", states, "{state: bench.Step}"))
@@ -198,14 +204,22 @@ def _tree(kind: str, children: int, child: str) -> str:
 
 
 async def _measured(
-    watch: Stopwatch, plan: Plan, units: int, begin: Callable[[], RunJournal | None] = lambda: None
+    watch: Stopwatch,
+    plan: Plan,
+    units: int,
+    begin: Callable[[], RunJournal | None] = lambda: None,
+    *,
+    watched: bool = False,
 ) -> Sample:
     bus = SkillBus(new_clock())
-    return await watch.measure_async(units, lambda: _run(plan, bus, begin()))
+    return await watch.measure_async(units, lambda: _run(plan, bus, begin(), watched=watched))
 
 
-async def _run(plan: Plan, bus: SkillBus, journal: RunJournal | None = None) -> None:
-    result = await Run(plan, run="bench", bus=bus, journal=journal).execute()
+async def _run(plan: Plan, bus: SkillBus, journal: RunJournal | None = None, *, watched: bool = False) -> None:
+    run = Run(plan, run="bench", bus=bus, journal=journal)
+    if watched:
+        run.watch(list[Event]().append)
+    result = await run.execute()
     if result.status != "finished":
         raise AssertionError(f"the benchmark's run ended {result.status}: {result.cause}")
 

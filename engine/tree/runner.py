@@ -16,7 +16,7 @@ from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
 from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.execution import Execution
-from engine.node import log
+from engine.node_events import log
 from engine.node_path import inside
 from engine.state import Outcome
 from engine.tree.alarms import Alarms

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from engine.document.node import TREE_OUTCOMES
+from engine.entry import NOTHING, Entry
 from engine.execution import Execution
-from engine.node import NOTHING, Entry, Node
+from engine.node import Node
 from engine.state import Outcome
 from engine.tree.history import marks_of
 from engine.tree.part import Part
@@ -50,6 +51,11 @@ class Tree:
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """Nothing: its scope begins empty."""
         return {}
+
+    @property
+    def constant(self) -> Entry:
+        """Nothing."""
+        return NOTHING
 
     def enter(self, scope: Scope) -> Entry:
         """Nothing is evaluated: the leaves evaluate theirs."""

@@ -11,10 +11,10 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from engine.entry import Entry
 from engine.event import Entered, Event, Exited, StatusChanged
 from engine.execution import Execution
 from engine.leaf import Leaf
-from engine.node import Entry
 from engine.plan import Plan
 from engine.state import Outcome
 from engine.tree import Tree, TreeRunner, mark_of
