@@ -25,7 +25,7 @@ def test_mutated_documents_go_through_check_editor_and_run() -> None:
 
 def _require_calm(made: Hostility, texts: list[str]) -> None:
     before = METER.spent
-    made.pass_through(text for text in texts if len(text) < 5 * MAX_TEXT)
+    made.pass_through(enumerate(text for text in texts if len(text) < 5 * MAX_TEXT))
     assert [error for tally in made.tallies for error in tally.errors] == []
     assert made.checking.refused > 0
     assert made.running.count > 0
