@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import hmac
 import http
-import io
 import logging
 from collections.abc import Callable, Generator
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
 import msgspec
+import rich
 import viser
 import websockets.asyncio.server
 
@@ -46,8 +46,9 @@ def page() -> bytes:
 
 def new_server(key: str) -> viser.ViserServer:
     """Start viser on a loopback port that demands `key`; takes some 20 ms."""
-    # viser greets on stdout, which belongs to the command line's own output.
-    with _locked(key), redirect_stdout(io.StringIO()):
+    # viser greets on stdout, which belongs to the command line's own output; nobody else uses rich's global console.
+    rich.reconfigure(quiet=True)
+    with _locked(key):
         # 127.0.0.1 can always be bound; viser would wait for ever on an address that cannot.
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     # Any connected page may ask viser to publish itself through a public tunnel: never.

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import io
 import logging
 import secrets
 import threading
 import time
-from contextlib import redirect_stdout
 
 import viser
 
@@ -133,8 +131,7 @@ class CellView:
             self._past.close()
             self._past = None
         if self._server is not None:
-            with redirect_stdout(io.StringIO()):
-                self._server.stop()
+            self._server.stop()
             self._server = None
 
     def _on_shown(self) -> None:
