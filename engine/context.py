@@ -14,7 +14,6 @@ from engine.clock import Clock
 from engine.errors import FlexcellError
 from engine.event import Answered, Called, Cause, GoalFinished, GoalHeld, GoalResumed, GoalSent, Received
 from engine.execution import Execution
-from engine.node_events import log
 from engine.nonfinite import without_nonfinite
 from engine.recorder import Recorder
 from engine.skill import Action, Service
@@ -61,17 +60,13 @@ class HeldGoal:
         """Bring the device to rest; raises BusError where the skill cannot be held."""
         await self._goal.hold()
         if not self._goal.finished:
-            recorder = self._recorder
-            recorder.record(GoalHeld(seq=recorder.next_seq(), time_s=recorder.now_s(), path=self.path, goal=self.label))
+            self._recorder.emit(GoalHeld, path=self.path, goal=self.label)
 
     async def resume(self) -> None:
         """Let it go on."""
         await self._goal.resume()
         if not self._goal.finished:
-            recorder = self._recorder
-            recorder.record(
-                GoalResumed(seq=recorder.next_seq(), time_s=recorder.now_s(), path=self.path, goal=self.label)
-            )
+            self._recorder.emit(GoalResumed, path=self.path, goal=self.label)
 
 
 class RunningContext:
@@ -156,7 +151,7 @@ class RunningContext:
 
     def log(self, message: str, *, level: str = "info") -> None:
         """Write a line into the event log."""
-        log(self._execution, self.path, message, level=level)
+        self._execution.recorder.log(self.path, message, level=level)
 
     def random(self) -> float:
         """A number in [0, 1) from the run's seed."""
@@ -182,69 +177,38 @@ class RunningContext:
         return Holder(self._execution.run, self.path)
 
     def _received(self, topic: str, message: S) -> S:
-        recorder = self._execution.recorder
-        recorder.record(
-            Received(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                topic=topic,
-                message=without_nonfinite(msgspec.to_builtins(message)),
-            )
+        self._execution.recorder.emit(
+            Received, path=self.path, topic=topic, message=without_nonfinite(msgspec.to_builtins(message))
         )
         return message
 
     def _record_called(self, call: str, request: Service[Any], address: str) -> None:
-        recorder = self._execution.recorder
-        recorder.record(
-            Called(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                call=call,
-                address=address,
-                request=without_nonfinite(msgspec.to_builtins(request)),
-            )
+        self._execution.recorder.emit(
+            Called, path=self.path, call=call, address=address, request=without_nonfinite(msgspec.to_builtins(request))
         )
 
     def _record_answered(self, call: str, answer: object, cause: Cause | None) -> None:
-        recorder = self._execution.recorder
-        recorder.record(
-            Answered(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                call=call,
-                result=without_nonfinite(msgspec.to_builtins(answer)),
-                cause=cause,
-            )
+        self._execution.recorder.emit(
+            Answered, path=self.path, call=call, result=without_nonfinite(msgspec.to_builtins(answer)), cause=cause
         )
 
     def _record_sent(self, goal_id: str, goal: Action[Any, Any], address: str) -> None:
-        recorder = self._execution.recorder
-        recorder.record(
-            GoalSent(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                goal=goal_id,
-                address=address,
-                request=without_nonfinite(msgspec.to_builtins(goal)),
-            )
+        self._execution.recorder.emit(
+            GoalSent,
+            path=self.path,
+            goal=goal_id,
+            address=address,
+            request=without_nonfinite(msgspec.to_builtins(goal)),
         )
 
     def _record_finished(self, end: GoalEnd[Any], goal_id: str) -> None:
-        recorder = self._execution.recorder
-        recorder.record(
-            GoalFinished(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=self.path,
-                goal=goal_id,
-                status=end.status.value,
-                result=without_nonfinite(msgspec.to_builtins(end.result)) if end.result is not None else None,
-                cause=end.cause,
-            )
+        self._execution.recorder.emit(
+            GoalFinished,
+            path=self.path,
+            goal=goal_id,
+            status=end.status.value,
+            result=without_nonfinite(msgspec.to_builtins(end.result)) if end.result is not None else None,
+            cause=end.cause,
         )
 
 

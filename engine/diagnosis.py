@@ -34,9 +34,8 @@ class Diagnosis:
 
     def take(self, child: Node, left: Left) -> None:
         """Note how a child has ended."""
-        if left.cause is not None or left.target is not None or child.has_choice or self._is_decided:
-            self._weigh(child, left)
-        elif left.outcome in child.work.nominal:
+        is_plain = left.cause is None and left.target is None and not (child.has_choice or self._is_decided)
+        if is_plain and left.outcome in child.work.nominal:
             # Nearly all that end do so.
             self._reason = (child, left)
         else:

@@ -32,7 +32,7 @@ class Cause(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 # None of them can be part of a circle, and a server keeps hundreds of thousands: the collector need not look at them.
-class Event(msgspec.Struct, frozen=True, kw_only=True, tag_field="event", gc=False):
+class Event(msgspec.Struct, frozen=True, tag_field="event", gc=False):
     """One fact of a run."""
 
     seq: int

@@ -93,8 +93,7 @@ class Execution:
 
     def abandon(self, task: asyncio.Task[Any] | None, path: str, waited_s: float) -> None:
         """Give up a task that does not end; what it leased stays leased."""
-        recorder = self.recorder
-        recorder.record(Abandoned(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, waited_s=waited_s))
+        self.recorder.emit(Abandoned, path=path, waited_s=waited_s)
         if task is not None:
             self.abandoned[path] = task
 
@@ -148,28 +147,13 @@ class Execution:
             self.record_write(path, owner, key, plain_value(grown, key=key, where=path))
         else:
             self.stirs += 1
-            recorder = self.recorder
-            recorder.record(
-                UserdataAppended(
-                    seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, scope=owner, key=key, value=plain
-                )
-            )
+            self.recorder.emit(UserdataAppended, path=path, scope=owner, key=key, value=plain)
         return len(grown)
 
     def record_write(self, path: str, scope: str, key: str, value: object) -> None:
         """Record that the node at `path` wrote a plain value to `key` of `scope`."""
         self.stirs += 1
-        recorder = self.recorder
-        recorder.record(
-            UserdataWritten(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                scope=scope,
-                key=key,
-                value=value,
-            )
-        )
+        self.recorder.emit(UserdataWritten, path=path, scope=scope, key=key, value=value)
 
     async def sleep(self, path: str, duration_s: float) -> None:
         """Let `duration_s` pass in which the branch of `path` is not held.

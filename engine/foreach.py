@@ -16,7 +16,7 @@ from engine.errors import StateError, UserdataError
 from engine.event import Cause, Transitioned
 from engine.execution import Execution
 from engine.node import Node
-from engine.node_exit import ContainerOutcome, Left
+from engine.node_exit import ContainerOutcome
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -122,7 +122,8 @@ class ForEach:
             last = number == len(items) - 1
             if goes_on:
                 loop._collect(inner, scope, path, execution)
-            self._record(execution, path, left, (EXHAUSTED if last else "child") if goes_on else BROKEN)
+            target = (EXHAUSTED if last else "child") if goes_on else BROKEN
+            execution.recorder.emit(Transitioned, path=path, source="child", outcome=left.outcome, target=target)
             diagnosis.take(loop.child, left)
             if not goes_on:
                 return Outcome(BROKEN, cause=explain(loop.child, left))
@@ -130,19 +131,6 @@ class ForEach:
                 await execution.give_way()
         nothing = Cause(message="there was nothing to go through", where=path)
         return ContainerOutcome(EXHAUSTED, reason=diagnosis.reason if len(items) else nothing)
-
-    def _record(self, execution: Execution, path: str, left: Left, target: str) -> None:
-        recorder = execution.recorder
-        recorder.record(
-            Transitioned(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                source="child",
-                outcome=left.outcome,
-                target=target,
-            )
-        )
 
     def round_values(self, number: int, item: object) -> dict[str, object]:
         """Return the values that the scope of a round begins with."""

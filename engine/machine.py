@@ -90,7 +90,7 @@ class Machine:
             if target is None:
                 raise machine._leads_nowhere(child, left)
             if recorder.heard:
-                self._record(execution, path, name, left.outcome, target)
+                recorder.emit(Transitioned, path=path, source=name, outcome=left.outcome, target=target)
             else:
                 recorder.count()
             if target not in machine.children:
@@ -110,19 +110,6 @@ class Machine:
             f"outcome {left.outcome!r} leads nowhere",
             where=child.position or child.path,
             hint=f"add it to `transitions`; {near_names(left.outcome, child.transitions)}",
-        )
-
-    def _record(self, execution: Execution, path: str, source: str, outcome: str, target: str) -> None:
-        recorder = execution.recorder
-        recorder.record(
-            Transitioned(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                source=source,
-                outcome=outcome,
-                target=target,
-            )
         )
 
     def _endless(self, path: str, name: str, said: str, hint: str) -> StateError:

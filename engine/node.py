@@ -17,10 +17,10 @@ from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
 from engine.entry import NOTHING, Entry
 from engine.errors import ExpressionError, FlexcellError, JournalError, NotStopped, StateError
-from engine.event import Cause
+from engine.event import Cause, Retried
 from engine.execution import Execution
 from engine.measure import Guard, Retry, Timeout
-from engine.node_events import log, record_diverted, record_entry, record_exit, record_retried
+from engine.node_events import record_diverted, record_entry, record_exit
 from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
 from engine.preemption import Overdue, being_cancelled, goes_on, preempt
@@ -136,7 +136,7 @@ class Node:
         entry, refused = self._constant, None
         if entry is None:
             entry, refused = self._entered(scope, execution)
-        visit = record_entry(execution, path, work.kind, entry)
+        visit = record_entry(execution, path, work.kind, entry.shown)
         try:
             if refused is not None:
                 raise refused
@@ -291,7 +291,7 @@ class Node:
             point = None
             attempt += 1
             wait_s = min(retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED), LONGEST_S)
-            record_retried(execution, self.path, attempt, wait_s, again)
+            execution.recorder.emit(Retried, path=self.path, attempt=attempt, wait_s=wait_s, cause=again)
             if wait_s > 0:
                 await execution.sleep(self.path, wait_s)
             elif attempt % _FAIRNESS == 0:
@@ -307,12 +307,12 @@ class Node:
             self._entered(scope, execution) if point is None else (Entry(None, point.inputs, {}, point), None)
         )
         if point is None:
-            visit = record_entry(execution, self.path, self.work.kind, entry)
+            visit = record_entry(execution, path, self.work.kind, entry.shown)
         elif execution.goes_on:
             visit = point.visit
             execution.activity.nodes[path] = visit
         else:
-            visit = record_entry(execution, path, self.work.kind, Entry(None, point.inputs, dict(point.inputs), point))
+            visit = record_entry(execution, path, self.work.kind, dict(point.inputs))
             for key, value in point.values.items():
                 execution.record_write(path, path, key, value)
         work = self.work.run(entry, path, visit, scope, execution) if refused is None else _raised(refused)
@@ -334,7 +334,7 @@ class Node:
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
             record_exit(execution, self.path, visit, "", preempted=being_cancelled(), cause=cause_of(error))
             if being_cancelled() and self.work.kind == "state":
-                log(execution, path, f"clean-up failed: {describe(cause_of(error))}", level="error")
+                execution.recorder.log(path, f"clean-up failed: {describe(cause_of(error))}", level="error")
             raise error from error.__cause__
         if being_cancelled():
             # It took no notice, or was just done; whoever stops it must not find its successor running.
@@ -372,7 +372,7 @@ def overdue(execution: Execution, path: str) -> Overdue:
     """Return what names, in the event log, nodes inside `path` that are slow to clean up, and gives them up."""
 
     def tell(late: str, waited_s: float) -> None:
-        log(execution, late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
+        execution.recorder.log(late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
 
     def abandon(task: asyncio.Task[Any], waited_s: float) -> None:
         execution.abandon(task, task.get_name(), waited_s)

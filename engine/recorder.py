@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from typing import Concatenate, ParamSpec
 
+from engine.cause import whole_text
 from engine.clock import Clock
 from engine.errors import JournalError
-from engine.event import Event
+from engine.event import Cause, Event, Logged, RunEnded
 from engine.journal import NullRunJournal, RunJournal
 
+P = ParamSpec("P")
 Watcher = Callable[[Event], None]
 _log = logging.getLogger("flexcell.run")
 
@@ -32,7 +35,7 @@ class Recorder:
         self._watchers: tuple[Watcher, ...] = ()
         self._seq = after_seq
         self.heard = self._keeps
-        """Whether anybody keeps or watches events; while nobody does it is enough to `count` them."""
+        """Whether anybody keeps or watches events; while nobody does they are only numbered."""
         self.ended = False
         """True once the end of the run is recorded; what states that were given up still say is not."""
 
@@ -41,26 +44,29 @@ class Recorder:
         # Rounding to a whole number costs half of `round(…, 6)`, and every event comes through here.
         return round((self._clock_now_s() - self._start_s) * 1e6) / 1e6
 
-    def next_seq(self) -> int:
-        """Return the number of the next event."""
+    def emit(self, event: Callable[Concatenate[int, float, P], Event], /, *_: P.args, **fields: P.kwargs) -> None:
+        """Make the next event of this class, numbered and timed; while nobody hears it, it is only numbered."""
         self._seq += 1
-        return self._seq
+        if self.heard and not self.ended:
+            made = event(self._seq, self.now_s(), *_, **fields)
+            self._journal.append(made)
+            self.tell(made)
 
     def count(self) -> None:
-        """Number an event that nobody hears."""
+        """Number an event that nobody hears: what `emit` does then, without its fields, where a run spends its time."""
         self._seq += 1
 
-    def record(self, event: Event) -> None:
-        """Take an event made with `next_seq` and `now_s`."""
-        if self.ended:
-            return
-        self._journal.append(event)
-        self.tell(event)
+    def log(self, path: str, message: str, *, level: str = "info") -> None:
+        """Write a line about a node into the event log; about the run as a whole where `path` is empty."""
+        self.emit(Logged, path=path, level=level, message=whole_text(message))
 
-    def end(self, event: Event) -> None:
-        """Take the last event; who watches is told with `tell`, once it is known whether it could be kept."""
+    def end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
+        """Record the last event and return it, for `tell` once it is known whether it could be kept."""
+        self._seq += 1
+        event = RunEnded(self._seq, self.now_s(), status=status, outcome=outcome, cause=cause)
         self._journal.append(event)
         self.ended = True
+        return event
 
     def tell(self, event: Event) -> None:
         """Hand an event to all who watch."""

@@ -20,7 +20,6 @@ from engine.execution import Execution
 from engine.hot_change import ChangeReport, definitions, plan_change
 from engine.journal import NullRunJournal, RunJournal
 from engine.node import Node
-from engine.node_events import log
 from engine.node_exit import Left
 from engine.plan import Plan
 from engine.preemption import preempt_for_good
@@ -289,7 +288,7 @@ class Run:
             return "errored", None, cause
         except Exception as error:
             # A custom state may raise anything; it ends the run with its cause, not the engine.
-            log(self._execution, self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
+            self._recorder.log(self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
             return "errored", None, cause_of(error)
 
     def _give_up(self) -> None:
@@ -363,7 +362,7 @@ class Run:
 
     async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
         """Make the end durable, then tell it; a run whose end cannot be kept has failed with that cause."""
-        end = self._log.ended(status, outcome, cause)
+        end = self._recorder.end(status, outcome, cause)
         committing = asyncio.create_task(self._execution.commit(), name=f"end of run {self.id}")
         while not committing.done():
             try:

@@ -9,10 +9,8 @@ import msgspec
 from engine.checkpoint import Checkpoint
 from engine.event import (
     BehaviorChanged,
-    Cause,
     Commanded,
     Exited,
-    RunEnded,
     RunResumed,
     RunStarted,
     StopRequested,
@@ -32,81 +30,44 @@ class RunLog:
         self, plan: Plan, parameters: Mapping[str, object], inputs: Mapping[str, object], *, seed: int, virtual: bool
     ) -> None:
         """The run begins."""
-        self._recorder.record(
-            RunStarted(
-                seq=self._recorder.next_seq(),
-                time_s=self._recorder.now_s(),
-                behavior=plan.name,
-                document=plan.document_hash,
-                parameters=msgspec.to_builtins(dict(parameters)),
-                inputs=msgspec.to_builtins(dict(inputs)),
-                seed=seed,
-                clock="virtual" if virtual else "real",
-            )
+        self._recorder.emit(
+            RunStarted,
+            behavior=plan.name,
+            document=plan.document_hash,
+            parameters=msgspec.to_builtins(dict(parameters)),
+            inputs=msgspec.to_builtins(dict(inputs)),
+            seed=seed,
+            clock="virtual" if virtual else "real",
         )
 
     def started_from(self, checkpoint: Checkpoint) -> None:
         """It begins in the middle, with the data of a moment of another run."""
-        recorder = self._recorder
-        recorder.record(
-            Commanded(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                command="start_from",
-                path=", ".join(checkpoint.rerun),
-                arguments={"run": checkpoint.run, "seq": checkpoint.seq},
-            )
+        self._recorder.emit(
+            Commanded,
+            command="start_from",
+            path=", ".join(checkpoint.rerun),
+            arguments={"run": checkpoint.run, "seq": checkpoint.seq},
         )
         for key, value in checkpoint.userdata.items():
             written = msgspec.to_builtins(value)
-            recorder.record(
-                UserdataWritten(
-                    seq=recorder.next_seq(), time_s=recorder.now_s(), path="", scope="", key=key, value=written
-                )
-            )
+            self._recorder.emit(UserdataWritten, path="", scope="", key=key, value=written)
 
     def resumed(self, checkpoint: Checkpoint) -> None:
         """It goes on after a crash; states that took an outcome instead of being entered again are left."""
-        recorder = self._recorder
-        recorder.record(
-            RunResumed(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                after_seq=checkpoint.read_seq,
-                epoch=checkpoint.epoch,
-                rerun=checkpoint.rerun,
-            )
-        )
+        self._recorder.emit(RunResumed, after_seq=checkpoint.read_seq, epoch=checkpoint.epoch, rerun=checkpoint.rerun)
         for path, outcome in checkpoint.taken.items():
-            recorder.record(
-                Exited(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    visit=checkpoint.visits.get(path, 0),
-                    outcome=outcome,
-                    cause=checkpoint.points[path].cause,
-                )
+            self._recorder.emit(
+                Exited,
+                path=path,
+                visit=checkpoint.visits.get(path, 0),
+                outcome=outcome,
+                cause=checkpoint.points[path].cause,
             )
 
     def changed(self, document: str, report: tuple[str, ...]) -> None:
         """A new version of the behavior took over."""
-        self._recorder.record(
-            BehaviorChanged(
-                seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), document=document, report=report
-            )
-        )
+        self._recorder.emit(BehaviorChanged, document=document, report=report)
 
     def stop_requested(self, reason: str) -> None:
         """Somebody wants it to stop."""
-        self._recorder.record(
-            StopRequested(seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), reason=reason)
-        )
-
-    def ended(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
-        """It is over: the event is with the journal, and nobody else is told yet."""
-        end = RunEnded(
-            seq=self._recorder.next_seq(), time_s=self._recorder.now_s(), status=status, outcome=outcome, cause=cause
-        )
-        self._recorder.end(end)
-        return end
+        self._recorder.emit(StopRequested, reason=reason)

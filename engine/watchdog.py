@@ -150,15 +150,8 @@ class Watchdog:
 
     def _record(self, turn: _Turn, execution: Execution) -> None:
         """Record the block in the run concerned; the first thing the loop does when it is back."""
-        recorder = execution.recorder
-        recorder.record(
-            LoopBlocked(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=turn.path,
-                blocked_s=round(time.monotonic() - turn.since_s, 3),
-                where=turn.where,
-            )
+        execution.recorder.emit(
+            LoopBlocked, path=turn.path, blocked_s=round(time.monotonic() - turn.since_s, 3), where=turn.where
         )
 
     def _end_turn(self) -> None:

@@ -14,7 +14,7 @@ from engine.control.breakpoint import Breakpoint
 from engine.control.gate import Gate, Order, Waiting
 from engine.control.step import Step, StepMode
 from engine.errors import ControlError
-from engine.event import Commanded, Logged, OperatorChanged, PauseConfirmed
+from engine.event import Commanded, OperatorChanged, PauseConfirmed
 from engine.nearness import near_names
 from engine.node_path import inside
 from engine.preemption import preempt_for_order
@@ -209,7 +209,8 @@ class Control:
         paths = self.structure.paths()
         for each in breakpoints:
             if not any(each.matches(path, each.when, each.outcomes[0] if each.outcomes else "") for path in paths):
-                self._warn(f"the breakpoint at {each.path} matches no node; {near_names(each.path, paths)}")
+                message = f"the breakpoint at {each.path} matches no node; {near_names(each.path, paths)}"
+                self._recorder.log("", message, level="warning")
         self._gate.breakpoints = tuple(breakpoints)
         self._gate.arm()
 
@@ -296,10 +297,7 @@ class Control:
         if self._confirmed or not self._gate.paused or self._gate.stepping:
             return
         self._confirmed = True
-        recorder = self._recorder
-        recorder.record(
-            PauseConfirmed(seq=recorder.next_seq(), time_s=recorder.now_s(), cannot=self._suspensions.cannot())
-        )
+        self._recorder.emit(PauseConfirmed, cannot=self._suspensions.cannot())
 
     def _apply_loss(self) -> None:
         self._loss = None
@@ -319,18 +317,9 @@ class Control:
     def _set_operator(self, status: str, *, asks: bool) -> None:
         recorder = self._recorder
         self._operator = status
-        recorder.record(OperatorChanged(seq=recorder.next_seq(), time_s=recorder.now_s(), status=status))
+        recorder.emit(OperatorChanged, status=status)
         self._gate.asks = asks
         self._gate.arm()
 
-    def _warn(self, message: str) -> None:
-        recorder = self._recorder
-        recorder.record(
-            Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path="", level="warning", message=message)
-        )
-
     def _record(self, command: str, path: str = "", **arguments: object) -> None:
-        recorder = self._recorder
-        recorder.record(
-            Commanded(seq=recorder.next_seq(), time_s=recorder.now_s(), command=command, path=path, arguments=arguments)
-        )
+        self._recorder.emit(Commanded, command=command, path=path, arguments=arguments)

@@ -15,7 +15,7 @@ from engine.control.step import Step
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError
-from engine.event import GatePassed, GateReached, Logged, OutcomeRequested, OutcomeWithdrawn
+from engine.event import GatePassed, GateReached, OutcomeRequested, OutcomeWithdrawn
 from engine.node_path import inside
 from engine.recorder import Recorder
 from engine.suspension import Suspensions
@@ -164,7 +164,9 @@ class Gate:
         path = waiting.path
         asked = required is not None and self._still_asks(required)
         if required is not None and asked:
-            self._tell(OutcomeRequested, waiting, required=required)
+            self._recorder.emit(
+                OutcomeRequested, path=path, visit=waiting.visit, outcome=waiting.outcome, required=required
+            )
         try:
             while (order := self._orders.pop(path, None)) is None:
                 unanswered = asked and path not in self._answers and self._still_asks(required)
@@ -177,18 +179,9 @@ class Gate:
         finally:
             self._answers.discard(path)
             if asked:
-                self._tell(OutcomeWithdrawn, waiting)
+                self._recorder.emit(OutcomeWithdrawn, path=path, visit=waiting.visit, outcome=waiting.outcome)
             if self.waiting.pop(path, None) is not None:
-                recorder = self._recorder
-                recorder.record(
-                    GatePassed(
-                        seq=recorder.next_seq(),
-                        time_s=recorder.now_s(),
-                        path=path,
-                        visit=waiting.visit,
-                        point=waiting.point,
-                    )
-                )
+                self._recorder.emit(GatePassed, path=path, visit=waiting.visit, point=waiting.point)
 
     def _still_asks(self, required: str | None) -> bool:
         return self.asks and required is not None and not passes(required, self.autonomy)
@@ -209,7 +202,7 @@ class Gate:
         with METER.limited(MAX_STEPS, "the breakpoints here"):
             for each in self.breakpoints:
                 if each.matches(path, point, outcome) and self._due(each, path, scope):
-                    self._log(path, f"breakpoint {point} {each.path}")
+                    self._recorder.log(path, f"breakpoint {point} {each.path}")
                     self.pause()
                     return
 
@@ -219,7 +212,7 @@ class Gate:
                 return False
         except FlexcellError as error:
             # A condition that cannot be evaluated must not end the run; it must be seen, so it pauses.
-            self._log(path, f"breakpoint {due.path}: {describe(cause_of(error))}")
+            self._recorder.log(path, f"breakpoint {due.path}: {describe(cause_of(error))}")
             return True
         hits = self._hits[due] = self._hits.get(due, 0) + 1
         return hits >= due.hits
@@ -229,36 +222,13 @@ class Gate:
         self.waiting[waiting.path] = waiting
         if known is not None and known.reasons == waiting.reasons:
             return
-        recorder = self._recorder
-        recorder.record(
-            GateReached(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=waiting.path,
-                visit=waiting.visit,
-                point=waiting.point,
-                reasons=waiting.reasons,
-                outcome=waiting.outcome,
-            )
-        )
-
-    def _tell(self, kind: type[OutcomeRequested | OutcomeWithdrawn], waiting: Waiting, **more: str) -> None:
-        recorder = self._recorder
-        recorder.record(
-            kind(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=waiting.path,
-                visit=waiting.visit,
-                outcome=waiting.outcome,
-                **more,
-            )
-        )
-
-    def _log(self, path: str, message: str) -> None:
-        recorder = self._recorder
-        recorder.record(
-            Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path=path, level="info", message=message)
+        self._recorder.emit(
+            GateReached,
+            path=waiting.path,
+            visit=waiting.visit,
+            point=waiting.point,
+            reasons=waiting.reasons,
+            outcome=waiting.outcome,
         )
 
     def _covers(self, path: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from engine.clock import Clock
-from engine.event import FaultInjected, Logged
+from engine.event import FaultInjected
 from engine.faults.rule import Rule
 from engine.recorder import Recorder
 
@@ -29,21 +29,10 @@ class Scene:
         """Record what else a fault that is applied brings about."""
         recorder = self.recorder
         if recorder is not None:
-            recorder.record(
-                FaultInjected(
-                    seq=recorder.next_seq(),
-                    time_s=recorder.now_s(),
-                    path=path,
-                    address=address,
-                    fault=rule.label,
-                    detail=detail,
-                )
-            )
+            recorder.emit(FaultInjected, path=path, address=address, fault=rule.label, detail=detail)
 
     def warn(self, message: str) -> None:
         """Write a warning about the run as a whole into its event log."""
         recorder = self.recorder
         if recorder is not None:
-            recorder.record(
-                Logged(seq=recorder.next_seq(), time_s=recorder.now_s(), path="root", level="warning", message=message)
-            )
+            recorder.log("root", message, level="warning")

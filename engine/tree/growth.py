@@ -179,16 +179,8 @@ class Growth:
         )
 
     def _tell_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
-        recorder = self.execution.recorder
-        recorder.record(
-            Retried(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                attempt=attempt,
-                wait_s=wait_s,
-                cause=error or reason(child, self.parts),
-            )
+        self.execution.recorder.emit(
+            Retried, path=path, attempt=attempt, wait_s=wait_s, cause=error or reason(child, self.parts)
         )
 
 

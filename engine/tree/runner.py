@@ -16,7 +16,6 @@ from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
 from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.execution import Execution
-from engine.node_events import log
 from engine.node_path import inside
 from engine.state import Outcome
 from engine.tree.alarms import Alarms
@@ -262,7 +261,7 @@ class TreeRunner:
             clean_up()
         except FlexcellError as error:
             # What made the clean-up necessary goes on; this is told beside it.
-            log(self._execution, self._path, f"clean-up failed: {describe(cause_of(error))}", level="error")
+            self._execution.recorder.log(self._path, f"clean-up failed: {describe(cause_of(error))}", level="error")
 
     def _endless(self, instants: int) -> StateError:
         names = list(dict.fromkeys(map(self._short, self._recent)))

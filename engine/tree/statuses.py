@@ -79,12 +79,4 @@ class Statuses:
         self._tell(self._paths[behaviour], status)
 
     def _tell(self, path: str, status: Status) -> None:
-        recorder = self._recorder
-        recorder.record(
-            StatusChanged(
-                seq=recorder.next_seq(),
-                time_s=recorder.now_s(),
-                path=path,
-                status=status.value.lower(),
-            )
-        )
+        self._recorder.emit(StatusChanged, path=path, status=status.value.lower())

@@ -108,6 +108,7 @@ def test_a_loop_that_is_closed_over_a_state_that_takes_no_notice_enters_no_other
         run = Run(plan, run="r", bus=SkillBus(new_clock()))
         run.watch(heard.append)
         begun.append(asyncio.create_task(run.execute()))
+        # Of virtual time: the state waits by then, and the loop is closed over it.
         await asyncio.sleep(0.1)
 
     run_virtual(main())

@@ -239,7 +239,7 @@ def test_userdata_that_is_no_json_ends_the_recording_and_not_the_run(
 ) -> None:
     def spoil(run: Run) -> None:
         broken: Any = object()
-        run.recorder.record(Logged(seq=run.recorder.next_seq(), time_s=1.0, path="", level="info", message=broken))
+        run.recorder.emit(Logged, path="", level="info", message=broken)
 
     with caplog.at_level(logging.WARNING, logger="flexcell.recording"):
         result, _ = run_virtual(record_run(TEXT, tmp_path / "r.mcap", acts={1.0: spoil}))
