@@ -6,14 +6,9 @@ mapping of names to states serves as one where no modules are allowed.
 
 from __future__ import annotations
 
-import inspect
 import sys
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType, ModuleType
-
-import py_trees.behaviours
-import py_trees.timers
-from py_trees.behaviour import Behaviour
 
 from engine.document.project import PROJECT_FILE
 from engine.errors import ModuleNotAllowed, RegistryError
@@ -22,9 +17,7 @@ from engine.state import State
 
 Catalogue = Mapping[str, type[State]]
 
-_NO_CLASSES: Mapping[str, type] = MappingProxyType({})
-_PY_TREES: Mapping[str, ModuleType] = {module.__name__: module for module in (py_trees.behaviours, py_trees.timers)}
-"""Modules of py_trees' own, whose behaviours every document may name."""
+NO_CLASSES: Mapping[str, type] = MappingProxyType({})
 
 
 class StateCatalogue(Mapping[str, type[State]]):
@@ -86,6 +79,18 @@ class StateCatalogue(Mapping[str, type[State]]):
         return found
 
 
+def module_of(catalogue: Catalogue, name: str) -> ModuleType:
+    """Return a module that documents may name.
+
+    Raises:
+        ModuleNotAllowed: the project does not allow it.
+        RegistryError: it could not be loaded.
+    """
+    if isinstance(catalogue, StateCatalogue):
+        return catalogue.module(name)
+    raise not_allowed(name)
+
+
 def not_allowed(module: str, project_file: str | None = None) -> ModuleNotAllowed:
     """Return the refusal of a module that a document names and no project file allows."""
     if not module:
@@ -105,7 +110,7 @@ def loaded_class(name: str) -> type | None:
     return found if isinstance(found, type) else None
 
 
-def find_state(catalogue: Catalogue, name: str, given: Mapping[str, type] = _NO_CLASSES) -> type[State]:
+def find_state(catalogue: Catalogue, name: str, given: Mapping[str, type] = NO_CLASSES) -> type[State]:
     """Return the state that a document names.
 
     Args:
@@ -123,36 +128,6 @@ def find_state(catalogue: Catalogue, name: str, given: Mapping[str, type] = _NO_
     if not issubclass(found, State):
         raise RegistryError("this is not a subclass of engine.state.State", where=name)
     return found
-
-
-def find_behaviour(catalogue: Catalogue, name: str, given: Mapping[str, type] = _NO_CLASSES) -> type[Behaviour]:
-    """Return the py_trees behaviour that a document names; arguments and errors as in `find_state`."""
-    module_name, _, class_name = name.partition(":")
-    found: object = given.get(name)
-    if found is None:
-        module = _module(catalogue, module_name)
-        if class_name not in vars(module):
-            known = [each for each, value in vars(module).items() if _is_behaviour(value)]
-            raise RegistryError(f"`{module_name}` has no `{class_name}`", hint=near_names(class_name, known))
-        found = vars(module)[class_name]
-    if not (isinstance(found, type) and issubclass(found, Behaviour)) or inspect.isabstract(found):
-        raise RegistryError(
-            f"`{name}` is not a py_trees behaviour that can be made",
-            hint="it must be a subclass of py_trees.behaviour.Behaviour with an `update`",
-        )
-    return found
-
-
-def _is_behaviour(value: object) -> bool:
-    return isinstance(value, type) and issubclass(value, Behaviour) and not inspect.isabstract(value)
-
-
-def _module(catalogue: Catalogue, name: str) -> ModuleType:
-    if name in _PY_TREES:
-        return _PY_TREES[name]
-    if isinstance(catalogue, StateCatalogue):
-        return catalogue.module(name)
-    raise not_allowed(name)
 
 
 def _missing(catalogue: Catalogue, name: str) -> RegistryError:

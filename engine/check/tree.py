@@ -13,7 +13,6 @@ from engine.document.node import Composite, Node, Parallel
 from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
-from engine.state_catalogue import find_behaviour
 
 
 def check_trees(subject: Subject) -> Iterator[Finding]:
@@ -112,6 +111,9 @@ def _without_memory(node: Node) -> bool:
 
 
 def _check_behaviour(subject: Subject, placed: Placed, name: str) -> Iterator[Finding]:
+    # Imported where it is wanted: most trees have no behaviour of py_trees, and it takes its time to load.
+    from engine.behaviour_catalogue import find_behaviour
+
     try:
         found = find_behaviour(subject.catalogue, name, subject.behavior.classes)
     except RegistryError as error:

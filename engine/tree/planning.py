@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from py_trees.behaviour import Behaviour as PyTreesBehaviour
 
+from engine.behaviour_catalogue import find_behaviour
 from engine.document import node as nodes
 from engine.document.behavior import Behavior
 from engine.document.duration import seconds
@@ -15,7 +16,7 @@ from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.leaf import Leaf
 from engine.nearness import near_names
 from engine.node import Node
-from engine.state_catalogue import Catalogue, find_behaviour
+from engine.state_catalogue import Catalogue
 from engine.tree.arguments import takes_name, wrong_arguments
 from engine.tree.decorators import WHERE_NOTHING_WAKES_S
 from engine.tree.part import ForeignPlan, LeafPlan, Part
