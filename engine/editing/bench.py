@@ -59,7 +59,7 @@ class Bench:
         base = re.sub(r"[^A-Za-z0-9_-]+", "_", wanted).lstrip("-")[:56] or "node"
         used = {*(child.name for child in self.outline.children(container)), *taken}
         if container.kind in MACHINES:
-            used |= {*self.ends(container).outcomes, *self._document_outcomes(container)}
+            used |= set(self.outcomes_inside(container))
         number, name = 2, base
         while name in used:
             name = f"{base}_{number}"
@@ -68,11 +68,15 @@ class Bench:
 
     def outcomes_inside(self, container: Spot) -> tuple[str, ...]:
         """Return the names that children of a machine may lead to beside one another."""
-        return tuple(dict.fromkeys((*self.ends(container).outcomes, *self._document_outcomes(container))))
+        return tuple(dict.fromkeys((*self.ends(container).outcomes, *self._meant_outcomes(container))))
 
-    def _document_outcomes(self, container: Spot) -> tuple[str, ...]:
-        listed = self.draft.data.get("outcomes") if container.parent is None else None
-        return tuple(str(each) for each in cast("list[object]", listed)) if isinstance(listed, list) else ()
+    def _meant_outcomes(self, container: Spot) -> tuple[str, ...]:
+        """Return the outcomes that it is written to have, whether or not anything inside leads to them yet."""
+        if container.parent is not None:
+            followed = container.data.get("transitions")
+            return tuple(map(str, cast("Plain", followed))) if isinstance(followed, dict) else ()
+        listed = self.draft.data.get("outcomes")
+        return tuple(map(str, cast("list[object]", listed))) if isinstance(listed, list) else ()
 
 
 def states_of(container: Spot) -> Plain:

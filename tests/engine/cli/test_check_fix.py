@@ -35,6 +35,25 @@ UNDECIDED = (
 )
 
 
+NESTED = """\
+flexcell: 1
+name: nested
+outcomes: [good, failed]
+success: [good]
+root:
+  machine:
+    initial: work
+    states:
+      work:
+        machine:
+          initial: one
+          states:
+            one: {state: flow.Decide, with: {when: true}, transitions: {true: two}}
+            two: {state: flow.Decide, with: {when: true}}
+        transitions: {true: good, false: failed}
+"""
+
+
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     """A behavior with two slips."""
@@ -54,6 +73,17 @@ def test_slips_are_fixed_and_told_and_everything_else_stays(file: Path) -> None:
     before = (file.stat().st_mtime_ns, file.stat().st_ino)
     again = flexcell("check", "x.yaml", "--fix", cwd=file.parent)
     assert (again.code, again.out, (file.stat().st_mtime_ns, file.stat().st_ino)) == (0, "", before)
+
+
+def test_outcomes_fall_through_to_those_of_the_same_name_around_them(tmp_path: Path) -> None:
+    """Written out, at every level, and no transition that is there is touched."""
+    (tmp_path / "x.yaml").write_text(NESTED, encoding="utf-8")
+    said = flexcell("check", "x.yaml", "--fix", cwd=tmp_path)
+    assert said.code == 0, said.out
+    written = (tmp_path / "x.yaml").read_text(encoding="utf-8")
+    assert written == NESTED.replace("{true: two}", '{true: two, "false": "false"}').replace(
+        "with: {when: true}}", 'with: {when: true}, transitions: {"true": "true", "false": "false"}}'
+    )
 
 
 def test_what_a_person_must_choose_is_left_and_named(file: Path) -> None:
