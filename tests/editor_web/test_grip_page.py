@@ -17,6 +17,7 @@ from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.teach_site import TeachSite
 
 MOVES_RAD_S, RESTS_RAD_S = 0.03, 0.01
+PULLS, PATIENCE_S = 4, 15.0
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,25 @@ def fastest(state: JointState) -> float:
     return max(map(abs, state.velocity_rad_s))
 
 
+def pull_until_it_goes(page: Page, site: TeachSite) -> None:
+    """Press and pull at the handle; once more where a picture, late on a busy machine, showed it at another place."""
+    for _ in range(PULLS):
+        before, tip = None, tip_of_the_blue_arrow(page)
+        # Until it is drawn, and where it stays.
+        while tip is None or tip != before:
+            before, tip = tip, tip_of_the_blue_arrow(page)
+        page.mouse.move(*tip)
+        page.mouse.down()
+        page.mouse.move(tip[0], tip[1] + 60, steps=6)
+        try:
+            site.call(site.seen(lambda state: fastest(state) > MOVES_RAD_S), within_s=PATIENCE_S)
+        except TimeoutError:
+            page.mouse.up()
+        else:
+            return
+    pytest.fail(f"the arm did not go in {PULLS} pulls")
+
+
 def test_the_arm_goes_while_the_mouse_is_down_on_its_handle_and_rests_when_it_is_up(
     browser: Browser, site: TeachSite
 ) -> None:
@@ -60,14 +80,7 @@ def test_the_arm_goes_while_the_mouse_is_down_on_its_handle_and_rests_when_it_is
         require_accessible(page, "the menu of the handle", part=".handle-menu")
         page.keyboard.press("Escape")
         expect(page.locator(".handle-menu")).to_have_count(0)
-        before, tip = None, tip_of_the_blue_arrow(page)
-        # Until it is drawn, and where it stays.
-        while tip is None or tip != before:
-            before, tip = tip, tip_of_the_blue_arrow(page)
-        page.mouse.move(*tip)
-        page.mouse.down()
-        page.mouse.move(tip[0], tip[1] + 60, steps=6)
-        site.call(site.seen(lambda state: fastest(state) > MOVES_RAD_S))
+        pull_until_it_goes(page, site)
         page.mouse.up()
         site.call(site.seen(lambda state: fastest(state) < RESTS_RAD_S))
         button.press("Enter")

@@ -7,6 +7,7 @@ import { keepConnected, type LiveConnection } from './connection'
 import { OPERATED, useLive } from './liveStore'
 import { useSession } from './session'
 import { PAGE, useShown } from './shown'
+import { afterStop } from './stopStore'
 import type { Frame } from './types'
 
 export { useLive } from './liveStore'
@@ -76,7 +77,10 @@ export function connect(): () => void {
       if (watched) sendWatch()
       if (useLive.getState().operated) sendOperate()
     },
-    onFrame: receive,
+    onFrame: (frame) => {
+      heardS = Date.now() / 1000
+      receive(frame)
+    },
     onLost: () => {
       streamed = { ...streamed, ticking: false }
       useLive.setState({ connection: 'lost', ticking: false })
@@ -96,8 +100,9 @@ export function connect(): () => void {
   }
 }
 
-function receive(frame: Frame): void {
-  heardS = Date.now() / 1000
+const receive = afterStop(show)
+
+function show(frame: Frame): void {
   const before = useLive.getState()
   const next = fold(streamed, frame, performance.now())
   if (next === 'gap') {

@@ -1,9 +1,9 @@
 /** STOP of the cell: by the stop process, which needs no engine, and by the engine, both at the same time. */
-import { create } from 'zustand'
 import { isAcknowledged, isAtRest, newStop, type StopAnswer, type StopPath, type StopProgress } from '../document/stopReport'
 import { api, wordsOf } from './client'
 import { lastHeard } from './live'
 import { useSession, type StopChannel } from './session'
+import { useStop } from './stopStore'
 
 const REASON = 'the cell was stopped in the dashboard'
 const POLL_MS = 100
@@ -11,8 +11,6 @@ const SLOW_POLL_MS = 1000
 /** From here on a stop that nobody has acknowledged is told as one that has failed. */
 const UNANSWERED_MS = 1500
 const REST_MS = 5000
-
-export const useStop = create<{ readonly stop: StopProgress | undefined }>(() => ({ stop: undefined }))
 
 let stops = 0
 
