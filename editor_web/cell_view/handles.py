@@ -106,7 +106,9 @@ class Handles:
         if given is None or pose is None:
             return
         if client.control is None:
-            client.control = _new_control(client, given, pose, self._pulled)
+            # Sent as one: viser sends a node as seen first, and a press before somebody listens to it is lost.
+            with client.handle.atomic():
+                client.control = _new_control(client, given, pose, self._pulled)
         elif not client.is_held and pose != client.placed:
             client.control.position, client.control.wxyz = pose.xyz, pose.wxyz
         client.placed = pose
@@ -159,6 +161,6 @@ def _new_control(
         pulled(client, given, Pull(phase=event.phase, pose=Placed(xyz=(x, y, z), xyzw=(a, b, c, w))))
 
     control.on_update(on_update)
-    # Whoever can see it can pull at it: viser sends the node at once, and a press that nobody hears is lost.
+    # Whoever can see it can pull at it.
     control.visible = True
     return control
