@@ -24,6 +24,7 @@ FLEXCELL = Path(sys.executable).with_name("flexcell")
 _MOVING_S = 0.4
 _LOOK_S = 0.002
 _START_S = 20.0
+_LOOKS_A_RUN = 50
 _REST_S = 10.0
 _ITEMS = 38
 # 1,444 rounds: nearly as much as one evaluation may cost.
@@ -98,13 +99,23 @@ class Server:
         self.look_at_world()
 
     def start_run(self, how: str, for_s: float) -> None:
-        """Start the arm and return when it moves, just before the loop is blocked in this way."""
+        """Start the arm and return when it moves, just before the loop is blocked in this way.
+
+        A run that the STOP of the trial before still ends is started again.
+
+        Raises:
+            TimeoutError: the arm does not move; says what the run says.
+        """
         tell = self.folder / "moving"
         tell.write_bytes(b"")
         parameters = {"how": how, "for_s": for_s, "tell": str(tell)}
         run = self.start("behaviors/swing.yaml", parameters)
         deadline_s = time.monotonic() + _START_S
+        looks = 0
         while not tell.read_bytes():
+            looks += 1
+            if looks % _LOOKS_A_RUN == 0 and self.run(run)["status"] == "stopped":
+                run = self.start("behaviors/swing.yaml", parameters)
             if time.monotonic() > deadline_s:
                 raise TimeoutError(f"the arm does not move: {self.run(run)['cause']}")
             time.sleep(_LOOK_S)
