@@ -13,6 +13,7 @@ from typing import Any
 
 from engine.private_files import make_private_folder, new_private_file
 from engine.sqlite_schema import DamagedFile, ForeignSchema, FormatTooNew, Schema
+from engine.sqlite_wal import require_whole_log
 
 MAX_VALUE_BYTES = 64 * 2**20
 """Size limit of one text or blob."""
@@ -83,6 +84,7 @@ def open_sqlite(path: Path, *, schema: Schema, busy_timeout_s: float) -> Bounded
     try:
         _distrust(connection, path)
         schema.verify(connection)
+        require_whole_log(path)
         connection.execute("PRAGMA journal_mode=WAL")
         connection.execute("PRAGMA synchronous=FULL")
         schema.upgrade(connection)
@@ -106,6 +108,7 @@ def read_sqlite(path: Path, *, schema: Schema, busy_timeout_s: float = 5.0) -> B
     try:
         _distrust(connection, path)
         schema.verify(connection)
+        require_whole_log(path)
     except sqlite3.Error:
         connection.close()
         raise

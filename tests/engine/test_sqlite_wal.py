@@ -1,0 +1,92 @@
+"""Damage in the write-ahead log of an SQLite file."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from engine.sqlite_file import open_sqlite, read_sqlite
+from engine.sqlite_schema import DamagedFile, Schema
+
+SCHEMA = Schema(("CREATE TABLE lines (number INTEGER PRIMARY KEY, text TEXT NOT NULL) STRICT;",))
+COMMITS = 6
+Opener = Callable[[Path], sqlite3.Connection]
+OPENERS: list[Opener] = [
+    lambda path: open_sqlite(path, schema=SCHEMA, busy_timeout_s=5.0),
+    lambda path: read_sqlite(path, schema=SCHEMA),
+]
+
+
+@pytest.fixture(scope="module")
+def crashed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A database as a killed process leaves it: all but the tables is in the log."""
+    folder = tmp_path_factory.mktemp("killed")
+    open_sqlite(folder / "lines.db", schema=SCHEMA, busy_timeout_s=5.0).close()
+    connection = open_sqlite(folder / "lines.db", schema=SCHEMA, busy_timeout_s=5.0)
+    for number in range(COMMITS):
+        connection.execute("INSERT INTO lines VALUES (?, ?)", (number, "word " * 400))
+    left = tmp_path_factory.mktemp("left")
+    for name in ("lines.db", "lines.db-wal"):
+        shutil.copy(folder / name, left / name)
+    connection.close()
+    return left / "lines.db"
+
+
+def _lines(path: Path, opener: Opener) -> list[int]:
+    connection = opener(path)
+    try:
+        return [number for (number,) in connection.execute("SELECT number FROM lines ORDER BY number")]
+    finally:
+        connection.close()
+
+
+def _end(path: Path, opener: Opener) -> str:
+    try:
+        return f"{len(_lines(path, opener))} lines"
+    except DamagedFile as error:
+        return "told" if "lines.db-wal is damaged near byte" in str(error) else str(error)
+
+
+def _copy_with_flip(crashed: Path, folder: Path, at: int) -> Path:
+    folder.mkdir()
+    shutil.copy(crashed, folder / "lines.db")
+    log = bytearray(crashed.with_name("lines.db-wal").read_bytes())
+    log[at] ^= 0x10
+    (folder / "lines.db-wal").write_bytes(log)
+    return folder / "lines.db"
+
+
+@pytest.mark.parametrize("opener", OPENERS, ids=["writing", "reading"])
+def test_a_flipped_byte_loses_no_commit_but_the_newest_unnoticed(crashed: Path, tmp_path: Path, opener: Opener) -> None:
+    size = crashed.with_name("lines.db-wal").stat().st_size
+    # Every byte of the header of the log, and some of each frame.
+    ends = [
+        _end(_copy_with_flip(crashed, tmp_path / str(at), at), opener) for at in (*range(32), *range(32, size, 631))
+    ]
+    assert set(ends) == {"told", f"{COMMITS - 1} lines"}
+    assert ends.count("told") > ends.count(f"{COMMITS - 1} lines")
+
+
+@pytest.mark.parametrize("opener", OPENERS, ids=["writing", "reading"])
+def test_a_log_whose_newest_commit_was_cut_is_read_up_to_there(crashed: Path, tmp_path: Path, opener: Opener) -> None:
+    shutil.copy(crashed, tmp_path / "lines.db")
+    log = crashed.with_name("lines.db-wal").read_bytes()
+    (tmp_path / "lines.db-wal").write_bytes(log[:-100])
+    assert _lines(tmp_path / "lines.db", opener) == list(range(COMMITS - 1))
+
+
+def test_a_log_that_begins_anew_in_front_of_older_frames_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "lines.db"
+    writer = open_sqlite(path, schema=SCHEMA, busy_timeout_s=5.0)
+    for number in range(COMMITS):
+        writer.execute("INSERT INTO lines VALUES (?, ?)", (number, "word " * 400))
+    writer.execute("PRAGMA wal_checkpoint(RESTART)")
+    assert _lines(path, OPENERS[1]) == list(range(COMMITS))
+    writer.execute("INSERT INTO lines VALUES (?, ?)", (COMMITS, "one more"))
+    for opener in OPENERS:
+        assert _lines(path, opener) == list(range(COMMITS + 1))
+    writer.close()
