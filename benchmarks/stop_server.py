@@ -25,6 +25,7 @@ _MOVING_S = 0.4
 _LOOK_S = 0.002
 _START_S = 20.0
 _LOOKS_A_RUN = 50
+_UNDER_WAY = ("running", "stopping")
 _REST_S = 10.0
 _ITEMS = 38
 # 1,444 rounds: nearly as much as one evaluation may cost.
@@ -101,7 +102,7 @@ class Server:
     def start_run(self, how: str, for_s: float) -> None:
         """Start the arm and return when it moves, just before the loop is blocked in this way.
 
-        A run that the STOP of the trial before still ends is started again.
+        A run that the page's second order of the STOP before ends is started again.
 
         Raises:
             TimeoutError: the arm does not move; says what the run says.
@@ -114,7 +115,7 @@ class Server:
         looks = 0
         while not tell.read_bytes():
             looks += 1
-            if looks % _LOOKS_A_RUN == 0 and self.run(run)["status"] == "stopped":
+            if looks % _LOOKS_A_RUN == 0 and self.run(run)["status"] not in _UNDER_WAY:
                 run = self.start("behaviors/swing.yaml", parameters)
             if time.monotonic() > deadline_s:
                 raise TimeoutError(f"the arm does not move: {self.run(run)['cause']}")
@@ -147,7 +148,7 @@ class Server:
 
     def wait_until_idle(self) -> None:
         """Wait until no run is under way and the devices take motions again."""
-        while any(run["status"] in ("running", "stopping") for run in self.http.get("/api/v1/runs").json()):
+        while any(run["status"] in _UNDER_WAY for run in self.http.get("/api/v1/runs").json()):
             time.sleep(0.02)
 
     def resting_since_s(self) -> float:

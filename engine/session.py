@@ -139,7 +139,7 @@ class Session:
         begin: Moment | None = None,
         faults: Faults | None = None,
     ) -> str:
-        """Start a run and return its id.
+        """Start a run, once every STOP before it has ended, and return its id.
 
         Args:
             behavior_id: Which behavior.
@@ -152,7 +152,7 @@ class Session:
             faults: Go wrong in this run only.
 
         Raises:
-            FlexcellError: it cannot start: the behavior has errors, or a parameter is not acceptable.
+            FlexcellError: the behavior has errors, a parameter is not acceptable, or a STOP takes long.
         """
         behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
         watched = supervision or Supervision()
@@ -169,6 +169,7 @@ class Session:
             await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
         # Before the run, whose clock goes from here on.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
+        await self._stops.over()
         run = new_run(
             plan,
             cell=self.cell,

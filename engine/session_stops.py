@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 
 from engine.cell import OpenCell
+from engine.errors import ControlError
 from engine.session_run import SessionRun
 from engine.stop import StopNotice
+
+_PATIENCE_S = 5.0
+"""How long a start waits for the stop before it."""
 
 
 class SessionStops:
@@ -21,6 +26,7 @@ class SessionStops:
     def __init__(self, cell: OpenCell, runs: Mapping[str, SessionRun]) -> None:
         self._cell = cell
         self._runs = runs
+        self._under_way: set[asyncio.Future[None]] = set()
         self._releases: set[asyncio.Task[None]] = set()
 
     def begin(self) -> None:
@@ -38,15 +44,41 @@ class SessionStops:
         if self._releases:
             await asyncio.wait(self._releases)
 
+    async def over(self) -> None:
+        """Wait until every stop has ended: what was under way, and the latch of the devices.
+
+        Raises:
+            ControlError: one takes long.
+        """
+        try:
+            async with asyncio.timeout(_PATIENCE_S):
+                while pending := {*self._under_way, *self._releases}:
+                    await asyncio.wait(pending)
+        except TimeoutError as error:
+            raise ControlError(
+                "a STOP is still being carried out", hint="start again once the stopped runs have ended"
+            ) from error
+
     async def stop_all(self, *, reason: str) -> None:
         """Stop everything and return when every robot is at rest; raises RobotError where one could not confirm it."""
-        relay = self._cell.relay
-        stop = await relay.order(reason) if relay is not None else None
-        tasks = await self._stop_everything(reason)
-        if stop is not None:
-            release = asyncio.create_task(self._release(stop, tasks), name=f"release of stop {stop}")
-            self._releases.add(release)
-            release.add_done_callback(self._releases.discard)
+        with self._carried_out():
+            relay = self._cell.relay
+            stop = await relay.order(reason) if relay is not None else None
+            tasks = await self._stop_everything(reason)
+            if stop is not None:
+                release = asyncio.create_task(self._release(stop, tasks), name=f"release of stop {stop}")
+                self._releases.add(release)
+                release.add_done_callback(self._releases.discard)
+
+    @contextmanager
+    def _carried_out(self) -> Generator[None]:
+        over: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._under_way.add(over)
+        try:
+            yield
+        finally:
+            self._under_way.remove(over)
+            over.set_result(None)
 
     async def _stop_everything(self, reason: str) -> tuple[asyncio.Task[None], ...]:
         """Stop runs, goals and robots; return the tasks of the runs, which may still be cleaning up."""
@@ -58,9 +90,10 @@ class SessionStops:
 
     async def _stopped_by_relay(self, notice: StopNotice) -> None:
         """End what was under way; the devices have the stop already, and are released when this returns."""
-        tasks = await self._stop_everything(notice.reason)
-        if tasks:
-            await asyncio.wait(tasks)
+        with self._carried_out():
+            tasks = await self._stop_everything(notice.reason)
+            if tasks:
+                await asyncio.wait(tasks)
 
     async def _release(self, stop: int, tasks: tuple[asyncio.Task[None], ...]) -> None:
         """Release the devices once nothing that was under way can send them anything any more."""

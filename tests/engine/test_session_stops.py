@@ -30,11 +30,24 @@ root:
       wait: {state: test.Use, with: {for_s: 1000}, transitions: {done: good}}
 """
 
+TIDY = """
+flexcell: 1
+name: tidy
+outcomes: [good]
+success: [good]
+root:
+  machine:
+    initial: wait
+    states:
+      wait: {state: test.Hang, with: {cleanup_s: 0.2}, transitions: {never: good}}
+"""
+
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     (tmp_path / "behaviors").mkdir()
     (tmp_path / "behaviors" / "endless.yaml").write_text(ENDLESS, encoding="utf-8")
+    (tmp_path / "behaviors" / "tidy.yaml").write_text(TIDY, encoding="utf-8")
     return tmp_path
 
 
@@ -44,8 +57,8 @@ class _Opened:
     relay: StopRelay
     arm: Device
 
-    async def start(self) -> str:
-        return await self.session.start("behaviors/endless.yaml", parameters={}, seed=0)
+    async def start(self, name: str = "endless") -> str:
+        return await self.session.start(f"behaviors/{name}.yaml", parameters={}, seed=0)
 
 
 @asynccontextmanager
@@ -93,3 +106,13 @@ async def test_a_relay_that_is_gone_ends_the_runs_and_hinders_no_stop(project: P
         await opened.session.stop_all(reason="again")
         assert opened.arm.line.cut
     assert (stopped.status, "the stop relay has ended" in stopped.cause) == ("stopped", True)
+
+
+async def test_a_run_that_is_started_during_a_stop_begins_after_it(project: Path) -> None:
+    async with opened_session(project) as opened:
+        stopped = await opened.start("tidy")
+        await opened.session.stop_all(reason="a look inside")
+        assert opened.session.run(stopped).status != "stopped", "its clean-up takes longer than the stop of the robots"
+        await opened.start()
+        assert opened.session.run(stopped).status == "stopped"
+        await asyncio.to_thread(opened.arm.released.wait)
