@@ -193,7 +193,7 @@ class Session:
         return tuple(record for record in list_runs(self._journal.path) if record.interrupted)
 
     async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
-        """Go on with an interrupted run of this project and cell, and return its id.
+        """Go on with an interrupted run of this project and cell, once every STOP has ended, and return its id.
 
         A simulated world is brought to where it was unless another run is under way.
 
@@ -211,6 +211,7 @@ class Session:
         require_simulation(plan, self.cell.document)
         # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
         documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
+        await self._stops.over()
         alone = all(started.result is not None for started in self._runs.values())
         resumption = plan_resume(
             found,

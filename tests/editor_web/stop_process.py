@@ -33,6 +33,8 @@ class StopProcess:
     engine: str = "silent"
     token: str = "stop-token"
     asked: list[Asked] = field(default_factory=list[Asked])
+    answers: threading.Event = field(default_factory=threading.Event)
+    """Cleared, it answers nobody until it is set again."""
     _server: ThreadingHTTPServer | None = None
 
     @property
@@ -53,6 +55,7 @@ class StopProcess:
             self._server = None
 
     def __enter__(self) -> Self:
+        self.answers.set()
         self._server = ThreadingHTTPServer((self.host, 0), self._handler())
         threading.Thread(target=self._server.serve_forever, name="stop", daemon=True).start()
         return self
@@ -76,6 +79,7 @@ class StopProcess:
                     method=self.command, path=self.path, content_type=content_type, body=json.loads(body or b"{}")
                 )
                 stop.asked.append(asked)
+                stop.answers.wait()
                 self.send_response(200 if asked.body.get("token") == stop.token else 403)
                 self.send_header("Access-Control-Allow-Origin", stop.origin)
                 self.end_headers()

@@ -109,6 +109,28 @@ def test_stop_goes_through_after_the_engine_has_died(browser: Browser, tmp_path:
         require_accessible(page, "a stop that failed", part=".stop")
 
 
+def test_a_page_that_is_left_before_the_answer_gives_stop_again(
+    browser: Browser, shop: Workshop, loopback: str
+) -> None:
+    """What a browser still sends then outlives the page; the first request may end with it."""
+    with (
+        StopProcess(host=loopback, origin=shop.running.url.rstrip("/")) as stop,
+        opened_page(browser, shop.running) as page,
+    ):
+        tell_of_stop(page, stop)
+        stop.answers.clear()
+        try:
+            stop_button(page).click()
+            until(page, lambda: len(stop.stops()) == 1)
+            page.goto("about:blank")
+            until(page, lambda: len(stop.stops()) == 2)
+        finally:
+            stop.answers.set()
+    first, again = stop.stops()
+    assert first.body == again.body
+    assert again.content_type.startswith("text/plain")
+
+
 def test_an_arm_that_does_not_come_to_rest_is_an_alarm(browser: Browser, shop: Workshop, loopback: str) -> None:
     """After five seconds of the page's clock, and it is not hidden by the next words."""
     with (
