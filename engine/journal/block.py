@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
-from zlib import crc32
+from zlib import adler32
 
 import msgspec
 
@@ -57,7 +57,7 @@ class Block(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def suspects(self) -> tuple[int, int]:
         """Return the first and the last event that may be the damaged one: one, where the sums tell which."""
         for index, line in enumerate(self.data.split(b"\n")[: len(self.sums) // _SUM.size]):
-            if _SUM.pack(crc32(line)) != self.sums[index * _SUM.size : (index + 1) * _SUM.size]:
+            if _SUM.pack(adler32(line)) != self.sums[index * _SUM.size : (index + 1) * _SUM.size]:
                 return self.seq + index, self.seq + index
         return self.seq, self.last
 
@@ -80,7 +80,7 @@ def new_blocks(run: str, epoch: int, events: Sequence[Event], before: bytes) -> 
         data, seq = encode_event_log(some), some[0].seq
         lines = data.split(b"\n")[:-1]
         for part in (lines,) if len(data) <= MOST_BYTES else _parts(lines):
-            sums = struct.pack(f"<{len(part)}I", *map(crc32, part))
+            sums = struct.pack(f"<{len(part)}I", *map(adler32, part))
             text = data if part is lines else b"\n".join([*part, b""])
             last = seq + len(part) - 1
             before = block_checksum(before, seq, last, epoch, sums, text)

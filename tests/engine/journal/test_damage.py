@@ -71,8 +71,8 @@ STEP_7 = "UPDATE {} SET data = CAST(replace(CAST(data AS TEXT), 'step 7', 'step 
     [
         (STEP_7.format("block"), EVENT.format(7)),
         (STEP_7.format("block").replace("'step 8'", "'step 77'"), EVENT.format(7)),
-        ("UPDATE block SET data = substr(data, 1, length(data) - 1) WHERE run = 'first' AND seq = 7", "events 7 to 12 of run first are"),
-        ("UPDATE block SET sums = CAST(x'00' || substr(sums, 2) AS BLOB) WHERE run = 'first' AND seq = 7", EVENT.format(7)),
+        ("UPDATE block SET data = substr(data, 1, length(data) - 1) WHERE seq = 7", "events 7 to 12 of run first are"),
+        ("UPDATE block SET sums = CAST(x'00' || substr(sums, 2) AS BLOB) WHERE seq = 7", EVENT.format(7)),
         ("UPDATE block SET epoch = 2 WHERE run = 'first' AND seq = 7", "events 7 to 12 of run first are damaged"),
         ("UPDATE block SET last = 11 WHERE run = 'first' AND seq = 7", "events 7 to 11 of run first are damaged"),
         ("UPDATE block SET last = 1 << 60 WHERE run = 'first' AND seq = 7", "events 7 to 1152921504606846976 of run"),
