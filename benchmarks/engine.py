@@ -131,7 +131,8 @@ GROWTH = Table(
 IMPORT = Table(
     "Import",
     rows=(
-        Row("flexcell", "importing:flexcell", (), (), "all that running a behavior needs"),
+        Row("flexcell", "importing:flexcell", (), (), "all that loading, planning and running a behavior needs"),
+        Row("flexcell with its check", "importing:flexcell_checked", (), ()),
         Row("flexcell command", "importing:flexcell_command", (), ()),
         Row("plain asyncio (floor)", "importing:asyncio", (), ()),
         Row("py_trees", "importing:py_trees", (), ()),

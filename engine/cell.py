@@ -18,6 +18,7 @@ from engine.cell_connection import CellConnection, CellConnections
 from engine.cell_store import open_cell_store, store_address
 from engine.clock import new_clock
 from engine.document.cell import Cell
+from engine.document.collection_pause import collection_paused
 from engine.document.entries import load_entries
 from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
 from engine.preemption import Overdue, preempt
@@ -110,7 +111,9 @@ class OpenCell:
 
     async def __aenter__(self) -> Self:
         try:
-            await self._open()
+            # Opening a world loads most of a thousand modules.
+            with collection_paused():
+                await self._open()
         except BaseException:
             # Whatever stopped the opening, what was opened so far must come to rest and close.
             await self._stack.aclose()

@@ -43,7 +43,7 @@ from engine.plan import Plan
 from engine.point import Point
 from engine.priority import Priority
 from engine.reference import Reference
-from engine.tree import Mark, mark_of
+from engine.tree_mark import Mark, mark_of
 
 BY_OUTCOME = ("operator", "start")
 """`Diverted.by` whose target is an outcome and not a place to go to."""

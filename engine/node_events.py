@@ -10,7 +10,8 @@ def record_entry(execution: Execution, path: str, kind: str, inputs: dict[str, o
     """Record that a node is entered now, and return which activation of it this is."""
     visit = execution.visits[path] = execution.visits.get(path, 0) + 1
     if (recorder := execution.recorder).heard:
-        recorder.emit(Entered, path=path, visit=visit, kind=kind, inputs=inputs)
+        seq, time_s = recorder.stamp()
+        recorder.record(Entered(seq, time_s, path=path, visit=visit, kind=kind, inputs=inputs))
     else:
         recorder.count()
     execution.activity.nodes[path] = visit
@@ -23,7 +24,8 @@ def record_exit(
     """Record that it was left."""
     execution.activity.nodes.pop(path, None)
     if (recorder := execution.recorder).heard:
-        recorder.emit(Exited, path=path, visit=visit, outcome=outcome, preempted=preempted, cause=cause)
+        seq, time_s = recorder.stamp()
+        recorder.record(Exited(seq, time_s, path=path, visit=visit, outcome=outcome, preempted=preempted, cause=cause))
     else:
         recorder.count()
 

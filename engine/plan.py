@@ -25,7 +25,6 @@ from engine.reference import Reference
 from engine.stand_in import SUBSTITUTE, require_used, stand_in_for
 from engine.state import State
 from engine.state_catalogue import Catalogue, find_state
-from engine.tree import new_tree
 from engine.userdata_value import plain_value
 
 __all__ = ["Catalogue", "Plan", "new_plan"]
@@ -204,6 +203,9 @@ class _Planner:
         )
 
     def _tree(self, inside: str, node: nodes.Node) -> Work:
+        # Imported with the first tree: py_trees takes as long to import as half of the rest of the engine.
+        from engine.tree import new_tree
+
         return new_tree(inside, node, base=self.base, behavior=self.behavior, catalogue=self.catalogue, plan=self.node)
 
     def _concurrency(self, inside: str, node: nodes.Node) -> Work:

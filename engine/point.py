@@ -44,7 +44,7 @@ class Point:
     round: int = 0
     """The round that a foreach container is in, from 0."""
     done: tuple[tuple[str, str, float], ...] = ()
-    """What had happened in a tree, in order: `engine.tree.Mark`."""
+    """What had happened in a tree, in order: `engine.tree_mark.Mark`."""
 
     @property
     def active(self) -> bool:

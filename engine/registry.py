@@ -19,6 +19,7 @@ from types import ModuleType
 from typing import Any, cast
 
 from engine.contained_load import LoadFailure, load_contained
+from engine.document.collection_pause import without_collection
 from engine.document.project import Project, find_project
 from engine.errors import RegistryError
 from engine.nearness import near_names
@@ -33,6 +34,7 @@ SERVERS = "flexcell.servers"
 MODELS = "flexcell.models"
 
 
+@without_collection
 def load_states(start: Path | None = None) -> StateCatalogue:
     """Load the states of installed packages, and those of the modules that a project allows.
 

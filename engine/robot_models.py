@@ -14,7 +14,6 @@ import msgspec
 from engine.arm_target import DrawnCell
 from engine.document.cell import Cell
 from engine.errors import RegistryError
-from engine.registry import MODELS, load_maker
 
 ToolKind = Literal["gripper", "magnet", "hand"]
 """What a tool does: opens and closes fingers, is switched, or closes a hand of one motor."""
@@ -69,6 +68,9 @@ def robot_models() -> RobotModels | None:
 
     They are looked for once: that takes 20 ms, and an editor checks after every change.
     """
+    # Imported where it is wanted: what tells which packages are installed parses mail headers and unpacks archives.
+    from engine.registry import MODELS, load_maker
+
     try:
         return load_maker(MODELS, "standard")
     except RegistryError:

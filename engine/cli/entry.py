@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 
@@ -19,7 +20,11 @@ def main() -> None:
         return
     from engine.cli.main import main as command_line
 
-    command_line()
+    try:
+        command_line()
+    finally:
+        # Python would look through everything that a cell loaded for cycles before it ends, for 0.3 s of CPU.
+        gc.freeze()
 
 
 def _stop_options(arguments: list[str]) -> tuple[Path, str] | None:

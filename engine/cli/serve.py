@@ -10,6 +10,7 @@ import webbrowser
 from collections.abc import Callable, Coroutine
 from contextlib import ExitStack, suppress
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any
@@ -107,6 +108,8 @@ async def _serve(
     open_page: bool,
 ) -> None:
     new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
+    # Plans load it with the first tree, which would hold the loop in the middle of another run.
+    import_module("engine.tree")
     state = folder.path
 
     def ready(dashboard: Any) -> None:

@@ -20,7 +20,6 @@ from engine.document.loader import (
 from engine.document.node import Concurrency, ForEach, Guard, Machine, Node, Retry, Timeout
 from engine.document.parameter import Parameter, bind_parameters
 from engine.document.placement import Placement
-from engine.document.schema import write_schemas
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.document.yaml_source import Source, load_source, parse_source
 from engine.document.yaml_writer import write_yaml
@@ -67,6 +66,5 @@ __all__ = [
     "read_signature",
     "survey_behavior",
     "write_entries",
-    "write_schemas",
     "write_yaml",
 ]

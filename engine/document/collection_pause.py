@@ -1,8 +1,9 @@
-"""Keeps Python from looking for cyclic garbage while a document is read, checked or planned.
+"""Keeps Python from looking for cyclic garbage while a document is read, checked or planned, or modules are loaded.
 
 Each full look passes over everything that was read and holds every thread, the event loop too: 0.3 s
-for 10,000 states, several times in one reading. What is read has no cycles and goes without it. The
-collector's counts go on meanwhile, so that it looks soon afterwards, once.
+for 10,000 states, several times in one reading. What is read has no cycles and goes without it, and what
+is loaded stays: the modules of a simulated cell take a sixth less without. The collector's counts go on
+meanwhile, so that it looks soon afterwards, once.
 """
 
 from __future__ import annotations

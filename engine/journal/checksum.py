@@ -1,7 +1,7 @@
 """Checksums over what a journal holds of a run, so that a changed byte is found and told with its place.
 
-Each event has one over its row and over the checksum of the event before it. The last of this chain is kept beside the
-run: what is changed, put elsewhere, or missing breaks it at the first event that it concerns. They find damage; who
+Each row of events has one over itself and over the checksum of the row before it. The last of this chain is kept beside
+the run: what is changed, put elsewhere, or missing breaks it at the first row that it concerns. They find damage; who
 changes a journal on purpose can make them anew.
 """
 
@@ -13,18 +13,25 @@ from hashlib import blake2b
 
 SIZE = 16
 """Bytes of a checksum."""
-_ROW = struct.Struct("<qdq")
+_EVENT = struct.Struct("<qdq")
+_BLOCK = struct.Struct("<qqqq")
 
 
 def chain_start(run: str) -> bytes:
-    """Return what the first event of a run is chained to."""
+    """Return what the first row of a run is chained to."""
     return blake2b(run.encode(), digest_size=SIZE).digest()
 
 
-def next_checksum(before: bytes, seq: int, time_s: float, epoch: int, data: bytes) -> bytes:
-    """Return the checksum of an event whose predecessor has `before`."""
+def event_checksum(before: bytes, seq: int, time_s: float, epoch: int, data: bytes) -> bytes:
+    """Return the checksum of a row of one event, as format 4 had them, whose predecessor has `before`."""
+    return blake2b(before + _EVENT.pack(seq, time_s, epoch) + data, digest_size=SIZE).digest()
+
+
+def block_checksum(before: bytes, seq: int, last: int, epoch: int, sums: bytes, data: bytes) -> bytes:
+    """Return the checksum of a row of several events whose predecessor has `before`."""
     # One call over one piece of bytes: every event comes through here.
-    return blake2b(before + _ROW.pack(seq, time_s, epoch) + data, digest_size=SIZE).digest()
+    head = _BLOCK.pack(seq, last, epoch, len(sums))
+    return blake2b(b"".join((before, head, sums, data)), digest_size=SIZE).digest()
 
 
 def checksum_of(values: Iterable[str | bytes | float | None]) -> bytes:

@@ -10,6 +10,7 @@ from engine.errors import JournalError
 from engine.event import AnyEvent, Event
 
 _ENCODER = msgspec.json.Encoder(order="deterministic")
+_UNWRITABLE = (TypeError, ValueError, OverflowError, RecursionError)
 _DECODER: msgspec.json.Decoder[AnyEvent] = msgspec.json.Decoder(AnyEvent)
 
 
@@ -23,7 +24,7 @@ def encode_event(event: Event) -> bytes:
     """
     try:
         return _ENCODER.encode(event)
-    except (TypeError, ValueError, OverflowError, RecursionError) as error:
+    except _UNWRITABLE as error:
         raise JournalError(
             f"event {event.seq} ({type(event).__name__}) cannot be written as JSON: {error}",
             where=getattr(event, "path", None),
@@ -40,11 +41,34 @@ def decode_event(data: bytes | str) -> AnyEvent:
     try:
         return _DECODER.decode(data)
     except (msgspec.DecodeError, RecursionError) as error:
-        raise JournalError(
-            f"this is not an event: {error}", hint="the journal is damaged or of another version"
-        ) from error
+        raise _no_event(error) from error
 
 
 def encode_event_log(events: Iterable[Event]) -> bytes:
-    """Return JSON lines, one event each, every line ended; two equal runs give equal bytes."""
-    return b"".join(encode_event(event) + b"\n" for event in events)
+    """Return JSON lines, one event each, every line ended; two equal runs give equal bytes.
+
+    Raises:
+        JournalError: a value inside an event cannot be written as JSON.
+    """
+    known = list(events)
+    try:
+        return _ENCODER.encode_lines(known)
+    except _UNWRITABLE:
+        # Once more, one by one: which event it is must be told.
+        return b"".join(encode_event(event) + b"\n" for event in known)
+
+
+def decode_event_log(data: bytes) -> tuple[AnyEvent, ...]:
+    """Read back what `encode_event_log` gave.
+
+    Raises:
+        JournalError: a line is not an event.
+    """
+    try:
+        return tuple(_DECODER.decode_lines(data))
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise _no_event(error) from error
+
+
+def _no_event(error: Exception) -> JournalError:
+    return JournalError(f"this is not an event: {error}", hint="the journal is damaged or of another version")

@@ -5,15 +5,18 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from itertools import count
+from operator import attrgetter, ne
 from pathlib import Path
+from typing import NamedTuple
 
 import msgspec
 
 from engine.errors import JournalError
 from engine.event import Event, RunEnded
 from engine.journal.batch import Batch
-from engine.journal.checksum import chain_start, checksum_of, next_checksum
-from engine.journal.codec import encode_event
+from engine.journal.block import Block, new_blocks
+from engine.journal.checksum import chain_start, checksum_of
 from engine.journal.port import RunOrigin
 from engine.sqlite_file import advice, open_sqlite
 from engine.sqlite_schema import Schema
@@ -43,11 +46,23 @@ CREATE TABLE checksum(
     world BLOB) STRICT, WITHOUT ROWID;
 INSERT INTO checksum(run, since, seq) SELECT id, 0, 0 FROM run;
 """,
+        # Events are written in blocks from here on; the rows of older ones stay as they are.
+        """
+CREATE TABLE block(
+    run TEXT NOT NULL, seq INTEGER NOT NULL, last INTEGER NOT NULL, epoch INTEGER NOT NULL, sums BLOB NOT NULL,
+    data BLOB NOT NULL, checksum BLOB NOT NULL, PRIMARY KEY (run, seq)) STRICT;
+""",
     )
 )
+BLOCKS_SINCE_VERSION = 5
 CHECKSUMS_SINCE_VERSION = 4
 DRIVER_SINCE_VERSION = 3
-_INSERT_EVENT = "INSERT INTO event(run, seq, time_s, epoch, data, checksum) VALUES (?, ?, ?, ?, ?, ?)"
+_INSERT_BLOCK = "INSERT INTO block(run, seq, last, epoch, sums, data, checksum) VALUES (?, ?, ?, ?, ?, ?, ?)"
+_LAST_SEQ = """
+SELECT coalesce((SELECT last FROM block WHERE run = ?1 ORDER BY seq DESC LIMIT 1),
+                (SELECT max(seq) FROM event WHERE run = ?1), 0)
+"""
+_seq_of = attrgetter("seq")
 _SET_DRIVER = "INSERT OR REPLACE INTO driver(run, engine) VALUES (?, ?)"
 _RECORD = """
 SELECT id, behavior, hash, status, epoch, started, (SELECT engine FROM driver WHERE driver.run = run.id),
@@ -57,7 +72,12 @@ FROM run LEFT JOIN checksum ON checksum.run = run.id WHERE run.id = ?
 
 DAMAGE_HINT = "restore a copy of the journal, or move it away"
 
-EventRow = tuple[str, int, float, int, str, bytes]
+
+class _End(NamedTuple):
+    """Where the events of a run end: the number of the last, and what the next is chained to."""
+
+    seq: int
+    chain: bytes
 
 
 class RunRefused(JournalError):
@@ -70,8 +90,8 @@ class JournalDatabase:
     def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
         self.path = path
         self._connection = connection
-        self._chains: dict[str, bytes] = {}
-        """The checksum of the last event of each run that this engine drives."""
+        self._ends: dict[str, _End] = {}
+        """Where each run that this engine drives ends."""
 
     @classmethod
     def open(cls, path: Path, *, busy_timeout_s: float) -> JournalDatabase:
@@ -111,7 +131,7 @@ class JournalDatabase:
                 (run_id, chain_start(run_id), begun),
             )
             self._seal(run_id)
-        self._chains[run_id] = chain_start(run_id)
+        self._ends[run_id] = _End(0, chain_start(run_id))
         return 1
 
     def take_over_run(self, run_id: str, *, engine: str) -> int:
@@ -127,9 +147,9 @@ class JournalDatabase:
             if row is None:
                 raise JournalError(f"there is no run {run_id}", where=self.path, hint="`flexcell runs` lists them")
             connection.execute(_SET_DRIVER, (run_id, engine))
-            chain = self._chain(run_id)
+            end = self._end(run_id)
             self._seal(run_id)
-        self._chains[run_id] = chain
+        self._ends[run_id] = end
         return int(row[0])
 
     def store(self, batches: Sequence[Batch]) -> None:
@@ -139,16 +159,16 @@ class JournalDatabase:
             RunRefused: one run may not write or gave an event twice; nothing was written.
             JournalError: the file cannot be written; nothing was.
         """
-        rows = [(each, _rows(each.run, each.epoch, each.events, self._chains[each.run])) for each in batches]
+        made = [(each, _blocks(each, self._ends[each.run])) for each in batches]
         with self._writing():
-            for each, events in rows:
+            for each, blocks in made:
                 self._check_fence(each.run, each.epoch)
-                self._insert_events(each.run, events)
+                self._insert_blocks(each.run, blocks)
                 self._store_status(each.run, each.events)
                 self._store_world(each)
-        for each, events in rows:
-            if events:
-                self._chains[each.run] = events[-1][-1]
+        for each, blocks in made:
+            if blocks:
+                self._ends[each.run] = _End(blocks[-1].last, blocks[-1].checksum)
 
     def close(self) -> None:
         """Release the file."""
@@ -164,15 +184,15 @@ class JournalDatabase:
                 hint="stop this engine: the other one has resumed the run",
             )
 
-    def _insert_events(self, run: str, rows: Sequence[EventRow]) -> None:
-        if not rows:
+    def _insert_blocks(self, run: str, blocks: Sequence[Block]) -> None:
+        if not blocks:
             return
         try:
-            self._connection.executemany(_INSERT_EVENT, rows)
+            self._connection.executemany(_INSERT_BLOCK, map(msgspec.structs.astuple, blocks))
         except sqlite3.IntegrityError as error:
-            raise RunRefused(f"an event from seq {rows[0][1]} on is stored already: {error}", where=run) from error
-        last = rows[-1]
-        self._connection.execute("UPDATE checksum SET seq = ?, chain = ? WHERE run = ?", (last[1], last[-1], run))
+            raise RunRefused(f"an event from seq {blocks[0].seq} on is stored already: {error}", where=run) from error
+        end = blocks[-1]
+        self._connection.execute("UPDATE checksum SET seq = ?, chain = ? WHERE run = ?", (end.last, end.checksum, run))
 
     def _store_world(self, batch: Batch) -> None:
         if batch.world is not None:
@@ -181,6 +201,9 @@ class JournalDatabase:
             self._connection.execute("UPDATE checksum SET world = ? WHERE run = ?", (checksum_of(row), batch.run))
 
     def _store_status(self, run: str, events: Sequence[Event]) -> None:
+        # Nearly never is there one, and this is the cheapest way to see it.
+        if RunEnded not in map(type, events):
+            return
         for event in events:
             if isinstance(event, RunEnded):
                 self._require_undamaged(run)
@@ -198,10 +221,10 @@ class JournalDatabase:
         if row is not None and row[-1] is not None and row[-1] != checksum_of(row[:-1]):
             raise RunRefused(f"what the journal says of run {run} as a whole is damaged", where=run, hint=DAMAGE_HINT)
 
-    def _chain(self, run: str) -> bytes:
-        """Return what the next event is chained to; a run of an older version begins its chain here."""
+    def _end(self, run: str) -> _End:
+        """Return where a run ends; one of an older version begins its chain here."""
         row = self._connection.execute("SELECT seq, chain FROM checksum WHERE run = ?", (run,)).fetchone()
-        last = self._connection.execute("SELECT coalesce(max(seq), 0) FROM event WHERE run = ?", (run,)).fetchone()[0]
+        last = int(self._connection.execute(_LAST_SEQ, (run,)).fetchone()[0])
         if row is not None and row[1] is not None:
             if last != row[0]:
                 raise JournalError(
@@ -209,11 +232,11 @@ class JournalDatabase:
                     where=self.path,
                     hint=DAMAGE_HINT,
                 )
-            return bytes(row[1])
+            return _End(last, bytes(row[1]))
         self._connection.execute(
             "UPDATE checksum SET since = ?, seq = ?, chain = ? WHERE run = ?", (last + 1, last, chain_start(run), run)
         )
-        return chain_start(run)
+        return _End(last, chain_start(run))
 
     @contextmanager
     def _writing(self) -> Generator[sqlite3.Connection]:
@@ -239,13 +262,19 @@ def journal_fault(what: str, path: Path, error: sqlite3.Error | OSError) -> Jour
     return JournalError(f"the journal {what}: {error}", where=path, hint=advice(error))
 
 
-def _rows(run: str, epoch: int, events: Sequence[Event], chain: bytes) -> list[EventRow]:
-    rows: list[EventRow] = []
+def _blocks(batch: Batch, end: _End) -> list[Block]:
+    """Return the rows of the events of a batch, which must be those that come next."""
+    events = batch.events
+    if not events:
+        return []
+    if any(map(ne, map(_seq_of, events), count(end.seq + 1))):
+        raise RunRefused(_out_of_order(events, end.seq + 1), where=batch.run, hint="report this defect")
     try:
-        for event in events:
-            data = encode_event(event)
-            chain = next_checksum(chain, event.seq, event.time_s, epoch, data)
-            rows.append((run, event.seq, event.time_s, epoch, data.decode(), chain))
+        return list(new_blocks(batch.run, batch.epoch, events, end.chain))
     except JournalError as error:
-        raise RunRefused(error.message, where=run, hint=error.hint) from error
-    return rows
+        raise RunRefused(error.message, where=batch.run, hint=error.hint) from error
+
+
+def _out_of_order(events: Sequence[Event], due: int) -> str:
+    number, event = next((n, event) for n, event in enumerate(events, due) if event.seq != n)
+    return f"event {event.seq} {'is stored already' if event.seq < number else f'came where event {number} was due'}"

@@ -31,7 +31,7 @@ class SqliteRunJournal:
     def __init__(self, ledger: Ledger, writer: GroupWriter) -> None:
         self._ledger = ledger
         self._writer = writer
-        self._queue = writer.queue
+        self._events = ledger.events
 
     @property
     def run_id(self) -> str:
@@ -45,24 +45,26 @@ class SqliteRunJournal:
 
     def append(self, event: Event) -> None:
         """Take an event; it is encoded and written by the next commit of any run, or after a moment."""
-        self._ledger.appended += 1
-        self._ledger.last_seq = event.seq
-        queue = self._queue
-        queue.append((self._ledger, event))
-        waiting = len(queue)
+        ledger, events = self._ledger, self._events
+        events.append(event)
+        ledger.appended += 1
+        ledger.last_seq = event.seq
+        waiting = len(events)
         if waiting == 1:
+            self._writer.queue.append(ledger)
             self._writer.wake_soon()
         elif waiting >= WAKE_AT_EVENTS:
             self._writer.wake()
 
     async def keep_up(self) -> None:
         """Return at once, unless so much waits that it would fill the memory."""
-        if len(self._queue) > MOST_WAITING:
+        if len(self._events) > MOST_WAITING:
             await self.commit()
 
     def keep_world(self, state: bytes) -> None:
         """Take the state of the simulated world; the next commit stores it together with the events so far."""
-        self._queue.append((self._ledger, WorldState(self._ledger.last_seq, state)))
+        self._ledger.worlds.append(WorldState(self._ledger.last_seq, state))
+        self._writer.queue.append(self._ledger)
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
         """Call `listener` on this event loop when events cannot be written and no commit waits to be told."""

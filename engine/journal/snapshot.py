@@ -16,15 +16,17 @@ import msgspec
 from engine.errors import JournalError
 from engine.event import AnyEvent
 from engine.journal.batch import WorldState
-from engine.journal.checksum import chain_start, checksum_of, next_checksum
-from engine.journal.codec import decode_event
+from engine.journal.block import Block
+from engine.journal.checksum import chain_start, checksum_of
 from engine.journal.database import (
+    BLOCKS_SINCE_VERSION,
     CHECKSUMS_SINCE_VERSION,
     DAMAGE_HINT,
     DRIVER_SINCE_VERSION,
     SCHEMA,
     journal_fault,
 )
+from engine.journal.event_row import EventRow
 from engine.journal.port import RunOrigin, RunRecord
 from engine.journal.presence import living_engines
 from engine.nearness import near_names
@@ -34,30 +36,20 @@ T = TypeVar("T")
 
 _RUNS = """
 SELECT id, behavior, hash, status, epoch, started, {driver}, {checksums},
-       coalesce((SELECT max(seq) FROM event WHERE event.run = run.id), 0)
+       coalesce({last}(SELECT max(seq) FROM event WHERE event.run = run.id), 0)
 FROM run {join} ORDER BY started, rowid
 """
 _DRIVER = "(SELECT engine FROM driver WHERE driver.run = run.id)"
 _CHECKSUMS = "c.since, c.origin, c.record, c.seq, c.chain, c.world"
+_LAST = "(SELECT last FROM block WHERE block.run = run.id ORDER BY seq DESC LIMIT 1), "
 _JOIN = "LEFT JOIN checksum c ON c.run = run.id"
 # The bytes of the text as they are stored: what is no text must not stop the reading of the others.
 _EVENTS = "SELECT run, seq, time_s, epoch, CAST(data AS BLOB), {checksum} FROM event WHERE run = ?"
+_BLOCKS = "SELECT run, seq, last, epoch, sums, data, checksum FROM block WHERE run = ?"
 _MAX_UNIX_S = 2**37
 
 
-class EventRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """The row of one event."""
-
-    run: str
-    seq: int
-    time_s: float
-    epoch: int
-    data: bytes
-    checksum: bytes | None
-
-    def chained(self, before: bytes) -> bytes:
-        """Return the checksum that it has where its predecessor has `before`."""
-        return next_checksum(before, self.seq, self.time_s, self.epoch, self.data)
+Stored = EventRow | Block
 
 
 class RunRow(msgspec.Struct, frozen=True, array_like=True):
@@ -126,15 +118,13 @@ class JournalSnapshot:
         """
         row = self._row(run_id)
         chain, last, allowed = chain_start(run_id), 0, stored_bytes(self.path)
-        for found in self._connection.execute(f"{self._events} ORDER BY seq", (run_id,)):
-            # What has the right checksum has the right types; only the others must be looked at.
-            event = EventRow(*found) if row.since == 1 else self._typed(found, EventRow, what=_after(last, run_id))
-            chain = self._verified(row, event, chain)
-            allowed -= len(event.data)
+        for stored in self._stored(row):
+            chain = self._verified(row, stored, chain)
+            allowed -= len(stored.data)
             if allowed < 0:
                 raise self._damaged(f"run {run_id} has more text than the whole file holds")
-            last = event.seq
-            yield self._decoded(event)
+            last = stored.last
+            yield from self._decoded(stored)
         if row.since and row.chain != chain:
             raise self._damaged(f"the events of run {run_id} end at {last}, and {row.seq} was the last")
 
@@ -145,15 +135,13 @@ class JournalSnapshot:
             JournalError: there is no such run, or the event is damaged.
         """
         row = self._row(run_id)
-        found = self._connection.execute(f"{self._events} ORDER BY seq DESC LIMIT 2", (run_id,)).fetchall()
-        rows = [self._typed(each, EventRow, what=f"the last event of run {run_id}") for each in found]
-        if not rows:
+        stored = self._last(row)
+        if stored is None:
             return None
-        before = rows[1].checksum if len(rows) > 1 else None
-        chain = self._verified(row, rows[0], before or chain_start(run_id))
-        if row.since and rows[0].seq >= row.since and chain != row.chain:
-            raise self._damaged(f"event {rows[0].seq} of run {run_id} is not the last that was written")
-        return self._decoded(rows[0])
+        chain = self._verified(row, stored, self._checksum_before(stored) or chain_start(run_id))
+        if row.since and stored.last >= row.since and chain != row.chain:
+            raise self._damaged(f"event {stored.last} of run {run_id} is not the last that was written")
+        return self._decoded(stored)[-1]
 
     def origin(self, run_id: str) -> RunOrigin | None:
         """Return how a run was started; None where the journal does not know.
@@ -188,9 +176,50 @@ class JournalSnapshot:
                 raise self._damaged(f"the simulated world of run {run_id} is damaged: its checksum is wrong")
         return WorldState(*found) if found is not None else None
 
+    def _stored(self, row: RunRow) -> Iterator[Stored]:
+        """Go through the rows of the events of a run: single ones of an older version first, then blocks."""
+        last = 0
+        for found in self._connection.execute(f"{self._events} ORDER BY seq", (row.id,)):
+            # What has the right checksum has the right types; only the others must be looked at.
+            event = EventRow(*found) if row.since == 1 else self._typed(found, EventRow, what=_after(last, row.id))
+            yield event
+            last = event.seq
+        if self._has_blocks:
+            for found in self._connection.execute(f"{_BLOCKS} ORDER BY seq", (row.id,)):
+                block = self._typed(found, Block, what=_after(last, row.id))
+                yield block
+                last = block.last
+
+    def _last(self, row: RunRow) -> Stored | None:
+        end, what = "ORDER BY seq DESC LIMIT 1", f"the last event of run {row.id}"
+        found = self._connection.execute(f"{_BLOCKS} {end}", (row.id,)).fetchone() if self._has_blocks else None
+        if found is not None:
+            return self._typed(found, Block, what=what)
+        found = self._connection.execute(f"{self._events} {end}", (row.id,)).fetchone()
+        return self._typed(found, EventRow, what=what) if found is not None else None
+
+    def _checksum_before(self, stored: Stored) -> bytes | None:
+        """Return the checksum of the row before this one; None where there is none, or it has none."""
+        for table in ("block", "event") if isinstance(stored, Block) else ("event",):
+            query = f"SELECT {self._checksum if table == 'event' else 'checksum'} FROM {table}"
+            where = "WHERE run = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
+            found = self._connection.execute(f"{query} {where}", (stored.run, stored.seq)).fetchone()
+            if found is not None:
+                what = f"what precedes event {stored.seq} of run {stored.run}"
+                return self._typed(found, tuple[bytes | None], what=what)[0]
+        return None
+
+    @property
+    def _has_blocks(self) -> bool:
+        return self._version >= BLOCKS_SINCE_VERSION
+
+    @property
+    def _checksum(self) -> str:
+        return "checksum" if self._version >= CHECKSUMS_SINCE_VERSION else "NULL"
+
     @property
     def _events(self) -> str:
-        return _EVENTS.format(checksum="checksum" if self._version >= CHECKSUMS_SINCE_VERSION else "NULL")
+        return _EVENTS.format(checksum=self._checksum)
 
     @cached_property
     def _rows(self) -> dict[str, RunRow]:
@@ -199,6 +228,7 @@ class JournalSnapshot:
             driver=_DRIVER if self._version >= DRIVER_SINCE_VERSION else "NULL",
             checksums=_CHECKSUMS if checked else ", ".join(["NULL"] * 6),
             join=_JOIN if checked else "",
+            last=_LAST if self._has_blocks else "",
         )
         rows = [self._typed(row, RunRow, what=f"run {row[0]!r:.80}") for row in self._connection.execute(query)]
         if checked:
@@ -216,22 +246,22 @@ class JournalSnapshot:
             raise self._damaged(row.fault)
         return row
 
-    def _verified(self, row: RunRow, event: EventRow, before: bytes) -> bytes:
-        """Return what the event after this one is chained to."""
+    def _verified(self, row: RunRow, stored: Stored, before: bytes) -> bytes:
+        """Return what the row after this one is chained to."""
         try:
-            checked = row.since is not None and 0 < row.since <= event.seq
-            wanted = event.chained(before) if checked else None
+            checked = row.since is not None and 0 < row.since <= stored.seq
+            wanted = stored.chained(before) if checked else None
         except (TypeError, OverflowError, struct.error) as error:
             raise self._damaged(f"an event of run {row.id} is damaged: {error}") from error
-        if event.checksum != wanted or event.run != row.id:
-            raise self._damaged(f"event {event.seq} of run {row.id} is damaged or out of place: its checksum is wrong")
+        if stored.checksum != wanted or stored.run != row.id:
+            raise self._damaged(f"{_suspects(stored, row.id)} damaged or out of place: the checksum is wrong")
         return wanted or before
 
-    def _decoded(self, event: EventRow) -> AnyEvent:
+    def _decoded(self, stored: Stored) -> tuple[AnyEvent, ...]:
         try:
-            return decode_event(event.data)
+            return stored.events()
         except JournalError as error:
-            raise self._damaged(f"event {event.seq} of run {event.run}: {error.message}") from error
+            raise self._damaged(f"event {stored.seq} of run {stored.run}: {error.message}") from error
 
     def _one(self, query: str, run_id: str, kind: type[T]) -> T | None:
         found = self._connection.execute(query, (run_id,)).fetchone()
@@ -249,6 +279,11 @@ class JournalSnapshot:
 
 def _after(seq: int, run: str) -> str:
     return f"the event after {seq} of run {run}"
+
+
+def _suspects(stored: Stored, run: str) -> str:
+    first, last = stored.suspects()
+    return f"event {first} of run {run} is" if first == last else f"events {first} to {last} of run {run} are"
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -24,20 +24,34 @@ WAKE_AFTER_S = 0.25
 
 @dataclass(eq=False)
 class Ledger:
-    """How far one run has been written.
+    """What is to be written of one run, and how far it has been.
 
+    The run's loop appends to `events` and `worlds`, the writer takes from their other end: neither waits for the other.
     `failure` is the reason why it never will be again: an event of it is lost. `listener` hears of it where no commit
     waits to be told.
     """
 
     run_id: str
     epoch: int
+    events: list[Event] = field(default_factory=list[Event], repr=False)
+    worlds: deque[WorldState] = field(default_factory=deque[WorldState], repr=False)
     appended: int = 0
     durable: int = 0
     last_seq: int = 0
     failure: JournalError | None = None
     listener: Callable[[JournalError], None] | None = None
     loop: asyncio.AbstractEventLoop | None = None
+
+    def take(self) -> _Group:
+        """Take everything that is there; called by the writer."""
+        world = None
+        # Before the events: a world must not come to the disk without those that led to it.
+        while self.worlds:
+            world = self.worlds.popleft()
+        # In two steps, each of which is whole to another thread; what is appended in between stays for the next time.
+        events = self.events[:]
+        del self.events[: len(events)]
+        return _Group(events, world)
 
     def fail(self, error: JournalError) -> None:
         """Write nothing more of this run."""
@@ -52,10 +66,10 @@ class Ledger:
             self.loop.call_soon_threadsafe(self.listener, error)
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class _Group:
-    events: list[Event] = field(default_factory=list[Event])
-    world: WorldState | None = None
+    events: list[Event]
+    world: WorldState | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,17 +96,15 @@ class Waiter:
             self.future.set_exception(error)
 
 
-Item = tuple[Ledger, Event | WorldState] | Waiter
-
-
 class GroupWriter:
-    """Writes what is in its queue; `flush` on the calling thread, or `start` a thread that does.
+    """Writes what is in the ledgers it was told of; `flush` on the calling thread, or `start` a thread that does.
 
-    Appending to the queue is all that a run pays; encoding happens when the group is written.
+    Appending to its ledger is all that a run pays; encoding happens when the group is written.
     """
 
     def __init__(self, database: JournalDatabase) -> None:
-        self.queue: deque[Item] = deque()
+        self.queue: deque[Ledger | Waiter] = deque()
+        """Ledgers that have something to write, and who waits for that."""
         self.failure: JournalError | None = None
         """Why nothing at all can be written any more: it is closed."""
         self.last_failure: JournalError | None = None
@@ -157,7 +169,9 @@ class GroupWriter:
         with self._lock:
             items = [self.queue.popleft() for _ in range(len(self.queue))]
             waiters = [item for item in items if isinstance(item, Waiter)]
-            groups = _by_ledger(items)
+            taken = {ledger: ledger.take() for ledger in dict.fromkeys(map(_ledger_of, items))}
+            self._look_again(taken)
+            groups = {ledger: group for ledger, group in taken.items() if group.events or group.world is not None}
             healthy = [ledger for ledger in groups if ledger.failure is None]
             try:
                 self._write(groups)
@@ -171,6 +185,12 @@ class GroupWriter:
                 for ledger in healthy:
                     if ledger.failure is not None and ledger not in told:
                         ledger.tell(ledger.failure)
+
+    def _look_again(self, ledgers: Iterable[Ledger]) -> None:
+        """Come back to those to which something was appended while they were emptied: nobody told of it."""
+        if left := [ledger for ledger in ledgers if ledger.events or ledger.worlds]:
+            self.queue.extend(left)
+            self._wake.set()
 
     def _serve(self) -> None:
         while not self._closing:
@@ -204,20 +224,8 @@ class GroupWriter:
             ledger.fail(error)
 
 
-def _by_ledger(items: Sequence[Item]) -> dict[Ledger, _Group]:
-    groups: dict[Ledger, _Group] = {}
-    for item in items:
-        if isinstance(item, Waiter):
-            continue
-        ledger, what = item
-        group = groups.get(ledger)
-        if group is None:
-            group = groups[ledger] = _Group()
-        if isinstance(what, WorldState):
-            group.world = what
-        else:
-            group.events.append(what)
-    return groups
+def _ledger_of(item: Ledger | Waiter) -> Ledger:
+    return item.ledger if isinstance(item, Waiter) else item
 
 
 def _unexpected(error: BaseException) -> JournalError:

@@ -3,9 +3,8 @@
 `new_tree` plans one; `Tree` is the work of its node; `TreeRunner` is one activation of it.
 """
 
-from engine.tree.history import Mark, mark_of
 from engine.tree.planning import new_tree
 from engine.tree.runner import TreeRunner
 from engine.tree.tree import Tree
 
-__all__ = ["Mark", "Tree", "TreeRunner", "mark_of", "new_tree"]
+__all__ = ["Tree", "TreeRunner", "new_tree"]

@@ -1,27 +1,15 @@
 """What the events of a run tell of one activation of a tree, so that another can go on from there.
 
-`mark_of` takes from an event what matters; `standings` folds marks, in order, into how each part
-stood. That is enough: composites of py_trees keep nothing that does not follow from it.
+`standings` folds the marks of an activation, in order, into how each part stood. That is enough: composites of py_trees
+keep nothing that does not follow from it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged
-
-
-class Mark(NamedTuple):
-    """One thing that happened to a part: its path, what, and the run's time.
-
-    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME` or `attempt NUMBER`.
-    """
-
-    path: str
-    what: str
-    at_s: float
+from engine.tree_mark import Mark
 
 
 @dataclass
@@ -47,26 +35,6 @@ class Standing:
     target: str | None = None
     read: bool = True
     """For a leaf that has ended: whether anything followed, so that a tick has read its end."""
-
-
-def mark_of(event: Event) -> Mark | None:
-    """Return what an event tells of a part of a tree, None for events that tell nothing."""
-    match event:
-        case StatusChanged():
-            return Mark(event.path, event.status, event.time_s)
-        case Entered():
-            return Mark(event.path, "entered", event.time_s)
-        case Exited():
-            what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
-            return Mark(event.path, what, event.time_s)
-        case Diverted():
-            # An operator names an outcome; timeout, guard and on_error name a status.
-            said = "outcome" if event.by in ("operator", "start") else "target"
-            return Mark(event.path, f"{said} {event.target}", event.time_s)
-        case Retried():
-            return Mark(event.path, f"attempt {event.attempt}", event.time_s)
-        case _:
-            return None
 
 
 def marks_of(kept: Iterable[tuple[object, ...]]) -> Iterator[Mark]:

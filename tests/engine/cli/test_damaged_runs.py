@@ -31,7 +31,8 @@ async def test_a_damaged_run_is_listed_and_its_events_are_not_shown(tmp_path: Pa
                 run.append(Logged(seq=seq, time_s=0.0, path="root", level="info", message=f"step {seq}"))
             await run.commit()
     changed(tmp_path, "UPDATE run SET behavior = 'other' WHERE id = 'first'")
-    changed(tmp_path, "UPDATE event SET data = replace(data, 'step 2', 'step 9') WHERE run = 'second'")
+    damaged = "CAST(replace(CAST(data AS TEXT), 'step 2', 'step 9') AS BLOB)"
+    changed(tmp_path, f"UPDATE block SET data = {damaged} WHERE run = 'second'")
     said = CliRunner().invoke(app, ["--journal", str(tmp_path)])
     assert said.exit_code == 0
     assert [line.split()[2] for line in said.stdout.splitlines()] == ["status", "damaged", "interrupted"]

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from engine.document import write_schemas
-from engine.document.schema import SCHEMA_FOLDER
+from engine.document.schema import SCHEMA_FOLDER, write_schemas
 
 
 def test_the_committed_schemas_are_current(tmp_path: Path) -> None:

@@ -197,3 +197,18 @@ def test_a_large_file_is_refused_without_being_read_whole(tmp_path: Path) -> Non
     with pytest.raises(DocumentError, match="larger than 2 MB"):
         load_source(file)
     assert time.thread_time() - start < 0.5
+
+
+@pytest.mark.parametrize(
+    "character", "\t\n\r ~\xa0\u2027\u202a\ud7ff\ue000\ufefe\uff00\ufffd\U00010000\U0010ffff", ids=ascii
+)
+def test_a_character_that_people_write_may_stand_in_a_document(character: str) -> None:
+    parse_source(f'a: "{character}"\n', file="x.yaml")
+
+
+@pytest.mark.parametrize(
+    "character", "\x00\x08\x0b\x0c\x0e\x1f\x7f\x85\x9f\u2028\u2029\ud800\udfff\ufeff\ufffe\uffff", ids=ascii
+)
+def test_a_character_that_nobody_sees_may_not(character: str) -> None:
+    with pytest.raises(DocumentError, match=rf"U\+{ord(character):04X} is not allowed"):
+        parse_source(f'a: "{character}"\n', file="x.yaml")

@@ -39,3 +39,11 @@ def write_older_journal(file: Path, version: int, run: str, events: Sequence[Eve
         connection.execute("INSERT INTO world VALUES (?, ?, x'0102')", (run, len(events)))
     connection.execute(f"PRAGMA user_version={version}")
     connection.close()
+
+
+def write_format_4(file: Path) -> None:
+    """Write a journal of two runs that are over, as the last version that kept a row for each event left it."""
+    connection = sqlite3.connect(file, isolation_level=None)
+    connection.executescript(Path(__file__).with_name("format_4.sql").read_text(encoding="utf-8"))
+    connection.execute("PRAGMA journal_mode=WAL")
+    connection.close()

@@ -13,10 +13,11 @@ from engine.archive.past_runs import PastRuns
 from engine.errors import JournalError
 from engine.event import Logged, RunEnded
 from engine.journal import Journal, RunOrigin, list_runs, read_events, read_origin, read_world
-from tests.engine.journal.older_journal import write_older_journal
+from tests.engine.journal.older_journal import write_format_4, write_older_journal
 
 RUNS = ("first", "second")
 EVENTS = 20
+A_COMMIT = 6
 
 
 def said(seq: int) -> Logged:
@@ -24,18 +25,26 @@ def said(seq: int) -> Logged:
 
 
 async def written(folder: Path) -> Path:
-    """Write a journal of two runs, one of them over, and put all of it into the one file."""
+    """Write a journal of two runs that are over, some events in each commit, and put all of it into the one file."""
     with Journal.open(folder, inline=True) as journal:
         for name in RUNS:
             origin = RunOrigin(behavior="/b.yaml", documents={"b.yaml": "text " * 100})
             run = journal.begin(name, behavior="transfer", document="abc", started_unix_s=10.0, origin=origin)
             for seq in range(1, EVENTS):
                 run.append(said(seq))
-                run.keep_world(bytes(range(100)))
-                await run.commit()
+                if seq % A_COMMIT == 0 or seq == EVENTS - 1:
+                    run.keep_world(bytes(range(100)))
+                    await run.commit()
             run.append(RunEnded(seq=EVENTS, time_s=30.0, status="finished", outcome="done"))
             await run.commit()
     return folder / "journal.db"
+
+
+def of_format_4(folder: Path) -> Path:
+    """Write a journal of the same two runs as version 4 of the format had it, a row for each event."""
+    file = folder / "journal.db"
+    write_format_4(file)
+    return file
 
 
 def everything(file: Path) -> object:
@@ -54,6 +63,44 @@ def change(file: Path, statement: str) -> None:
 
 
 EVENT = r"journal\.db: event {} of run first is damaged"
+STEP_7 = "UPDATE {} SET data = CAST(replace(CAST(data AS TEXT), 'step 7', 'step 8') AS BLOB) WHERE run = 'first'"
+
+
+@pytest.mark.parametrize(
+    ("statement", "said"),
+    [
+        (STEP_7.format("block"), EVENT.format(7)),
+        (STEP_7.format("block").replace("'step 8'", "'step 77'"), EVENT.format(7)),
+        ("UPDATE block SET data = substr(data, 1, length(data) - 1) WHERE seq = 7", "events 7 to 12 of run first are"),
+        ("UPDATE block SET sums = CAST(x'00' || substr(sums, 2) AS BLOB) WHERE seq = 7", EVENT.format(7)),
+        ("UPDATE block SET epoch = 2 WHERE run = 'first' AND seq = 7", "events 7 to 12 of run first are damaged"),
+        ("UPDATE block SET last = 11 WHERE run = 'first' AND seq = 7", "events 7 to 11 of run first are damaged"),
+        ("UPDATE block SET last = 1 << 60 WHERE run = 'first' AND seq = 7", "events 7 to 1152921504606846976 of run"),
+        ("UPDATE block SET checksum = x'' WHERE run = 'first' AND seq = 7", "events 7 to 12 of run first are damaged"),
+        ("DELETE FROM block WHERE run = 'first' AND seq = 7", "events 13 to 18 of run first are damaged"),
+        ("DELETE FROM block WHERE run = 'first' AND seq = 1", "events 7 to 12 of run first are damaged"),
+        (
+            "UPDATE block SET seq = 99 WHERE run = 'first' AND seq = 7;"
+            "UPDATE block SET seq = 7 WHERE run = 'first' AND seq = 13;"
+            "UPDATE block SET seq = 13 WHERE run = 'first' AND seq = 99",
+            "events 7 to 18 of run first are damaged",
+        ),
+        (
+            "DELETE FROM block WHERE run = 'first' AND seq > 18",
+            r"journal\.db: run first has 18 events in the journal, and 20 were written",
+        ),
+        (
+            "UPDATE block SET run = 'second', seq = 21 WHERE run = 'first' AND seq = 20",
+            r"run first has 19 events in the journal, and 20 were written",
+        ),
+        ("UPDATE checksum SET since = 5 WHERE run = 'first'", "says of run first as a whole is damaged"),
+    ],
+)  # fmt: skip
+async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, statement: str, said: str) -> None:
+    file = await written(tmp_path)
+    change(file, statement)
+    with pytest.raises(JournalError, match=said):
+        read_events(file, "first")
 
 
 @pytest.mark.parametrize(
@@ -79,14 +126,43 @@ EVENT = r"journal\.db: event {} of run first is damaged"
             "UPDATE event SET run = 'second', seq = 21 WHERE run = 'first' AND seq = 20",
             r"run first has 19 events in the journal, and 20 were written",
         ),
-        ("UPDATE checksum SET since = 5 WHERE run = 'first'", "says of run first as a whole is damaged"),
     ],
-)  # fmt: skip
-async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, statement: str, said: str) -> None:
-    file = await written(tmp_path)
+)
+@pytest.mark.parametrize("upgraded", [False, True])
+def test_a_changed_event_of_format_4_is_told(tmp_path: Path, statement: str, said: str, upgraded: bool) -> None:
+    file = of_format_4(tmp_path)
     change(file, statement)
+    if upgraded:
+        Journal.open(file).close()
     with pytest.raises(JournalError, match=said):
         read_events(file, "first")
+
+
+async def test_a_journal_of_format_4_reads_as_one_of_today(tmp_path: Path) -> None:
+    for folder in ("old", "new"):
+        (tmp_path / folder).mkdir()
+    old = of_format_4(tmp_path / "old")
+    assert everything(old) == everything(await written(tmp_path / "new"))
+    Journal.open(old).close()
+    assert everything(old) == everything(tmp_path / "new" / "journal.db")
+
+
+async def test_a_run_of_format_4_goes_on_in_the_same_chain(tmp_path: Path) -> None:
+    file = of_format_4(tmp_path)
+    before = read_events(file, "first")
+    with Journal.open(file, inline=True) as journal:
+        run = journal.resume("first")
+        for seq in (21, 22, 23):
+            run.append(said(seq))
+        await run.commit()
+    assert read_events(file, "first") == (*before, said(21), said(22), said(23))
+    first = next(run for run in list_runs(file) if run.id == "first")
+    assert (first.last_seq, first.verified, first.damage, first.epoch) == (23, True, "", 2)
+    assert PastRuns(file, success=lambda run, document: ()).all()[1].duration_s == said(23).time_s
+    change(file, "DELETE FROM event WHERE run = 'first' AND seq = 20")
+    with pytest.raises(JournalError, match="events 21 to 23 of run first are damaged or out of place"):
+        read_events(file, "first")
+    assert PastRuns(file, success=lambda run, document: ()).all()[1].status == "errored"
 
 
 @pytest.mark.parametrize(
@@ -97,7 +173,8 @@ async def test_a_changed_event_is_told_with_file_run_and_number(tmp_path: Path, 
         "UPDATE run SET started = 11 WHERE id = 'first'",
         "UPDATE run SET epoch = 2 WHERE id = 'first'",
         "UPDATE driver SET engine = 'x' WHERE run = 'first'",
-        "DELETE FROM event WHERE run = 'first' AND seq = 20",
+        "DELETE FROM block WHERE run = 'first' AND seq = 20",
+        "UPDATE block SET last = 19 WHERE run = 'first' AND seq = 20",
     ],
 )
 async def test_a_damaged_run_is_listed_as_such_and_hides_no_other(tmp_path: Path, statement: str) -> None:
@@ -157,10 +234,21 @@ async def test_no_flipped_byte_changes_what_is_read(tmp_path: Path) -> None:
 async def test_no_flipped_bit_in_the_text_of_an_event_is_missed(tmp_path: Path) -> None:
     file = await written(tmp_path)
     before, whole = everything(file), file.read_bytes()
-    texts = [whole.index(f'"message":"step {seq} '.encode()) + 11 for seq in (1, 7, 15)]
-    for at in texts:
+    for seq in (1, 7, 15):
+        at = whole.index(f'"message":"step {seq} '.encode()) + 11
         for bit in range(8):
             assert _is_found(file, whole, at, 1 << bit, before)
+        file.write_bytes(whole[:at] + b"S" + whole[at + 1 :])
+        damaged = [run for run in RUNS if f"event {seq} of run {run} is damaged" in _refusal(file, run)]
+        assert len(damaged) == 1
+
+
+def _refusal(file: Path, run: str) -> str:
+    try:
+        read_events(file, run)
+    except JournalError as error:
+        return str(error)
+    return ""
 
 
 def _is_found(file: Path, whole: bytes, at: int, flip: int, before: object) -> bool:
@@ -209,6 +297,6 @@ async def test_a_run_of_an_older_version_goes_on_with_checksums(tmp_path: Path, 
     assert read_events(file, "old") == (*events, said(6), said(7))
     assert read_world(file, "old") is not None
     assert PastRuns(file, success=lambda run, document: ()).all()[0].status == "running"
-    change(file, "UPDATE event SET time_s = 0 WHERE seq = 6")
-    with pytest.raises(JournalError, match="event 6 of run old is damaged"):
+    change(file, STEP_7.format("block").replace("'first'", "'old'"))
+    with pytest.raises(JournalError, match="event 7 of run old is damaged"):
         read_events(file, "old")

@@ -17,8 +17,8 @@ from engine.execution import Execution
 from engine.leaf import Leaf
 from engine.plan import Plan
 from engine.state import Outcome
-from engine.tree import Tree, TreeRunner, mark_of
-from engine.tree.history import Mark
+from engine.tree import Tree, TreeRunner
+from engine.tree_mark import Mark, mark_of
 from engine.userdata import Scope
 from tests.engine.tree.run_tree import Told, run_plan, tree_plan
 from tests.engine.tree.scripted_states import REMAINING

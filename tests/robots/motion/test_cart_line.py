@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.interpolate import CubicSpline
 
 from engine.errors import RobotError
 from robots.model.rigid import Rigid, product, quaternion_of
 from robots.motion import plan_line
+from robots.motion.cart_line import splined
 from robots.motion.min_jerk import min_jerk
 from robots.motion.slerp import slerp
 from robots.port import Array, JointTrajectory
@@ -119,3 +122,13 @@ def test_a_duration_that_is_no_time_is_refused(duration_s: float) -> None:
     end = Rigid(xyz=panda_kinematics().tool_pose(home()).xyz + 0.01, xyzw=panda_kinematics().tool_pose(home()).xyzw)
     with pytest.raises(RobotError, match="a line cannot take"):
         plan_line(panda_kinematics(), home(), end, duration_s=duration_s)
+
+
+@given(arrays(np.float64, st.tuples(st.integers(2, 300), st.just(7)), elements=st.floats(-3, 3)), st.floats(0.01, 20))
+def test_the_velocity_at_the_knots_is_that_of_the_spline_which_is_flat_at_both_ends(
+    knots: Array, duration_s: float
+) -> None:
+    way = splined(knots, duration_s=duration_s)
+    times = np.linspace(0.0, duration_s, len(knots))
+    wanted = CubicSpline(times, knots, bc_type="clamped")(times, 1)
+    np.testing.assert_allclose(way.velocity_rad_s, wanted, rtol=0, atol=1e-12 * len(knots) / duration_s)
