@@ -154,10 +154,14 @@ class Node:
         """Perform a node of any kind in any circumstances; its first attempt may have ended already."""
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
+        order: Order | None = None
         while True:
             left = None
-            order: Order | None = None
+            back = order.back if order is not None else None
+            order = None
             try:
+                if back is not None and (returned := await back(scope)) is not None:
+                    return returned
                 if begun is not None:
                     first, begun = begun, None
                     left = await self._attempted(first, execution)
