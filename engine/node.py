@@ -216,7 +216,11 @@ class Node:
             return None
         order = gate.taken_order(self.path)
         # An order of a node around this one preempts both with one clean-up.
-        return order if not gate.has_order_around(self.path) and goes_on() else None
+        if not gate.has_order_around(self.path) and goes_on():
+            return order
+        if order is not None and order.back is not None:
+            gate.end_undo()
+        return None
 
     def _forced(self, outcome: str, execution: Execution) -> Left:
         record_diverted(execution, self.path, "operator", outcome, None)

@@ -49,7 +49,7 @@ async def order_step_back(
     step.trail.read(later)
     undone = tuple(each.path for each in step.undone)
     undoing = Undoing(step=step, execution=execution)
-    control.step_back(step.cursor, step.node, undoing.carry_out)
+    control.step_back(step.cursor, step.node, step.target, undoing.carry_out)
     return undone
 
 
@@ -78,7 +78,6 @@ class Undoing:
         Where something cannot be undone, the run stands where it was, and the log says why.
         """
         gate = self.execution.gate
-        gate.begin_undo(self.step.target)
         try:
             await self._undo()
         except (JournalError, asyncio.CancelledError):

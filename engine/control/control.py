@@ -158,16 +158,18 @@ class Control:
         if self._gate.stepping or self._gate.ordered:
             raise ControlError("the run follows another order", hint="wait until it rests")
 
-    def step_back(self, cursor: str, path: str, back: Back) -> None:
+    def step_back(self, cursor: str, path: str, target: str, back: Back) -> None:
         """Have the node at `path` give up and go `back`; for `engine.run.Run.step_back`, which decides how far.
 
         Args:
             cursor: The node that waits or is active in the branch, by which the order is known.
             path: The node that gives up: that one, or one around it.
+            target: The node that is undone.
             back: Takes back what is to be taken back.
         """
         self._record("step_back", cursor)
         self._confirmed = False
+        self._gate.begin_undo(target, path)
         self._order(path, Order(outcome=None, back=back))
 
     def lock(self, path: str, reason: str = "") -> None:
@@ -306,9 +308,9 @@ class Control:
 
     def _refuse_undoing(self, path: str) -> None:
         """Refuse an order for what a step back is undoing; any order at all where `path` is empty."""
-        undoing = self._gate.undoing
-        if undoing and (not path or inside(undoing, path)):
-            raise ControlError("this is being undone", where=undoing, hint="wait until the run rests, or stop it")
+        for undoing in self._gate.undoing:
+            if not path or inside(undoing, path):
+                raise ControlError("this is being undone", where=undoing, hint="wait until the run rests, or stop it")
 
     def _require_active(self, path: str) -> None:
         self._refuse_undoing(path)

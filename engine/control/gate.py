@@ -67,8 +67,8 @@ class Gate:
         self._accepted: dict[str, tuple[int, str]] = {}
         self.on_paused: Callable[[], None] = lambda: None
         """Called after every pause: by the operator, a breakpoint, the end of a step."""
-        self.undoing = ""
-        """The node that is being undone; empty while there is none."""
+        self.undoing: tuple[str, ...] = ()
+        """The node that is being undone, and the one that gave up for it; empty while there is none."""
         self._step: Step | None = None
         self._paused = False
         self._recorder = recorder
@@ -115,14 +115,14 @@ class Gate:
         self._suspensions.hold(PAUSE, self._covers)
         self.arm()
 
-    def begin_undo(self, path: str) -> None:
-        """Let what is done to undo the node at `path` go on, and nothing else."""
-        self.undoing = path
+    def begin_undo(self, path: str, gives_up: str) -> None:
+        """Let what is done to undo the node at `path` go on, and nothing else; the node `gives_up` goes back there."""
+        self.undoing = (path, gives_up)
         self.step(Step(mode="back", branch=path, origin=path))
 
     def end_undo(self) -> None:
         """Hold everything again, whatever was ordered meanwhile."""
-        self.undoing = ""
+        self.undoing = ()
         self.pause()
 
     def order(self, path: str, order: Order) -> None:

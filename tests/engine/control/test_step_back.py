@@ -9,9 +9,10 @@ import pytest
 
 from engine.bus import SkillBus
 from engine.errors import FlexcellError
-from engine.event import Commanded, Entered, Exited, SteppedBack, UndoBegan, UndoEnded, UserdataWritten
+from engine.event import Commanded, Entered, Exited, PauseConfirmed, SteppedBack, UndoBegan, UndoEnded, UserdataWritten
 from engine.run import Run
 from engine.supervision import Supervision
+from tests.engine.at_once import at_once
 from tests.engine.control.operate import Act, operate, pause, resume
 from tests.engine.control.slide import MoveSlide, PushSlide, Slide
 from tests.engine.fake_states import WITH_FLOW
@@ -375,3 +376,42 @@ def test_every_activation_is_entered_and_left_once_and_an_undo_has_a_number_of_i
     undone = {(e.path, e.visit) for e in told.events if isinstance(e, UndoBegan)}
     assert undone
     assert not undone & set(entered)
+
+
+def test_a_pause_is_confirmed_once_the_undoing_is_done_and_not_before() -> None:
+    operator = Operator()
+    told = operator.run(TWO, {2.0: pause, 3.0: operator.back(), 6.0: resume})
+    confirmed = [e.time_s for e in told.events if isinstance(e, PauseConfirmed)]
+    stepped = [e.time_s for e in told.events if isinstance(e, SteppedBack)]
+    assert confirmed == [2.0, *stepped]
+
+
+def test_an_order_for_a_container_around_takes_the_place_of_a_step_back() -> None:
+    text = """
+    root:
+      machine:
+        initial: inner
+        states:
+          inner:
+            machine:
+              initial: one
+              states:
+                one: {state: test.MoveSlide, with: {to_m: 3}, transitions: {there: out, failed: out}}
+            transitions: {out: last}
+          last: {state: flow.Wait, with: {duration_s: 1}, transitions: {done: good}}
+    """
+    operator = Operator()
+
+    def leave(run: Run) -> None:
+        at_once(run.step_back())
+        run.control.force("root/inner", "out")
+
+    told = operator.run(
+        text, {1.0625: pause, 2.0: leave, 3.0: operator.look, 4.0: operator.back(), 6.0: operator.look, 7.0: resume}
+    )
+    assert operator.said == [
+        "before root/last rests 1 m",
+        "undoes root/inner/one",
+        "before root/inner rests 0 m",
+    ]
+    assert told.result.outcome == "good"

@@ -20,6 +20,7 @@ from engine.skills.motion import (
     JointTrapVel,
 )
 from engine.state import ActionEnd, ActivationRecord, RequestRecord, State
+from states.motion.line_time import line_duration_s
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
 from states.motion.move_pose import MovePose
@@ -76,7 +77,9 @@ async def test_a_line_of_a_speed_goes_back_at_that_speed() -> None:
     ctx = FakeContext({"left/forward_kinematics": HERE, "left/cart_lin_task": DONE_LINE})
     await BY_SPEED.undo(ctx, LINE_DONE)
     # 0.2 m with minimum jerk, whose greatest speed is 15/8 of its mean.
-    assert ctx.sent[1] == ("left/cart_lin_task", CartLinTask(pose=HERE, duration_s=pytest.approx(0.2 / 0.1 * 1.875)))
+    due_s = line_duration_s(THERE, HERE, speed_m_s=0.1)
+    assert due_s == pytest.approx(3.75)
+    assert ctx.sent[1] == ("left/cart_lin_task", CartLinTask(pose=HERE, duration_s=due_s))
 
 
 async def test_a_goal_that_was_rejected_has_moved_nothing() -> None:
@@ -96,6 +99,8 @@ def test_without_the_configuration_at_its_beginning_there_is_no_way_back(status:
 
 
 async def test_a_way_back_that_fails_says_why() -> None:
-    ctx = FakeContext({"left/joint_trap_vel": broken_off("aborted", Cause(message="it touched the tray", where="left"))})
-    with pytest.raises(StateError, match="left did not get back to where its motion began.*it touched the tray"):
+    ctx = FakeContext(
+        {"left/joint_trap_vel": broken_off("aborted", Cause(message="it touched the tray", where="left"))}
+    )
+    with pytest.raises(StateError, match=r"left did not get back to where its motion began.*it touched the tray"):
         await JOINTS.undo(ctx, JOINTS_DONE)
