@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -55,6 +55,9 @@ class _CrashingRun:
     def append(self, event: Event) -> None:
         self.inner.append(event)
         self.counter.reached("event")
+
+    async def events(self) -> Sequence[Event]:
+        return await self.inner.events()
 
     async def keep_up(self) -> None:
         await self.inner.keep_up()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,11 +14,14 @@ import msgspec
 from engine.bus import ActiveGoal, SkillBus
 from engine.document import Behavior, load_behavior, load_cell, parse_behavior
 from engine.document.cell import Cell
+from engine.errors import ControlError
+from engine.event import Entered, Event, PauseConfirmed, SteppedBack
 from engine.plan import Catalogue
 from engine.registry import load_states
 from engine.resume import RERUN, Question
+from engine.run import Run
 from engine.skill import Action, Service
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 
 BEHAVIORS = Path(__file__).resolve().parents[1] / "behaviors"
 
@@ -99,6 +103,15 @@ class NoteDown(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         await ctx.call(Note(what=self.what), to="desk")
         return Outcome("noted")
+
+
+class StampBack(StampPart, frozen=True, kw_only=True):
+    """Send the goal, and know how to take it back."""
+
+    state_name: ClassVar[str] = "crash.StampBack"
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        await ctx.perform(Stamp(what=f"no {self.what}"), to=self.device)
 
 
 PRESS = """
@@ -190,12 +203,34 @@ root:
         resume: ask
         transitions: {stamped: finished, failed: failed}
 """
+REVISED = """
+flexcell: 1
+name: revised
+userdata: {stamped: none}
+outcomes: [finished, failed]
+success: [finished]
+root:
+  machine:
+    initial: one
+    states:
+      one: {state: crash.StampBack, with: {device: left, what: one}, transitions: {stamped: pair, failed: failed}}
+      pair:
+        machine:
+          initial: two
+          states:
+            two: {state: crash.StampBack, with: {device: left, what: two}, transitions: {stamped: three, failed: no}}
+            three: {state: crash.StampBack, with: {device: right, what: three}, transitions: {stamped: out, failed: no}}
+        transitions: {out: last, no: failed}
+      last: {state: crash.StampBack, with: {device: left, what: last}, transitions: {stamped: finished, failed: failed}}
+"""
 ASKED = {
     "root/both/left": "left bead",
     "root/both/right/bead": "right bead",
     "root/seal": "seal",
 }
 """The states of `GLUE` that ask, and their effects."""
+REVISIONS = 3
+"""How often `REVISED` is stepped back."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,12 +248,49 @@ class Subject:
     answer: Callable[[Question, Sequence[str]], str] = lambda question, effects: RERUN
     once: frozenset[str] = frozenset()
     """Effects that no crash may repeat."""
+    operate: Callable[[Run, Sequence[Event]], object] = lambda run, events: None
+    """Operates a run that has these events already."""
     exactly: frozenset[str] = frozenset()
     """Effects that happen exactly once."""
 
 
 def _catalogue() -> Catalogue:
-    return {**load_states(), "crash.Stamp": StampPart, "crash.Note": NoteDown}
+    return {**load_states(), "crash.Stamp": StampPart, "crash.Note": NoteDown, "crash.StampBack": StampBack}
+
+
+class Reviser:
+    """Pauses a run in its last state, takes the last three things back, and lets it go on."""
+
+    def __init__(self, run: Run, events: Sequence[Event]) -> None:
+        self._run = run
+        self._back = 0
+        self._orders: set[asyncio.Task[None]] = set()
+        for event in events:
+            self._count(event)
+        run.watch(self._take)
+
+    def _count(self, event: Event) -> None:
+        self._back += isinstance(event, SteppedBack)
+
+    def _take(self, event: Event) -> None:
+        self._count(event)
+        if isinstance(event, Entered) and event.path == "root/last" and self._back < REVISIONS:
+            asyncio.get_running_loop().call_later(0.2, self._run.control.pause)
+        if isinstance(event, PauseConfirmed):
+            order = asyncio.get_running_loop().create_task(self._go())
+            self._orders.add(order)
+            order.add_done_callback(self._orders.discard)
+
+    async def _go(self) -> None:
+        await self._run.control.settled()
+        try:
+            if self._back < REVISIONS:
+                await self._run.step_back()
+                return
+        except ControlError:
+            # The goal of a state in mid-work died with its engine, or the run is elsewhere: it goes on from there.
+            self._back = REVISIONS
+        self._run.control.resume()
 
 
 def _as_seen(question: Question, effects: Sequence[str]) -> str:
@@ -242,6 +314,13 @@ SUBJECTS = {
             answer=_as_seen,
             once=frozenset((*ASKED.values(), "cure", "second bead")),
             exactly=frozenset(ASKED.values()),
+        ),
+        Subject(
+            name="revised",
+            behavior=lambda: parse_behavior(REVISED, file="revised.yaml"),
+            catalogue=_catalogue,
+            install=Press,
+            operate=Reviser,
         ),
         Subject(
             name="transfer",

@@ -130,6 +130,7 @@ def _begin(subject: Subject, folder: Path, point: CrashPoint | None) -> None:
                     seed=SEED,
                     origin=new_origin(behavior, cell=cell),
                 )
+                subject.operate(run, ())
                 return await run.execute()
 
     _write_end(folder, run_virtual(main()), counter)
@@ -163,6 +164,7 @@ def _go_on(subject: Subject, folder: Path, point: CrashPoint | None) -> None:
                     catalogue=catalogue,
                     answers=answers,
                 )
+                subject.operate(run, found.effective)
                 return await run.execute()
 
     _write_end(folder, run_virtual(main()), counter)

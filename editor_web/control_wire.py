@@ -59,6 +59,12 @@ class StepBody(Wire):
     path: str = ""
 
 
+class StepBackBody(Wire):
+    """One step back of a paused run, in the branch of `path` where one is given."""
+
+    path: str = ""
+
+
 class NodeBody(Wire):
     """The node that a command is about."""
 

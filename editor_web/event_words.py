@@ -37,8 +37,11 @@ from engine.event import (
     RunResumed,
     RunStarted,
     StatusChanged,
+    SteppedBack,
     StopRequested,
     Transitioned,
+    UndoBegan,
+    UndoEnded,
     UserdataAppended,
     UserdataWritten,
 )
@@ -173,8 +176,27 @@ def _words_of_control(event: Event) -> Words | None:
             return "", "warning" if event.status == "lost" else "info", f"operator {event.status}", None
         case BehaviorChanged():
             return "", "info", f"behavior changed: {'; '.join(event.report) or 'nothing that matters'}", None
+        case UndoBegan():
+            return event.path, "info", f"undoes visit {event.undoes}", None
+        case UndoEnded():
+            how = "stopped" if event.preempted else "failed" if event.cause is not None else "done"
+            return (
+                event.path,
+                "info" if how == "done" else "warning",
+                f"undo of visit {event.undoes} {how}",
+                event.cause,
+            )
+        case SteppedBack():
+            if event.cause is not None:
+                return event.path, "error", "could not step back", event.cause
+            return event.path, "info", f"stepped back before its entry{_taken_back(event)}", None
         case _:
             return None
+
+
+def _taken_back(event: SteppedBack) -> str:
+    values = [f"{each.key} = {_short(each.value, 60)}" if each.defined else f"no {each.key}" for each in event.values]
+    return f", with {', '.join(values)} again" if values else ""
 
 
 def _words_of_run(event: Event) -> Words:

@@ -23,16 +23,20 @@ from engine.event import (
     RunEnded,
     RunStarted,
     StatusChanged,
+    SteppedBack,
     StopRequested,
     Transitioned,
+    UndoBegan,
+    UndoEnded,
 )
+from engine.node_path import inside
 from engine.skills.planning import PlannedMotion
 
 LOG_LINES = 1000
 # The others change no node.
 _FOLDED = (RunStarted, Entered, Exited, Transitioned, GoalFinished, StatusChanged, Diverted, RunEnded)
 # After these the list of runs may have another word on what the run waits for.
-_TURNS = (RunStarted, StopRequested, RunEnded, Commanded, GateReached, GatePassed, OperatorChanged)
+_TURNS = (RunStarted, StopRequested, RunEnded, Commanded, GateReached, GatePassed, OperatorChanged, SteppedBack)
 
 
 class PlanLive(msgspec.Struct, frozen=True, kw_only=True):
@@ -102,7 +106,7 @@ class LiveRun:
         self.time_s = event.time_s
         if isinstance(event, Commanded):
             self._commanded(event)
-        changed = self._nodes_changed(event) if isinstance(event, _FOLDED) else {}
+        changed = self._nodes_changed(event) if isinstance(event, _FOLDED) else self._undone(event)
         for path in changed:
             if path not in self.nodes:
                 self._note_containers(path)
@@ -155,6 +159,34 @@ class LiveRun:
                 if node.status == "active"
             }
         return {}
+
+    def _undone(self, event: Event) -> dict[str, NodeLive]:
+        """A node that is being undone is active; one that was taken back is as if it had never been entered."""
+        match event:
+            case UndoBegan():
+                return {event.path: NodeLive(status="active", visits=event.visit, entered_s=event.time_s)}
+            case UndoEnded():
+                node = self.nodes.get(event.path, NodeLive(entered_s=event.time_s))
+                status = "stopped" if event.preempted else "failed" if event.cause is not None else "idle"
+                cause = describe(event.cause) if event.cause is not None else ""
+                duration_s = event.time_s - node.entered_s
+                return {event.path: msgspec.structs.replace(node, status=status, cause=cause, duration_s=duration_s)}
+            case SteppedBack() if event.cause is None:
+                return self._taken_back(event)
+            case _:
+                return {}
+
+    def _taken_back(self, event: SteppedBack) -> dict[str, NodeLive]:
+        changed = {
+            path: NodeLive(visits=node.visits)
+            for path, node in self.nodes.items()
+            if inside(event.path, path) or inside(event.source, path)
+        }
+        above = event.path.rpartition("/")[0]
+        if above in self.nodes:
+            # The arrow that was taken last leads into what was taken back.
+            changed[above] = msgspec.structs.replace(self.nodes[above], followed="")
+        return changed
 
     def _entered(self, event: Entered) -> dict[str, NodeLive]:
         changed: dict[str, NodeLive] = {}

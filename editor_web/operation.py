@@ -76,6 +76,15 @@ class Operation(Protocol):
         """
         ...
 
+    async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
+        """Take back what a paused run has begun last, in one branch; returns what is undone, in order.
+
+        Raises:
+            ControlError: the run is over, is not paused, or something cannot be undone; nothing has moved.
+            FlexcellError: the id names none, or its journal cannot be read.
+        """
+        ...
+
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
         """Return the breakpoints beside a behavior's file; raises FlexcellError when the id names none."""
         ...

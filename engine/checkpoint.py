@@ -29,3 +29,5 @@ class Checkpoint:
     """The states that are entered again."""
     taken: Mapping[str, str] = field(default_factory=dict[str, str])
     """The states that are left with an outcome instead, by path."""
+    undoing: str = ""
+    """The state that a step back was undoing, where the engine died meanwhile."""

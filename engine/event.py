@@ -234,6 +234,48 @@ class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed"):
     report: tuple[str, ...]
 
 
+class UndoBegan(Event, frozen=True, kw_only=True, tag="undo_began"):
+    """A step back began to undo a state: what its activation `undoes` had done; `visit` numbers the undoing."""
+
+    path: str
+    visit: int
+    undoes: int
+
+
+class UndoEnded(Event, frozen=True, kw_only=True, tag="undo_ended", omit_defaults=True):
+    """It is undone; not where it failed with `cause`, or was `preempted`."""
+
+    path: str
+    visit: int
+    undoes: int
+    preempted: bool = False
+    cause: Cause | None = None
+
+
+class FormerValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What `key` of the scope of a container held before what was taken back; not `defined` where it held nothing."""
+
+    scope: str
+    key: str
+    value: object = None
+    defined: bool = True
+
+
+class SteppedBack(Event, frozen=True, kw_only=True, tag="stepped_back", omit_defaults=True):
+    """The run stands before the entry of `path` again, `source` having been given up for that.
+
+    `values` are in userdata again. `went_wrong` and `reason` are what the container knew then of the course of its
+    children. With `cause` it was not possible: something may have been undone, and it stands where it was.
+    """
+
+    path: str
+    source: str
+    values: tuple[FormerValue, ...] = ()
+    went_wrong: Cause | None = None
+    reason: Cause | None = None
+    cause: Cause | None = None
+
+
 class RunResumed(Event, frozen=True, kw_only=True, tag="resumed"):
     """The run goes on after its engine died; nodes in `rerun` are entered again, others took an outcome."""
 
@@ -323,6 +365,9 @@ AnyEvent = (
     | OutcomeWithdrawn
     | PauseConfirmed
     | OperatorChanged
+    | UndoBegan
+    | UndoEnded
+    | SteppedBack
     | BehaviorChanged
     | FaultInjected
     | LoopBlocked

@@ -7,7 +7,7 @@ have in common. It needs the plan: initial userdata is in the document, not in t
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import cast
 
 from engine.checkpoint import Checkpoint
@@ -29,7 +29,9 @@ from engine.event import (
     RunEnded,
     RunStarted,
     StatusChanged,
+    SteppedBack,
     Transitioned,
+    UndoBegan,
     UserdataAppended,
     UserdataWritten,
 )
@@ -38,44 +40,16 @@ from engine.grown_lists import GrownLists
 from engine.machine import Machine
 from engine.nearness import near_names
 from engine.node import Node, Work
-from engine.node_exit import Left, guard_closed
+from engine.node_exit import guard_closed
+from engine.node_standing import LeftNode, OpenNode, as_left
 from engine.plan import Plan
 from engine.point import Point
 from engine.priority import Priority
 from engine.reference import Reference
-from engine.tree_mark import Mark, mark_of
+from engine.tree_mark import mark_of
 
 BY_OUTCOME = ("operator", "start")
 """`Diverted.by` whose target is an outcome and not a place to go to."""
-
-
-@dataclass
-class _Open:
-    """A node that was entered and not left."""
-
-    visit: int
-    inputs: Mapping[str, object]
-    since_s: float
-    attempt: int = 1
-    entered: bool = True
-    current: str | None = None
-    diagnosis: Diagnosis = field(default_factory=Diagnosis)
-    round: int = 0
-    done: list[Mark] = field(default_factory=list[Mark])
-
-
-@dataclass(frozen=True)
-class _Left:
-    """A node that was left, and whose container has not gone on yet."""
-
-    visit: int
-    outcome: str | None
-    diverted: str | None
-    cause: Cause | None
-    reason: Cause | None = None
-    passed: bool = False
-    attempt: int = 1
-    since_s: float = 0.0
 
 
 class History:
@@ -92,13 +66,15 @@ class History:
         self.paused = False
         self.autonomy: AutonomyLevel | None = None
         self.locks: set[str] = set()
+        self.undoing = ""
+        """The state whose undoing was begun last by a step back that has not ended; empty while there is none."""
         self.visits: dict[str, int] = {}
         self.seed = 0
         self.document = ""
         self.parameters: dict[str, object] = {}
         self._plan = plan
-        self._open: dict[str, _Open] = {}
-        self._left: dict[str, _Left] = {}
+        self._open: dict[str, OpenNode] = {}
+        self._left: dict[str, LeftNode] = {}
         self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
         self._pending: dict[str, list[UserdataWritten | UserdataAppended]] = {}
         self._lists = GrownLists()
@@ -139,6 +115,11 @@ class History:
                 self._left[event.path] = replace(self._left[event.path], passed=True)
             case Commanded():
                 self._command(event)
+            case UndoBegan():
+                self.visits[event.path] = event.visit
+                self.undoing = event.path
+            case SteppedBack():
+                self._step_back(event)
             case BehaviorChanged():
                 self.document = event.document
             case RunEnded():
@@ -155,6 +136,11 @@ class History:
     def active_states(self) -> tuple[str, ...]:
         """The states among them."""
         return tuple(path for path in self.active if not self._node(path).work.children)
+
+    def course(self, path: str) -> tuple[Cause | None, Cause | None]:
+        """Return what went wrong last among the children of an active container, and what decided their course."""
+        node = self._open.get(path)
+        return (node.diagnosis.cause, node.diagnosis.reason) if node is not None else (None, None)
 
     def userdata(self, scope: str = "") -> Mapping[str, object]:
         """Return the values of one scope."""
@@ -202,9 +188,10 @@ class History:
             seed=self.seed,
             epoch=epoch,
             rerun=self.active_states,
+            undoing=self.undoing,
         )
 
-    def _open_point(self, path: str, node: _Open) -> Point:
+    def _open_point(self, path: str, node: OpenNode) -> Point:
         work = self._node(path).work
         if isinstance(work, Machine | Priority) and node.current not in (None, *work.children, *work.outcomes):
             self._node(f"{path}/{node.current}")
@@ -250,7 +237,7 @@ class History:
         self._left.pop(path, None)
         self._pending.pop(path, None)
         between = again is not None and not again.entered
-        self._open[path] = _Open(
+        self._open[path] = OpenNode(
             visit=event.visit,
             inputs=event.inputs,
             since_s=again.since_s if again is not None else event.time_s,
@@ -295,7 +282,7 @@ class History:
         self._forget_inside(path)
         if event.preempted:
             return
-        self._left[path] = _Left(
+        self._left[path] = LeftNode(
             event.visit,
             outcome,
             None,
@@ -305,20 +292,20 @@ class History:
             since_s=node.since_s if node is not None else event.time_s,
         )
 
-    def _reason(self, path: str, node: _Open | None, outcome: str | None) -> Cause | None:
+    def _reason(self, path: str, node: OpenNode | None, outcome: str | None) -> Cause | None:
         """Return how a container came to its outcome, as `engine.node.ContainerOutcome` has it; no event tells it."""
         work = self._work(path)
         if work is None or outcome is None:
             return None
         if isinstance(work, Concurrency):
-            ended = {name: _as_left(left) for name in work.children if (left := self._left.get(f"{path}/{name}"))}
+            ended = {name: as_left(left) for name in work.children if (left := self._left.get(f"{path}/{name}"))}
             holding = next(
                 (each for each in work.conditions if each.outcome == outcome and each.holds(has_ended(ended))), None
             )
             return work.ended(holding, ended).reason if holding is not None else None
         if isinstance(work, Reference):
             root = self._left.get(f"{path}/root")
-            return explain(work.target.root, _as_left(root)) if root is not None else None
+            return explain(work.target.root, as_left(root)) if root is not None else None
         return node.diagnosis.reason if node is not None else None
 
     def _divert(self, event: Diverted) -> None:
@@ -328,14 +315,14 @@ class History:
         by_outcome = event.by in BY_OUTCOME
         outcome, target = (event.target, None) if by_outcome else (None, event.target)
         reason = guard_closed(path) if event.by == "guard" else None
-        self._left[path] = _Left(event.visit, outcome, target, event.cause, reason)
+        self._left[path] = LeftNode(event.visit, outcome, target, event.cause, reason)
 
     def _retry(self, event: Retried) -> None:
         if event.path not in self._plan.nodes:
             return  # a decorator of a tree, whose marks tell it
         left = self._left.pop(event.path, None)
         since_s = left.since_s if left is not None else event.time_s
-        self._open[event.path] = _Open(self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False)
+        self._open[event.path] = OpenNode(self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False)
 
     def _transition(self, event: Transitioned) -> None:
         left = self._left.pop(f"{event.path}/{event.source}", None)
@@ -346,11 +333,30 @@ class History:
         container.current = event.target
         child = self._plan.nodes.get(f"{event.path}/{event.source}")
         if left is not None and child is not None:
-            container.diagnosis.take(child, _as_left(left))
+            container.diagnosis.take(child, as_left(left))
         work = self._work(event.path)
         if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
             container.round += 1
             self._begin_round(event.path, work, container.inputs, container.round)
+
+    def _step_back(self, event: SteppedBack) -> None:
+        self.undoing = ""
+        if event.cause is not None:
+            return
+        for path in (event.path, event.source):
+            self._forget_inside(path)
+            for table in (self._open, self._left, self._pending):
+                table.pop(path, None)
+        for each in event.values:
+            values = self._scopes.setdefault(each.scope, {})
+            if each.defined:
+                values[each.key] = each.value
+            else:
+                values.pop(each.key, None)
+        container = self._open.get(event.path.rpartition("/")[0])
+        if container is not None:
+            container.current = event.path.rpartition("/")[2]
+            container.diagnosis = Diagnosis(event.went_wrong, event.reason)
 
     def _mark(self, event: Event) -> None:
         """Tell the tree around a part, or around a leaf, what has happened to it."""
@@ -392,7 +398,3 @@ class History:
         for table in (self._open, self._left, self._scopes):
             for inner in [key for key in table if key.startswith((below, rounds))]:
                 del table[inner]
-
-
-def _as_left(left: _Left) -> Left:
-    return Left(left.outcome or "", left.diverted, left.cause, left.reason)

@@ -22,7 +22,8 @@ from engine.execution import Execution
 from engine.nearness import near_names
 from engine.node import Node
 from engine.nonfinite import without_nonfinite
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
+from engine.trail import LeafActivation
 from engine.userdata import Scope
 
 
@@ -125,6 +126,33 @@ class Leaf:
         if outcome.outputs:
             self._write(outcome, path, scope, execution)
         return outcome if outcome.cause is None else Outcome(outcome.name, outcome.outputs, kept(outcome.cause))
+
+    def cannot_undo(self, done: LeafActivation) -> str:
+        """Return why an activation cannot be undone; empty where it can, as far as is known beforehand."""
+        state = self._past_state(done)
+        with contained(f"{self.signature.name}.cannot_undo", where=self.position):
+            return state.cannot_undo(self._record(done))
+
+    async def undo(self, done: LeafActivation, visit: int, execution: Execution) -> None:
+        """Undo what an activation has done, by the `undo` of its class; raises where that fails."""
+        state = self._past_state(done)
+        holder = Holder(execution.run, done.path)
+        resources = self._resources(state) if self.commands_hardware else ()
+        if resources:
+            execution.bus.leases.acquire(resources, holder)
+        try:
+            with contained(f"{self.signature.name}.undo", where=self.position):
+                await state.undo(RunningContext(execution, done.path, visit, {}), self._record(done))
+        finally:
+            if resources:
+                execution.bus.leases.release(resources, holder)
+
+    def _past_state(self, done: LeafActivation) -> State:
+        inputs = self.signature.inputs
+        return self._instance({key: value for key, value in done.shown.items() if key not in inputs})
+
+    def _record(self, done: LeafActivation) -> ActivationRecord:
+        return done.record(inputs=self.signature.inputs, outputs=self.outputs)
 
     def _resources(self, state: State) -> tuple[str, ...]:
         with contained(f"{self.signature.name}.resources", where=self.position):

@@ -85,6 +85,9 @@ class Machine:
                 # After a hot change the transitions are those of the new version.
                 machine = execution.latest(f"{path}/", machine)
                 child = machine.children[name]
+            if left.back:
+                name, diagnosis = left.target or name, Diagnosis(left.cause, left.reason)
+                continue
             diagnosis.take(child, left)
             target = child.transitions.get(left.outcome) if left.target is None else left.target
             if target is None:

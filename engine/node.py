@@ -154,10 +154,14 @@ class Node:
         """Perform a node of any kind in any circumstances; its first attempt may have ended already."""
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
+        order: Order | None = None
         while True:
             left = None
-            order: Order | None = None
+            back = order.back if order is not None else None
+            order = None
             try:
+                if back is not None and (returned := await back(scope)) is not None:
+                    return returned
                 if begun is not None:
                     first, begun = begun, None
                     left = await self._attempted(first, execution)
@@ -212,7 +216,11 @@ class Node:
             return None
         order = gate.taken_order(self.path)
         # An order of a node around this one preempts both with one clean-up.
-        return order if not gate.has_order_around(self.path) and goes_on() else None
+        if not gate.has_order_around(self.path) and goes_on():
+            return order
+        if order is not None and order.back is not None:
+            gate.end_undo()
+        return None
 
     def _forced(self, outcome: str, execution: Execution) -> Left:
         record_diverted(execution, self.path, "operator", outcome, None)

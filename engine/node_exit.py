@@ -11,13 +11,15 @@ from engine.state import Outcome
 class Left(msgspec.Struct, frozen=True):
     """How a node was left: with an outcome, or straight to a target (timeout, guard, on_error).
 
-    `reason` is how it came to that where nothing went wrong; events do not hold it.
+    `reason` is how it came to that where nothing went wrong; events do not hold it. With `back` it was given up for a
+    step back to the sibling `target`; `cause` and `reason` are what the container knew then.
     """
 
     outcome: str
     target: str | None = None
     cause: Cause | None = None
     reason: Cause | None = None
+    back: bool = False
 
 
 class ContainerOutcome(Outcome, frozen=True):

@@ -28,6 +28,7 @@ from engine.run_log import RunLog
 from engine.skill_port import AttendingPort, BusPort, SkillPort
 from engine.supervision import Supervision
 from engine.suspension import Suspensions
+from engine.undoing import order_step_back
 from engine.userdata import Scope
 
 
@@ -97,9 +98,10 @@ class Run:
         self._supervision = supervision or Supervision()
         self._checkpoint = checkpoint
         self._goes_on = checkpoint is not None and checkpoint.run == run
+        self._journal = journal or NullRunJournal(run_id=run)
         self._recorder = Recorder(
             bus.clock,
-            journal or NullRunJournal(run_id=run),
+            self._journal,
             after_seq=checkpoint.seq if checkpoint is not None and self._goes_on else 0,
             after_s=checkpoint.time_s if checkpoint is not None and self._goes_on else 0.0,
         )
@@ -218,6 +220,24 @@ class Run:
         self._log.changed(plan.document_hash, report.changes)
         gate.arm()
         return report
+
+    async def step_back(self, path: str = "") -> tuple[str, ...]:
+        """Take back the node that began last, in one branch of this paused run; returns what is undone, in order.
+
+        It is undone by the `undo` of its states, its userdata by the former values, and the run stands before its
+        entry, paused again once that is done. A failure of an undo is told in the log; the run then stands where it
+        was.
+
+        Args:
+            path: The branch; by default the one in which something began last.
+
+        Raises:
+            ControlError: it is not paused, or something cannot be undone; nothing has moved.
+            JournalError: the run keeps no journal, or it cannot be read.
+        """
+        return await order_step_back(
+            path, plan=lambda: self.plan, execution=self._execution, control=self._control, journal=self._journal
+        )
 
     async def execute(self) -> RunResult:
         """Run to the end and report it; never raises for what happens inside the behavior.
@@ -357,7 +377,11 @@ class Run:
             self._log.started(self.plan, self.parameters, self._inputs, seed=self.seed, virtual=virtual)
             if checkpoint is not None:
                 self._log.started_from(checkpoint)
-        if self._supervision.start_paused:
+        undoing = checkpoint.undoing if checkpoint is not None and self._goes_on else ""
+        if undoing:
+            message = "the engine died while a step back was undoing this, so the run begins paused: step back again"
+            self._recorder.log(undoing, message, level="warning")
+        if self._supervision.start_paused or undoing:
             self._control.pause()
 
     async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:

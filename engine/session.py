@@ -270,6 +270,16 @@ class Session:
         self.control(run_id)
         return started.run.change(plan)
 
+    async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
+        """Take back what a paused run has begun last; see `engine.run.Run.step_back`.
+
+        Raises:
+            ControlError: the run is over, is not paused, or something cannot be undone; nothing has moved.
+            JournalError: its journal cannot be read.
+        """
+        self.control(run_id)
+        return await self._known(run_id).run.step_back(path)
+
     @without_collection
     def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
         """Read, check and plan a behavior: on a thread, for it may be large."""

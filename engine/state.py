@@ -13,7 +13,8 @@
 
 Fields are the parameters (`with:`). Keyword-only arguments of `run` after `ctx` are the input keys
 (`in:`) with their types and defaults. Keys of `outputs` are the output keys (`out:`). Being
-preempted is being cancelled: clean up in `try/finally` and let CancelledError pass.
+preempted is being cancelled: clean up in `try/finally` and let CancelledError pass. A state that
+can be taken back has an `undo` as well.
 """
 
 from __future__ import annotations
@@ -52,6 +53,31 @@ class ActionEnd(Generic[R]):
     status: str
     result: R | None
     cause: Cause | None
+
+
+class RequestRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A goal that a state had sent, or a call, and what came of it.
+
+    `status` is succeeded, canceled, aborted or rejected for a goal, answered or failed for a call, and empty where no
+    end is known, as after a crash.
+    """
+
+    address: str
+    request: Mapping[str, object]
+    status: str = ""
+    result: object = None
+
+
+class ActivationRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What one activation of a state has done, for its `undo`: from the events of the run, also those before a crash.
+
+    `outcome` is empty where it was preempted or failed with an error. `outputs` are as plain data.
+    """
+
+    inputs: Mapping[str, object]
+    outcome: str
+    outputs: Mapping[str, object]
+    requests: tuple[RequestRecord, ...]
 
 
 class Context(Protocol):
@@ -110,6 +136,10 @@ class Context(Protocol):
         ...
 
 
+async def nothing_to_undo(self: State, ctx: Context, done: ActivationRecord) -> None:
+    """Undo a state that leaves nothing behind but what it wrote; in its class as `undo = nothing_to_undo`."""
+
+
 class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One step. Subclasses give `state_name`, `outcomes`, parameters as fields, and `run`."""
 
@@ -147,6 +177,17 @@ class State(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     async def on_resume(self, ctx: Context) -> None:
         """Go on after a pause."""
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        """Return why what an activation has done cannot be undone; empty where it can. Asked before anything moves."""
+        return ""
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Undo what an activation has done, for a step back; a class without its own cannot be taken back.
+
+        What the state wrote into userdata is taken back without its help. An error says that it could not be undone.
+        """
+        raise NotImplementedError
 
     run: ClassVar[Callable[..., Coroutine[Any, Any, Outcome]]]
     """Do the step: subclasses write `async def run(self, ctx: Context, *, key: type, …) -> Outcome`."""

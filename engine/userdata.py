@@ -77,6 +77,18 @@ class Scope:
         scope._values[key] = detached(value)
         return scope.path
 
+    def restore(self, path: str, key: str, value: object, *, defined: bool) -> None:
+        """Let a key of the scope at `path`, this one or one around it, hold a former value, or nothing."""
+        scope: Scope | None = self
+        while scope is not None and scope.path != path:
+            scope = scope.parent
+        if scope is None:
+            return
+        if defined:
+            scope._values[key] = detached(value)
+        else:
+            scope._values.pop(key, None)
+
     def append(self, key: str, value: object, *, writer: str) -> tuple[str, list[object], bool]:
         """Append to the list where the key lives, or to a new one; `value` must be nobody else's.
 

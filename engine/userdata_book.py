@@ -18,6 +18,7 @@ from engine.event import (
     RunEnded,
     RunStarted,
     StatusChanged,
+    SteppedBack,
     Transitioned,
     UserdataAppended,
     UserdataWritten,
@@ -102,6 +103,8 @@ class UserdataBook:
                 self._next_round(event)
             case Exited():
                 self._close(event.path)
+            case SteppedBack() if event.cause is None:
+                self._step_back(event)
             case StatusChanged() if event.status != "running":
                 self._close(event.path)
             case RunEnded():
@@ -147,6 +150,23 @@ class UserdataBook:
             self._begin(event.scope, {}, event.time_s)
         value = self._lists.value_after(event, before.value if before is not None else None)
         self._put(event.scope, event.key, Entry(value=value, by=event.path, at_s=event.time_s, writes=writes))
+
+    def _step_back(self, event: SteppedBack) -> None:
+        for path in (event.path, event.source):
+            self._drop(path)
+            self._forget_inside(path)
+        for each in event.values:
+            known = self.scopes.get(each.scope)
+            if known is None:
+                continue
+            if each.defined:
+                before = known.values.get(each.key)
+                writes = 1 + (before.writes if before is not None else 0)
+                entry = Entry(value=each.value, by=event.path, at_s=event.time_s, writes=writes)
+                self._put(each.scope, each.key, entry)
+            else:
+                values = {key: entry for key, entry in known.values.items() if key != each.key}
+                self._set(each.scope, msgspec.structs.replace(known, values=values))
 
     def _put(self, scope: str, key: str, entry: Entry) -> None:
         known = self.scopes[scope]

@@ -24,6 +24,7 @@ from engine.event import (
     Retried,
     RunEnded,
     RunResumed,
+    SteppedBack,
     StopRequested,
 )
 
@@ -45,6 +46,7 @@ _MARKED = (
     Retried,
     RunEnded,
     RunResumed,
+    SteppedBack,
     StopRequested,
 )
 
@@ -106,6 +108,8 @@ def _kind(event: Event) -> str | None:
             return "command"
         case GateReached() | OutcomeRequested():
             return "gate"
+        case SteppedBack():
+            return "failure" if event.cause is not None else "change"
         case BehaviorChanged() | RunResumed():
             return "change"
         case FaultInjected():

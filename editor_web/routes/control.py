@@ -1,4 +1,4 @@
-"""Operating a run: pause, step, breakpoints, lock, force, repeat, answer, autonomy, hot change, resume."""
+"""Operating a run: pause, step, step back, breakpoints, lock, force, repeat, answer, autonomy, hot change, resume."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from editor_web.control_wire import (
     LockBody,
     NodeBody,
     ResumeBody,
+    StepBackBody,
     StepBody,
 )
 from editor_web.routes.breakpoints import made_breakpoints
@@ -76,6 +77,13 @@ async def resume(control: ControlOf) -> ControlBody:
 async def step(control: ControlOf, body: StepBody) -> ControlBody:
     """Let a paused run make one step."""
     control.step(body.mode, body.path)
+    return await _seen(control)
+
+
+@router.post("/{run_id}/control/step_back")
+async def step_back(run_id: str, control: ControlOf, services: ServicesOf, body: StepBackBody) -> ControlBody:
+    """Undo what a paused run has begun last; it stands before that, and is paused again, once it is undone."""
+    await services.backend.step_back(run_id, body.path)
     return await _seen(control)
 
 

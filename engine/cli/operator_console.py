@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self, cast
 
+from engine.cause import describe
 from engine.cli.line_input import LineInput
 from engine.control import LEVELS, Breakpoint
 from engine.control.step import StepMode
 from engine.errors import ControlError, FlexcellError
-from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded
+from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded, SteppedBack
 from engine.nearness import near_names
 from engine.plan import Plan
 from engine.run import Run
@@ -63,6 +64,7 @@ class OperatorConsole:
         known = descriptor if descriptor is not None else _standard_input()
         self._input = LineInput(known, line=self.obey, end=self._ended)
         self._waiting: asyncio.Task[None] | None = None
+        self._ordering: asyncio.Task[None] | None = None
         self._rests = asyncio.Event()
 
     def __enter__(self) -> Self:
@@ -76,8 +78,9 @@ class OperatorConsole:
     ) -> None:
         self._input.close()
         self.run.recorder.unwatch(self._show)
-        if self._waiting is not None:
-            self._waiting.cancel()
+        for task in (self._waiting, self._ordering):
+            if task is not None:
+                task.cancel()
 
     def obey(self, line: str) -> None:
         """Do what a line says, or say in one line why not."""
@@ -100,6 +103,20 @@ class OperatorConsole:
         report = self.run.change(self._reload())
         for change in report.changes or ("the file means the same as before",):
             self.say(f"changed: {change}")
+
+    def back(self, path: str) -> None:
+        """Have what began last undone, in the branch of `path` where one is given; takes no further line until then."""
+        self._input.hold()
+        self._ordering = asyncio.get_running_loop().create_task(self._go_back(path), name="operator steps back")
+
+    async def _go_back(self, path: str) -> None:
+        try:
+            undone = await self.run.step_back(path)
+            self.say(f"undoing {', '.join(undone)}" if undone else "back, and nothing to undo")
+        except FlexcellError as error:
+            self.say(str(error))
+        finally:
+            self._input.release()
 
     def wait(self) -> None:
         """Take no further line until the run rests: paused and confirmed, locked, or asking."""
@@ -133,6 +150,9 @@ class OperatorConsole:
             case PauseConfirmed():
                 moving = f", but cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
                 self.say(f"paused, everything rests{moving}")
+            case SteppedBack():
+                failed = f"the step back failed: {describe(event.cause)}" if event.cause is not None else ""
+                self.say(failed or f"back before {event.path}")
             case OperatorChanged(status="lost"):
                 then = {"hold": "it will be paused", "continue": "it goes on", "stop": "it will be stopped"}
                 self.say(f"the input ended and with it the operator: {then[self._policy.loss_policy]}")
@@ -185,6 +205,10 @@ def _step(console: OperatorConsole, words: Sequence[str]) -> None:
     left = list(words)
     mode: StepMode = cast(StepMode, left.pop(0)) if left and left[0] in _MODES else "into"
     console.run.control.step(mode, _one(left, "path") if left else "")
+
+
+def _back(console: OperatorConsole, words: Sequence[str]) -> None:
+    console.back(_one(words, "path") if words else "")
 
 
 def _lock(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -317,6 +341,7 @@ COMMANDS: Mapping[str, _Command] = {
     "pause": _Command("pause", "hold everything", _pause),
     "resume": _Command("resume", "let it go on", _resume),
     "step": _Command("step [into|over|out] [PATH]", "one step of a paused run", _step),
+    "back": _Command("back [PATH]", "undo what a paused run has begun last", _back),
     "break": _Command("break [PATH [after] [if EXPR] [hits N]]", "pause there; alone: list them", _break),
     "clear": _Command("clear [PATH]", "remove breakpoints", _clear),
     "lock": _Command("lock PATH", "hold the outcome of a node", _lock),

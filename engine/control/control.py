@@ -11,7 +11,7 @@ import msgspec
 from engine.activity import Activity
 from engine.control.autonomy import AutonomyLevel
 from engine.control.breakpoint import Breakpoint
-from engine.control.gate import Gate, Order, Waiting
+from engine.control.gate import Back, Gate, Order, Waiting
 from engine.control.step import Step, StepMode
 from engine.errors import ControlError
 from engine.event import Commanded, OperatorChanged, PauseConfirmed
@@ -137,6 +137,7 @@ class Control:
         """
         if not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
+        self._refuse_undoing("")
         waiting = self._waiting_in(path)
         if path and waiting is None:
             raise ControlError("nothing waits there", where=path, hint=near_names(path, self._gate.waiting))
@@ -144,6 +145,32 @@ class Control:
         self._confirmed = False
         origin = waiting.path if waiting is not None else ""
         self._gate.step(Step(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
+
+    def require_still(self) -> None:
+        """Refuse a step back of a run that is not paused, or is about to do something all the same.
+
+        Raises:
+            ControlError: it is running, stepping, or follows another order.
+        """
+        if self._closed or not self._gate.paused:
+            raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
+        self._refuse_undoing("")
+        if self._gate.stepping or self._gate.ordered:
+            raise ControlError("the run follows another order", hint="wait until it rests")
+
+    def step_back(self, cursor: str, path: str, target: str, back: Back) -> None:
+        """Have the node at `path` give up and go `back`; for `engine.run.Run.step_back`, which decides how far.
+
+        Args:
+            cursor: The node that waits or is active in the branch, by which the order is known.
+            path: The node that gives up: that one, or one around it.
+            target: The node that is undone.
+            back: Takes back what is to be taken back.
+        """
+        self._record("step_back", cursor)
+        self._confirmed = False
+        self._gate.begin_undo(target, path)
+        self._order(path, Order(outcome=None, back=back))
 
     def lock(self, path: str, reason: str = "") -> None:
         """Hold the outcome of a node until `unlock`; transitions inside it still pass, `reason` goes into the log."""
@@ -279,7 +306,14 @@ class Control:
             raise ControlError("there is no such node", where=path, hint=near_names(path, self.structure.paths()))
         return known
 
+    def _refuse_undoing(self, path: str) -> None:
+        """Refuse an order for what a step back is undoing; any order at all where `path` is empty."""
+        for undoing in self._gate.undoing:
+            if not path or inside(undoing, path):
+                raise ControlError("this is being undone", where=undoing, hint="wait until the run rests, or stop it")
+
     def _require_active(self, path: str) -> None:
+        self._refuse_undoing(path)
         if path not in self._activity.nodes and path not in self._gate.waiting:
             active = [*self._activity.nodes, *self._gate.waiting]
             raise ControlError("this node is not active", where=path, hint=near_names(path, active))

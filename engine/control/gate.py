@@ -5,7 +5,7 @@ While nothing is asked of it, `armed` is False and nodes pass without calling it
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
 
 from engine.cause import cause_of, describe
@@ -16,19 +16,23 @@ from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError
 from engine.event import GatePassed, GateReached, OutcomeRequested, OutcomeWithdrawn
+from engine.node_exit import Left
 from engine.node_path import inside
 from engine.recorder import Recorder
 from engine.suspension import Suspensions
 from engine.userdata import Scope
 
 PAUSE = "pause"
+Back = Callable[[Scope], Awaitable[Left | None]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Order:
-    """What the operator wants of a node: end with `outcome`, or, without one, run again."""
+    """What the operator wants of a node: end with `outcome`, or, without one, run again, once it has gone `back`."""
 
     outcome: str | None
+    back: Back | None = None
+    """Takes back what it, or the node before it, has done, and says how it is left then; None for not at all."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +67,8 @@ class Gate:
         self._accepted: dict[str, tuple[int, str]] = {}
         self.on_paused: Callable[[], None] = lambda: None
         """Called after every pause: by the operator, a breakpoint, the end of a step."""
+        self.undoing: tuple[str, ...] = ()
+        """The node that is being undone, and the one that gave up for it; empty while there is none."""
         self._step: Step | None = None
         self._paused = False
         self._recorder = recorder
@@ -109,10 +115,25 @@ class Gate:
         self._suspensions.hold(PAUSE, self._covers)
         self.arm()
 
+    def begin_undo(self, path: str, gives_up: str) -> None:
+        """Let what is done to undo the node at `path` go on, and nothing else; the node `gives_up` goes back there."""
+        self.undoing = (path, gives_up)
+        self.step(Step(mode="back", branch=path, origin=path))
+
+    def end_undo(self) -> None:
+        """Hold everything again, whatever was ordered meanwhile."""
+        self.undoing = ()
+        self.pause()
+
     def order(self, path: str, order: Order) -> None:
         """Have a node, at the gate or just preempted, end so."""
         self._orders[path] = order
         self.arm()
+
+    @property
+    def ordered(self) -> bool:
+        """Whether nodes have orders that they have not followed yet."""
+        return bool(self._orders)
 
     def has_order(self, path: str) -> bool:
         """Tell whether something was ordered of a node."""

@@ -9,6 +9,7 @@ from engine.control.breakpoint import GatePoint
 from engine.node_path import inside
 
 StepMode = Literal["into", "over", "out"]
+"""What an operator may say; `Step` also knows `back`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,21 +17,24 @@ class Step:
     """Let `branch` go on from the node `origin`.
 
     `into` stops before the next node that is entered, `over` before the next that is not inside
-    `origin`, `out` when the container around `origin` has its outcome.
+    `origin`, `out` when the container around `origin` has its outcome. `back` frees only what is in `branch`, until
+    whoever undoes it there pauses the run.
     """
 
-    mode: StepMode
+    mode: StepMode | Literal["back"]
     branch: str
     """The branch that is let go; empty for all of them."""
     origin: str
 
     def frees(self, path: str) -> bool:
         """Tell whether `path` may go on meanwhile: it is in the branch or around it."""
+        if self.mode == "back":
+            return inside(self.branch, path)
         return not self.branch or inside(self.branch, path) or inside(path, self.branch)
 
     def ends_at(self, path: str, point: GatePoint) -> bool:
         """Tell whether the step is done on arrival at this place."""
-        if not self.frees(path):
+        if self.mode == "back" or not self.frees(path):
             return False
         container = self.origin.rpartition("/")[0]
         if self.mode == "out" and self.origin:

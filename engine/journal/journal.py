@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -14,6 +14,7 @@ from engine.journal.batch import WorldState
 from engine.journal.database import JournalDatabase, journal_fault
 from engine.journal.port import RunOrigin
 from engine.journal.presence import Presence
+from engine.journal.snapshot import open_snapshot
 from engine.journal.writer import MOST_WAITING, WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
 
 JOURNAL_FILE = "journal.db"
@@ -28,7 +29,8 @@ def journal_path(place: Path | str) -> Path:
 class SqliteRunJournal:
     """The part of a `Journal` that belongs to one run."""
 
-    def __init__(self, ledger: Ledger, writer: GroupWriter) -> None:
+    def __init__(self, ledger: Ledger, writer: GroupWriter, *, place: Path) -> None:
+        self._place = place
         self._ledger = ledger
         self._writer = writer
         self._events = ledger.events
@@ -55,6 +57,15 @@ class SqliteRunJournal:
             self._writer.wake_soon()
         elif waiting >= WAKE_AT_EVENTS:
             self._writer.wake()
+
+    async def events(self) -> Sequence[Event]:
+        """Return the events of the run so far; they are read beside the loop where the journal is written so."""
+        await self.commit()
+        return await asyncio.to_thread(self._read) if self._writer.threaded else self._read()
+
+    def _read(self) -> Sequence[Event]:
+        with open_snapshot(self._place) as journal:
+            return tuple(journal.events(self.run_id))
 
     async def keep_up(self) -> None:
         """Return at once, unless so much waits that it would fill the memory."""
@@ -148,7 +159,7 @@ class Journal:
                 origin=origin,
                 engine=self._presence.engine,
             )
-        return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
+        return SqliteRunJournal(Ledger(run_id, epoch), self._writer, place=self.path)
 
     def resume(self, run_id: str) -> SqliteRunJournal:
         """Take over an existing run: from now on the engine that drove it before cannot commit.
@@ -159,7 +170,7 @@ class Journal:
         self._refuse_unusable()
         with self._writer.lock:
             epoch = self._database.take_over_run(run_id, engine=self._presence.engine)
-        return SqliteRunJournal(Ledger(run_id, epoch), self._writer)
+        return SqliteRunJournal(Ledger(run_id, epoch), self._writer, place=self.path)
 
     def close(self) -> None:
         """Write what is left and release the file; may be called again.

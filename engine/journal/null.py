@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from engine.errors import JournalError
@@ -19,6 +19,11 @@ class NullRunJournal:
 
     def append(self, event: Event) -> None:
         """Forget the event."""
+
+    async def events(self) -> Sequence[Event]:
+        """Raise JournalError: nothing is kept."""
+        hint = "run it with --journal DIR"
+        raise JournalError("this run keeps no journal that tells what it has done", where=self.run_id, hint=hint)
 
     async def keep_up(self) -> None:
         """Return at once."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 import msgspec
@@ -79,6 +79,14 @@ class RunJournal(Protocol):
 
         The event and what it holds must not be changed afterwards. A `RunEnded` also sets the
         status of the run.
+        """
+        ...
+
+    async def events(self) -> Sequence[Event]:
+        """Return the events of the run so far, those of engines before this one among them.
+
+        Raises:
+            JournalError: they cannot be read, or are not kept.
         """
         ...
 

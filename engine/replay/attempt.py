@@ -10,6 +10,7 @@ from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.errors import ControlError
 from engine.event import Commanded, Event, Logged, OperatorChanged, PauseConfirmed, RunStarted, StopRequested
+from engine.journal import MemoryRunJournal
 from engine.plan import Plan
 from engine.recording import RecordedEvent, Recording
 from engine.replay.comparison import Comparison, OrderByPath, WholeOrder
@@ -90,6 +91,7 @@ class Attempt:
             inputs=description.inputs,
             seed=description.seed,
             skills=self._port,
+            journal=MemoryRunJournal(run_id=description.run),
             supervision=description.supervision,
         )
         self._run.watch(self._take)

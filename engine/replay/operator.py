@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from typing import Any
 
 import msgspec
@@ -26,6 +26,7 @@ _COMMANDS: Mapping[str, Callable[[Control, Commanded], None]] = {
     "autonomy": lambda control, event: control.set_autonomy(_text(event, "level")),
     "breakpoints": lambda control, event: control.set_breakpoints(_breakpoints(event)),
 }
+_STEP_BACK = "step_back"
 _OPERATOR: Mapping[str, Callable[[Control], None]] = {
     "attached": Control.attach_operator,
     "detached": Control.detach_operator,
@@ -39,7 +40,7 @@ def require_known(event: Command) -> None:
     Raises:
         RecordingError: this version does not know the command.
     """
-    if isinstance(event, Commanded) and event.command not in _COMMANDS:
+    if isinstance(event, Commanded) and event.command not in (*_COMMANDS, _STEP_BACK):
         raise RecordingError(f"event {event.seq}: the command `{event.command}` cannot be replayed")
 
 
@@ -53,8 +54,20 @@ def intervene(run: Run, each: Intervention) -> None:
                 run.stop(event.reason)
         case OperatorChanged() as event:
             _OPERATOR[event.status](run.control)
+        case Commanded(command=name) as event if name == _STEP_BACK:
+            _at_once(run.step_back(event.path))
         case Commanded() as event:
             _COMMANDS[event.command](run.control, event)
+
+
+def _at_once(order: Coroutine[Any, Any, object]) -> None:
+    """Carry out what waits for nothing where events are kept in memory and time is virtual."""
+    try:
+        order.send(None)
+    except StopIteration:
+        return
+    order.close()
+    raise RecordingError("a step back waited for something, which a replay does not have")
 
 
 def _error(event: StopRequested, failure: Cause) -> FlexcellError:

@@ -16,6 +16,7 @@ from engine.event import (
     GoalSent,
     PauseConfirmed,
     Received,
+    UndoEnded,
 )
 from engine.recording import RecordedEvent
 
@@ -92,7 +93,7 @@ class Requests:
                         request.end, request.ended = event, moment
                         request.cancelled = isinstance(event, GoalFinished) and event.status == "canceled"
                         ended[event.path] = request
-                case Exited(path=path, preempted=True):
+                case Exited(path=path, preempted=True) | UndoEnded(path=path, preempted=True):
                     request = ended.pop(path, None)
                     if request is not None and request.ended is not None and each.at_s == request.ended.at_s:
                         request.cancelled = True

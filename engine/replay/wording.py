@@ -23,7 +23,10 @@ from engine.event import (
     Received,
     RunEnded,
     RunStarted,
+    SteppedBack,
     Transitioned,
+    UndoBegan,
+    UndoEnded,
     UserdataAppended,
     UserdataWritten,
 )
@@ -64,6 +67,13 @@ def wording(event: Event) -> str:
             return f"{event.level}: {event.message}"
         case Commanded():
             return f"command {event.command}"
+        case UndoBegan():
+            return f"undoes visit {event.undoes}"
+        case UndoEnded():
+            how = "preempted" if event.preempted else "failed" if event.cause is not None else "done"
+            return f"undo of visit {event.undoes} {how}"
+        case SteppedBack():
+            return f"stepped back from {event.source}" if event.cause is None else "could not step back"
         case RunEnded():
             return f"end of the run: {event.status} {event.outcome or ''}".rstrip()
         case _:

@@ -32,16 +32,17 @@ class GripperFeedback(Message, frozen=True, kw_only=True):
     width_m: float
 
 
-class GraspResult(Message, frozen=True, kw_only=True):
+class GraspResult(Message, frozen=True, kw_only=True, omit_defaults=True):
     """What the fingers hold, judged from pad contact and from where they stopped.
 
-    `reason` says in words why nothing is held; it is empty when `held`.
+    `reason` says in words why nothing is held; it is empty when `held`. `start` is how the gripper was before.
     """
 
     held: bool
     width_m: float
     force_n: float
     reason: str = ""
+    start: GripperAction | None = None
 
 
 class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):

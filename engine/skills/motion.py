@@ -28,11 +28,12 @@ class JointMotionFeedback(Message, frozen=True, kw_only=True):
     progress: float
 
 
-class JointMotionResult(Message, frozen=True, kw_only=True):
-    """The measured configuration at the end, radians."""
+class JointMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
+    """The measured configuration at the end, radians, and the configuration `start` that the motion began at."""
 
     joints: tuple[float, ...]
     duration_s: float
+    start: tuple[float, ...] = ()
 
 
 class CartMotionFeedback(Message, frozen=True, kw_only=True):
@@ -42,11 +43,12 @@ class CartMotionFeedback(Message, frozen=True, kw_only=True):
     progress: float
 
 
-class CartMotionResult(Message, frozen=True, kw_only=True):
-    """The measured pose of the tool centre point at the end."""
+class CartMotionResult(Message, frozen=True, kw_only=True, omit_defaults=True):
+    """The measured pose of the tool centre point at the end, and the configuration `start` that the motion began at."""
 
     pose: Pose
     duration_s: float
+    start: tuple[float, ...] = ()
 
 
 class JointTrapVel(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):

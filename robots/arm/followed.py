@@ -18,11 +18,13 @@ async def follow_joints(
 ) -> JointMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured joints."""
 
+    start = runner.set_point()
+
     def tell(motion: Motion) -> None:
         handle.feedback(JointMotionFeedback(joints=runner.measured(), progress=motion.progress))
 
     def left(duration_s: float) -> JointMotionResult:
-        return JointMotionResult(joints=runner.measured(), duration_s=duration_s)
+        return JointMotionResult(joints=runner.measured(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
         lambda: runner.port.follow(trajectory, tolerance=runner.tolerance), handle, tell, mode=mode, left=left
@@ -38,9 +40,10 @@ async def follow_tool(
     mode: ArmMode = "moving",
 ) -> CartMotionResult:
     """Follow an accepted trajectory; feedback and result are the measured pose of the tool."""
+    start = runner.set_point()
 
     def left(duration_s: float) -> CartMotionResult:
-        return CartMotionResult(pose=runner.measured_pose(), duration_s=duration_s)
+        return CartMotionResult(pose=runner.measured_pose(), duration_s=duration_s, start=start)
 
     ended = await runner.carry_out(
         lambda: runner.port.follow(trajectory, tolerance=runner.tolerance),

@@ -133,6 +133,10 @@ class MotionRunner:
         """Return the measured joints."""
         return tuple(self.port.sample().position_rad.tolist())
 
+    def set_point(self) -> tuple[float, ...]:
+        """Return the joints that the arm is commanded to have now: where its next motion begins."""
+        return tuple(self.port.sample().desired_rad.tolist())
+
     def measured_pose(self) -> Pose:
         """Return the measured pose of the tool centre point in the world."""
         return self.measured_tool().to_pose(WORLD)

@@ -7,6 +7,7 @@ from engine.errors import GoalRejected, SkillFailed
 from engine.messages import GripperState
 from engine.skills.gripper import (
     GraspResult,
+    GripperAction,
     GripperFeedback,
     GripperGrasp,
     GripperMove,
@@ -65,6 +66,7 @@ class GripperServer:
                 hint=f"this gripper presses with up to {self._port.max_force_n:.0f} N",
             )
         handle.accept()
+        start = self._state()
         self.grip = Grip(
             least_m=goal.width_m - goal.tolerance_inner_m,
             most_m=goal.width_m + goal.tolerance_outer_m,
@@ -73,7 +75,7 @@ class GripperServer:
         await self._carry_out(0.0, goal.speed_m_s, goal.force_n, handle)
         sample = self._port.sample()
         reason = judge(sample, self.grip)
-        return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason)
+        return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
 
     async def _read(self, request: ReadGripper) -> GripperState:
         sample = self._port.sample()
@@ -85,6 +87,7 @@ class GripperServer:
         )
 
     async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
+        start = self._state()
         self.grip = None
         await self._carry_out(width_m, speed_m_s, _MOVE_FORCE_N, handle)
         sample = self._port.sample()
@@ -96,7 +99,14 @@ class GripperServer:
                 hint="clear what is between or beside the fingers",
             )
         reason = f"fingers moved to {sample.width_m * 1e3:.1f} mm"
-        return GraspResult(held=False, width_m=sample.width_m, force_n=sample.force_n, reason=reason)
+        return GraspResult(held=False, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
+
+    def _state(self) -> GripperAction:
+        """Return how the gripper is now, as something that can be asked of it again."""
+        sample = self._port.sample()
+        grip = self.grip if self.grip is not None and not judge(sample, self.grip) else None
+        width_m = min(max(0.0, sample.width_m), self._port.max_width_m)
+        return GripperAction(width_m=width_m, held=grip is not None, force_n=grip.force_n if grip is not None else 0.0)
 
     def _refuse_beyond(self, width_m: float, handle: ActiveGoal[GripperFeedback]) -> None:
         if width_m > self._port.max_width_m:

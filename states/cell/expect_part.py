@@ -13,7 +13,7 @@ from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import FramePoses, Vector3
 from engine.nearness import near_names
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 from states.frames import FRAMES_TOPIC, PARTS_TOPIC, part_in_world
 from states.scene.naming import PartName
 
@@ -46,6 +46,7 @@ class ExpectPart(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "cell.ExpectPart"
     outcomes: ClassVar[tuple[str, ...]] = ("there", "elsewhere")
     success: ClassVar[tuple[str, ...]] = ("there",)
+    undo = nothing_to_undo
 
     part: PartName
     region: Annotated[Region | None, Meta(description="Where its centre shall lie, in the world frame")] = None

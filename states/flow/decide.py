@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from engine.event import Cause
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Decide(State, frozen=True, kw_only=True):
@@ -17,6 +17,7 @@ class Decide(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("true", "false")
     success: ClassVar[tuple[str, ...]] = ("true",)
     instant: ClassVar[bool] = True
+    undo = nothing_to_undo
 
     when: Annotated[bool, Meta(description="The condition")]
 

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 
 from msgspec import Meta
 
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Log(State, frozen=True, kw_only=True):
@@ -16,6 +16,7 @@ class Log(State, frozen=True, kw_only=True):
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
     success: ClassVar[tuple[str, ...]] = ("done",)
     instant: ClassVar[bool] = True
+    undo = nothing_to_undo
 
     message: Annotated[str, Meta(description="What to say")]
     level: Annotated[Literal["debug", "info", "warning", "error"], Meta(description="How serious it is")] = "info"

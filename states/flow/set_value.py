@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class SetValue(State, frozen=True, kw_only=True):
@@ -18,6 +18,7 @@ class SetValue(State, frozen=True, kw_only=True):
     success: ClassVar[tuple[str, ...]] = ("done",)
     instant: ClassVar[bool] = True
     outputs: ClassVar[Mapping[str, Any]] = {"value": object}
+    undo = nothing_to_undo
 
     value: Annotated[
         object, Meta(description="Any value, or an expression that gives one", extra_json_schema={"output": "value"})

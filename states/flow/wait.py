@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Wait(State, frozen=True, kw_only=True):
@@ -15,6 +15,7 @@ class Wait(State, frozen=True, kw_only=True):
     state_name: ClassVar[str] = "flow.Wait"
     outcomes: ClassVar[tuple[str, ...]] = ("done",)
     success: ClassVar[tuple[str, ...]] = ("done",)
+    undo = nothing_to_undo
 
     duration_s: Annotated[float, Meta(ge=0, description="How long to wait", extra_json_schema={"unit": "s"})]
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import ClassVar
 
 from engine.skills.gripper import FingerSpeed, GripperOpen
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 from states.failed_goal import goal_cause
+from states.gripper.former import restore, unknown_before
 from states.gripper.naming import GripperName, gripper_address
 from states.part_label import PartLabel
 
@@ -35,3 +36,12 @@ class Open(State, frozen=True, kw_only=True):
             return Outcome("opened")
         what = f"the gripper of {self.gripper} did not open" + (f" to release part {self.part}" if self.part else "")
         return Outcome("failed", cause=goal_cause(what, goal, end, to=address, where=ctx.path, kind=self.state_name))
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        """How the gripper was before has to be known."""
+        return unknown_before(done, GripperOpen)
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Move the fingers as wide as they were, or to hold again what was let go of."""
+        address = gripper_address(self.gripper)
+        await restore(ctx, done, GripperOpen, address=address, speed_m_s=self.speed_m_s)

@@ -8,10 +8,11 @@ from msgspec import Meta
 
 from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import JointTrapVel, Speed
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.foreseen import foreseen_joints
 from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
+from states.motion.way_back import move_joints_back, unknown_way_back
 
 
 class MoveJoints(State, frozen=True, kw_only=True):
@@ -42,3 +43,11 @@ class MoveJoints(State, frozen=True, kw_only=True):
         what = f"{self.robot} did not reach {joints_label(self.target)}"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("failed", cause=cause)
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        """Where the motion began has to be known."""
+        return unknown_way_back(done, JointTrapVel)
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Move back to the joints at which the motion began, at the same speed."""
+        await move_joints_back(ctx, done, JointTrapVel, robot=self.robot, speed=self.speed)

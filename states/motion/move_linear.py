@@ -9,11 +9,11 @@ from msgspec import Meta
 from engine.arm_target import ArmTarget, StoredTargets
 from engine.errors import StateError
 from engine.messages import Pose
-from engine.skills.motion import CartLinTask, ForwardKinematics
-from engine.state import Context, Outcome, State
+from engine.skills.motion import CartLinTask, CartMotionResult, ForwardKinematics
+from engine.state import ActivationRecord, Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.foreseen import foreseen_joints, foreseen_pose
-from states.motion.line_time import line_duration_s
+from states.motion.line_time import SHORTEST_S, line_duration_s
 from states.motion.target import (
     NO_OFFSET,
     Back,
@@ -28,6 +28,7 @@ from states.motion.target import (
     resolve_pose,
     shifted,
 )
+from states.motion.way_back import MotionResult, go_back, motions, unknown_way_back
 
 
 class MoveLinear(State, frozen=True, kw_only=True):
@@ -80,6 +81,23 @@ class MoveLinear(State, frozen=True, kw_only=True):
         what = f"{self.robot} did not reach {self._label()} on a straight line"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("failed", cause=cause)
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        """Where the line began has to be known."""
+        return unknown_way_back(done, CartLinTask)
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Move back on a straight line to where the motion began, in as much time."""
+        for motion in motions(done, CartLinTask):
+            pose = await ctx.call(ForwardKinematics(joints=motion.start), to=self.robot)
+            await go_back(ctx, CartLinTask(pose=pose, duration_s=self._time_back_s(motion, pose)), robot=self.robot)
+
+    def _time_back_s(self, motion: MotionResult, pose: Pose) -> float:
+        """Return the time that the line took, or was given; a pause in it does not count."""
+        if self.duration_s is not None:
+            return min(self.duration_s, max(motion.duration_s, SHORTEST_S))
+        here = motion.pose if isinstance(motion, CartMotionResult) else pose
+        return line_duration_s(here, pose, speed_m_s=self.speed_m_s or 1.0)
 
     def _label(self) -> str:
         back = f"{self.back_m:.3g} m before " if self.back_m else ""

@@ -8,10 +8,11 @@ from msgspec import Meta
 
 from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import CartTrapVel, PoseMatch, Speed
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 from states.failed_goal import goal_cause
 from states.motion.foreseen import foreseen_pose
 from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
+from states.motion.way_back import move_joints_back, unknown_way_back
 
 
 class MovePose(State, frozen=True, kw_only=True):
@@ -51,3 +52,11 @@ class MovePose(State, frozen=True, kw_only=True):
         what = f"{self.robot} did not reach {pose_label(self.target, self.offset_m)}"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         return Outcome("failed", cause=cause)
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        """Where the motion began has to be known."""
+        return unknown_way_back(done, CartTrapVel)
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Move back to the joints at which the motion began, at the same speed."""
+        await move_joints_back(ctx, done, CartTrapVel, robot=self.robot, speed=self.speed)

@@ -9,7 +9,7 @@ from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills import planning
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 from states.failed_goal import goal_cause
 from states.motion.foreseen import foreseen_joints, foreseen_pose
 from states.motion.free_end import reason_of
@@ -36,6 +36,7 @@ class PlanMotion(State, frozen=True, kw_only=True):
         "no_way": ("plan",),
         "failed": ("plan",),
     }
+    undo = nothing_to_undo
 
     robot: RobotName
     joints: GoalJoints = None

@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.skills.planning_scene import AttachPart
-from engine.state import Context, Outcome, State
+from engine.skills.planning_scene import AttachPart, DetachPart
+from engine.state import ActivationRecord, Context, Outcome, State
 from states.asked import asked
 from states.motion.target import RobotName
 from states.scene.naming import CELL, CarriedName
@@ -38,3 +38,8 @@ class Attach(State, frozen=True, kw_only=True):
         request = AttachPart(part=self.part, robot=self.robot, link=self.link)
         what = f"part {self.part} was not attached to {self.robot}"
         return await asked(ctx, request, to=CELL, done="attached", what=what, kind=self.state_name)
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        """Let the part stay where it is again; another arm that held it before does not get it back."""
+        if done.outcome != "failed":
+            await ctx.call(DetachPart(part=self.part), to=CELL)

@@ -12,7 +12,7 @@ from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.skills.planning import Margin
 from engine.skills.planning_scene import CheckCollision, CollisionReport
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
 from states.scene.naming import CELL
 
@@ -28,6 +28,7 @@ class Check(State, frozen=True, kw_only=True):
     success: ClassVar[tuple[str, ...]] = ("free",)
     outputs: ClassVar[Mapping[str, Any]] = {"distance_m": float, "touching": list[str]}
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("distance_m", "touching")}
+    undo = nothing_to_undo
 
     robot: RobotName
     joints: Annotated[

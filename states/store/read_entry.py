@@ -10,7 +10,7 @@ from msgspec import Meta
 from engine.cause import cause_of, under
 from engine.errors import EntryNotFound
 from engine.skills import entries
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class ReadEntry(State, frozen=True, kw_only=True):
@@ -21,6 +21,7 @@ class ReadEntry(State, frozen=True, kw_only=True):
     success: ClassVar[tuple[str, ...]] = ("found",)
     outputs: ClassVar[Mapping[str, Any]] = {"value": dict[str, object], "revision": int}
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"missing": ("value", "revision")}
+    undo = nothing_to_undo
 
     kind: Annotated[str, Meta(description="Kind of entry: joints, pose, dmp, record")]
     name: Annotated[str, Meta(description="Name of the entry")]

@@ -13,7 +13,7 @@ from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
 from engine.skills.vision import Detection, Detections, DetectObjects, Score
-from engine.state import Context, Outcome, State
+from engine.state import Context, Outcome, State, nothing_to_undo
 
 
 class Detect(State, frozen=True, kw_only=True):
@@ -31,6 +31,7 @@ class Detect(State, frozen=True, kw_only=True):
         "not_found": ("pose", "label"),
         "failed": ("detections", "pose", "label"),
     }
+    undo = nothing_to_undo
 
     camera: Annotated[
         str,

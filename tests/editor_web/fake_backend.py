@@ -191,6 +191,9 @@ class FakeBackend:
     async def change(self, run_id: str) -> ChangeReport:
         raise ControlError("this fake has no control", where=run_id)
 
+    async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
+        raise ControlError("this fake has no control", where=run_id)
+
     def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
         self.behavior(behavior_id)
         return self.kept_breakpoints.get(behavior_id, ())

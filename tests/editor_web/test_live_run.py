@@ -20,7 +20,10 @@ from engine.event import (
     RunEnded,
     RunStarted,
     StatusChanged,
+    SteppedBack,
     Transitioned,
+    UndoBegan,
+    UndoEnded,
 )
 
 
@@ -175,3 +178,34 @@ def test_parts_of_a_tree_show_their_status() -> None:
         live.apply(StatusChanged(seq=seq, time_s=float(seq), path="root/tree/sequence", status=status))
     node = live.nodes["root/tree/sequence"]
     assert (node.status, node.visits, node.duration_s) == ("done", 1, 1.0)
+
+
+def test_what_a_step_back_undoes_is_active_and_then_as_if_it_had_not_been_entered() -> None:
+    """Counters go on; the container's arrow into it is dark again; a neighbour stays as it was."""
+    live = folded(
+        entered(1, "root"),
+        entered(2, "root/a"),
+        exited(3, "root/a"),
+        Transitioned(seq=4, time_s=0.0, path="root", source="a", outcome="done", target="b"),
+        entered(5, "root/b"),
+        exited(6, "root/b"),
+        Transitioned(seq=7, time_s=0.0, path="root", source="b", outcome="done", target="c"),
+        UndoBegan(seq=8, time_s=3.0, path="root/b", visit=2, undoes=1),
+    )
+    assert live.nodes["root/b"] == NodeLive(status="active", visits=2, entered_s=3.0)
+    live.apply(UndoEnded(seq=9, time_s=4.0, path="root/b", visit=2, undoes=1))
+    live.apply(SteppedBack(seq=10, time_s=4.0, path="root/b", source="root/c"))
+    assert live.nodes["root/b"] == NodeLive(visits=2)
+    assert live.nodes["root"].followed == ""
+    assert live.nodes["root/a"].status == "done"
+
+
+def test_an_undo_that_failed_is_shown_so_with_its_reason() -> None:
+    """The node has done what it did, and it was not undone."""
+    cause = Cause(message="the tray is gone")
+    live = folded(
+        UndoBegan(seq=1, time_s=3.0, path="root/b", visit=2, undoes=1),
+        UndoEnded(seq=2, time_s=4.0, path="root/b", visit=2, undoes=1, cause=cause),
+        SteppedBack(seq=3, time_s=4.0, path="root/c", source="root/c", cause=cause),
+    )
+    assert (live.nodes["root/b"].status, live.nodes["root/b"].cause) == ("failed", "the tray is gone")

@@ -58,7 +58,7 @@ def commands_of(shop: Workshop, run: str) -> list[str]:
 def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Workshop) -> None:
     """Also to those who press it."""
     with at_shift(browser, shop) as page:
-        for name in ("Pause", "Step into", "Step over", "Step out", "Operate", "Take file"):
+        for name in ("Pause", "Step into", "Step over", "Step out", "Step back", "Operate", "Take file"):
             expect(command(page, name)).to_be_disabled()
             expect(command(page, name)).to_have_attribute("title", "Not possible: no run is under way")
         expect(page.get_by_label("Autonomy", exact=True)).to_be_disabled()
@@ -103,6 +103,24 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
     (run,) = shop.session.runs()
     expected = ["step", "step", "step", "step", "step", "step", "resume", "pause"]
     assert commands_of(shop, run.id)[-len(expected) :] == expected
+
+
+def test_a_run_is_stepped_back_by_button_and_by_key(browser: Browser, shop: Workshop) -> None:
+    """The graph shows what was taken back as not entered; what cannot be undone is refused with the reason."""
+    run = shop.start(supervision=Supervision(start_paused=True))
+    with at_shift(browser, shop, quiet=False) as page:
+        waits = page.get_by_role("list", name="Nodes that wait")
+        for path in ("root/first", "root/set", "root/both"):
+            command(page, "Step over" if path != "root/first" else "Step into").click()
+            expect(waits).to_have_text(f"{path} before its entry: paused")
+        expect(node(page, "root/set")).to_have_attribute("data-status", "done")
+        command(page, "Step back").click()
+        expect(waits).to_have_text("root/set before its entry: paused")
+        expect(node(page, "root/set")).to_have_attribute("data-status", "idle")
+        page.keyboard.press("z")
+        expect(page.get_by_role("alert")).to_contain_text("test.Give does not declare how to undo what it did")
+        expect(waits).to_have_text("root/set before its entry: paused")
+    assert commands_of(shop, run)[-1] == "step_back"
 
 
 def test_what_the_engine_refuses_is_said_in_its_words(browser: Browser, shop: Workshop) -> None:

@@ -47,6 +47,15 @@ def test_what_must_not_be_repeated_happens_once_when_somebody_looks_and_answers(
         assert {"left bead", "right bead", "seal"} <= set(trial.effects)
 
 
+@pytest.mark.parametrize("every_th", [9, nightly(1)])
+def test_a_run_that_is_stepped_back_ends_the_same_wherever_its_engine_dies(tmp_path: Path, every_th: int) -> None:
+    """The last state, in mid-work, and the two in a container before it are taken back, in whichever engine."""
+    made = trials(tmp_path, "revised", "--every", str(every_th))
+    assert len(made) > 50 // every_th
+    assert all({"one", "two", "three", "last"} <= set(trial.effects) for trial in made)
+    assert any({"no two", "no three"} <= set(trial.effects) for trial in made)
+
+
 @pytest.mark.parametrize("every_th", [20, nightly(7)])
 @pytest.mark.parametrize("subject", [nightly("press"), "glue"])
 def test_crashes_in_a_row_while_it_is_resumed_change_nothing(tmp_path: Path, subject: str, every_th: int) -> None:

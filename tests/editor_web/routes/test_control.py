@@ -15,7 +15,7 @@ import pytest
 from editor_web.access import VIEWER, load_access
 from editor_web.server import dashboard
 from engine.cell import OpenCell
-from engine.event import Event, GateReached, OperatorChanged
+from engine.event import Event, GateReached, OperatorChanged, SteppedBack
 from engine.journal import Journal
 from engine.registry import load_states
 from engine.session import Session
@@ -127,6 +127,27 @@ async def test_a_paused_run_is_stepped_and_resumed(project: Path, loopback: str)
         assert [each["path"] for each in stepped.json()["waiting"]] == ["root/one"]
         assert not (await there.command(run, "resume")).json()["paused"]
         assert (await there.session.wait(run)).outcome == "good"
+
+
+async def test_a_paused_run_is_stepped_back_until_nothing_is_left(project: Path, loopback: str) -> None:
+    async with site(project, loopback) as there:
+        run = await there.start(supervision={"start_paused": True})
+        await there.told(run, GateReached)
+        for waiting in ("root/one", "root/two"):
+            assert [each["path"] for each in (await there.command(run, "step")).json()["waiting"]] == [waiting]
+        back = await there.command(run, "step_back")
+        assert back.status_code == 200
+        assert [(each["path"], each["point"]) for each in back.json()["waiting"]] == [("root/one", "before")]
+        await there.told(run, SteppedBack)
+        book = there.session.userdata(run)
+        book.read(there.session.events(run))
+        assert {key: entry.value for key, entry in book.scopes[""].values.items()} == {"value": 0}
+        refused = await there.command(run, "step_back", path="root/one")
+        assert (refused.status_code, refused.json()["message"]) == (409, "the run stands at its beginning")
+        await there.command(run, "resume")
+        assert (await there.session.wait(run)).outcome == "good"
+        over = await there.command(run, "step_back")
+        assert over.status_code == 409
 
 
 async def test_locks_breakpoints_orders_and_autonomy(project: Path, loopback: str) -> None:

@@ -129,6 +129,30 @@ def test_steps_breakpoints_locks_and_orders(nested: Path) -> None:
     ]  # fmt: skip
 
 
+def test_steps_back_one_after_the_other(nested: Path) -> None:
+    script = """
+    break root/three
+    wait
+    back
+    wait
+    back root/two
+    where
+    back
+    wait
+    back
+    clear
+    resume
+    detach
+    """
+    said = operated(nested, script.replace("    ", ""))
+    assert said.code == 0
+    assert commanded(nested.parent) == [
+        "breakpoints", "step_back root/three", "step_back root/two", "breakpoints", "resume",
+    ]  # fmt: skip
+    for line in ("back before root/two", "back before root/one", "root/one: the run stands at its beginning"):
+        assert line in said.err
+
+
 def test_wrong_lines_are_answered_in_one_line_each_and_change_nothing(nested: Path) -> None:
     script = """stpe
 lock

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from textwrap import dedent
+from typing import cast
 
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.event import Event
+from engine.journal import MemoryRunJournal
 from engine.plan import new_plan
 from engine.run import Run
 from engine.state import State
@@ -19,6 +21,7 @@ from tests.engine.fake_states import CATALOGUE
 from tests.engine.run_document import HEAD, Told
 
 Act = Callable[[Run], object]
+"""What is done with the run; a coroutine is awaited by itself."""
 
 
 def pause(run: Run) -> None:
@@ -52,13 +55,23 @@ def operate(
         events: list[Event] = []
         async with bus:
             prepare(bus)
-            run = Run(plan, run="r1", bus=bus, supervision=supervision, inputs=inputs)
+            journal = MemoryRunJournal(run_id="r1")
+            run = Run(plan, run="r1", bus=bus, supervision=supervision, inputs=inputs, journal=journal)
             run.watch(events.append)
             loop = asyncio.get_running_loop()
-            timers = [loop.call_at(at_s, act, run) for at_s, act in acts.items()]
+            under_way: list[asyncio.Task[object]] = []
+
+            def do(act: Act) -> None:
+                made = act(run)
+                if isinstance(made, Coroutine):
+                    under_way.append(loop.create_task(cast("Coroutine[object, object, object]", made)))
+
+            timers = [loop.call_at(at_s, do, act) for at_s, act in acts.items()]
             result = await run.execute()
             for timer in timers:
                 timer.cancel()
+            for task in under_way:
+                await task
         return Told(result, tuple(events))
 
     return run_virtual(main())

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from engine.control import Breakpoint
 from engine.errors import ControlError
 from engine.event import (
+    Commanded,
     Entered,
     Exited,
     GatePassed,
@@ -25,13 +26,18 @@ from engine.event import (
     OutcomeRequested,
     OutcomeWithdrawn,
     RunEnded,
+    SteppedBack,
     StopRequested,
+    UndoBegan,
+    UndoEnded,
 )
 from engine.run import Run
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 from engine.supervision import Supervision
+from tests.engine.at_once import at_once
 from tests.engine.control.operate import Act, operate
-from tests.engine.control.turntable import Turntable
+from tests.engine.control.turntable import Turn, TurnTable, Turntable
+from tests.engine.fake_states import Give
 
 TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
 MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
@@ -57,6 +63,18 @@ class Tidy(State, frozen=True, kw_only=True):
             raise
         return Outcome("a")
 
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        await ctx.clock.sleep(CLEANUP_S)
+
+
+class Lift(TurnTable, frozen=True, kw_only=True):
+    """Turn the table, and know how to take that back."""
+
+    state_name: ClassVar[str] = "test.Lift"
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        await ctx.perform(Turn(for_s=self.for_s), to="table")
+
 
 def _leaf(after_s: float, outcome: str) -> Node:
     return {"state": "test.Give", "with": {"after_s": after_s, "outcome": outcome}}
@@ -64,7 +82,9 @@ def _leaf(after_s: float, outcome: str) -> Node:
 
 LEAVES = (
     st.builds(_leaf, TIMES, st.sampled_from("abc"))
-    | st.just({"state": "test.TurnTable", "with": {"for_s": 0.5}, "on_error": "c"})
+    | st.sampled_from(["test.TurnTable", "test.Lift"]).map(
+        lambda state: {"state": state, "with": {"for_s": 0.5}, "on_error": "c"}
+    )
     | TIMES.map(lambda after_s: {"state": "test.Tidy", "with": {"after_s": after_s}})
 )
 
@@ -100,7 +120,7 @@ def _measured(child: Node, timeout_s: float, times: int) -> Node:
 
 
 def _outs(node: Node) -> tuple[str, ...]:
-    if node.get("state") == "test.TurnTable":
+    if node.get("state") in ("test.TurnTable", "test.Lift"):
         return ("turned", "failed", "c")
     if "state" in node:
         return ("a", "b", "c")
@@ -118,6 +138,14 @@ TREES = st.recursive(
     ),
     max_leaves=6,
 )
+
+
+class GiveBack(Give, frozen=True, kw_only=True):
+    """End as told, and leave nothing to undo."""
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        ctx.log("nothing to undo")
+
 
 Order = Callable[[Run, float], object]
 ORDERS: list[Order] = [
@@ -139,6 +167,9 @@ ORDERS: list[Order] = [
     lambda run, at: run.control.set_breakpoints([Breakpoint(path="*", when="after")]),
     lambda run, at: run.control.set_breakpoints([]),
     lambda run, at: run.stop("chance"),
+    lambda run, at: at_once(run.step_back()),
+    lambda run, at: at_once(run.step_back(_some(run, at))),
+    lambda run, at: (run.control.pause(), at_once(run.step_back())),
 ]
 
 
@@ -190,7 +221,13 @@ def test_any_commands_at_any_instants(root: Node, orders: list[tuple[float, int]
         for moment in range(300, 400):
             acts[float(moment)] = lambda run: run.control.set_autonomy("full")
         acts[401.0] = lambda run: run.stop("it demands an operator and has none")
-    told = operate(text, acts, supervision=at, prepare=Turntable, states={"test.Tidy": Tidy})
+    told = operate(
+        text,
+        acts,
+        supervision=at,
+        prepare=Turntable,
+        states={"test.Tidy": Tidy, "test.Lift": Lift, "test.Give": GiveBack},
+    )
     assert told.result.status in {"finished", "stopped", "errored"}
     entered = Counter((e.path, e.visit) for e in told.events if isinstance(e, Entered))
     exited = Counter((e.path, e.visit) for e in told.events if isinstance(e, Exited))
@@ -201,6 +238,10 @@ def test_any_commands_at_any_instants(root: Node, orders: list[tuple[float, int]
     assert said[BEGUN] == said[DONE]
     sent = Counter(e.goal for e in told.events if isinstance(e, GoalSent))
     assert sent == Counter(e.goal for e in told.events if isinstance(e, GoalFinished))
+    assert _count(told.events, UndoBegan) == _count(told.events, UndoEnded)
+    assert _count(told.events, SteppedBack) <= sum(
+        e.command == "step_back" for e in told.events if isinstance(e, Commanded)
+    )
     assert _count(told.events, GateReached) >= _count(told.events, GatePassed)
     assert _count(told.events, OutcomeRequested) == _count(told.events, OutcomeWithdrawn)
     assert [e.seq for e in told.events] == list(range(1, len(told.events) + 1))

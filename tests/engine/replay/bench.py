@@ -16,6 +16,7 @@ from engine.clock import new_clock, run_virtual
 from engine.document import Behavior, parse_behavior
 from engine.errors import GoalRejected, SkillFailed
 from engine.event import Event
+from engine.journal import MemoryRunJournal
 from engine.messages import Message
 from engine.plan import new_plan
 from engine.recording import Documents, Recording, RecordingOrder, RunRecording, load_recording
@@ -23,7 +24,7 @@ from engine.replay import ReplayReport, replay
 from engine.run import Run, RunResult
 from engine.skill import Action, Service
 from engine.skill_port import BusPort, SkillPort
-from engine.state import Context, Outcome, State
+from engine.state import ActivationRecord, Context, Outcome, State
 from engine.supervision import Supervision
 from tests.engine.fake_states import CATALOGUE as PLAIN
 from tests.engine.run_document import HEAD
@@ -85,6 +86,7 @@ class Bench:
         if goal.how == "reject":
             raise GoalRejected("not today", where="bench")
         handle.accept()
+        self._held = False
         handle.on_hold(self._hold)
         handle.on_resume(self._resume)
         worked_s = 0.0
@@ -151,6 +153,12 @@ class DoWork(State, frozen=True, kw_only=True):
         if end.result is None or end.status != "succeeded":
             return Outcome("b" if end.status == "rejected" else "c", cause=end.cause)
         return Outcome("a", {"worked_s": end.result.worked_s})
+
+    def cannot_undo(self, done: ActivationRecord) -> str:
+        return "" if self.to == "bench" else "nobody is there"
+
+    async def undo(self, ctx: Context, done: ActivationRecord) -> None:
+        await ctx.perform(Work(for_s=float(str(done.outputs.get("worked_s", 0.125)))), to=self.to)
 
 
 class DoLook(State, frozen=True, kw_only=True):
@@ -280,6 +288,7 @@ async def record_run(
             seed=seed,
             supervision=supervision,
             skills=skills(bus),
+            journal=MemoryRunJournal(run_id="r"),
         )
         recording.attach(run, bus, started_unix_s=1.0, inputs=inputs, supervision=supervision)
         run.watch(events.append)

@@ -26,6 +26,7 @@ from engine.replay import replay
 from engine.replay.wording import plain_event
 from engine.run import Run
 from engine.supervision import Supervision
+from tests.engine.at_once import at_once
 from tests.engine.replay.bench import CATALOGUE, Act, recorded
 
 GRID = st.integers(0, 12).map(lambda n: n / 8)
@@ -146,6 +147,8 @@ ACTS: list[Act] = [
     lambda run: run.control.attach_operator(),
     lambda run: run.control.lose_operator(),
     lambda run: (run.control.pause(), run.control.resume()),
+    lambda run: at_once(run.step_back()),
+    lambda run: (run.control.pause(), at_once(run.step_back())),
 ]
 PLANS = st.dictionaries(st.integers(0, 24).map(lambda n: n / 8), st.sampled_from(ACTS).map(_careful), max_size=4)
 OVER: dict[float, Act] = {50.0: _careful(lambda run: run.stop("over"))}

@@ -12,13 +12,14 @@ from engine.bus import SkillBus
 from engine.clock import NothingCanWake, run_virtual
 from engine.document.faults import parse_faults
 from engine.errors import DocumentError, RecordingError
-from engine.event import Called, FaultInjected, Logged, Received, RunEnded, RunResumed
+from engine.event import Called, FaultInjected, Logged, Received, RunEnded, RunResumed, SteppedBack
 from engine.faults import FaultPort
 from engine.recording import RecordedEvent, load_recording
 from engine.replay import ReplayReport, replay
 from engine.replay.attempt import Attempt
 from engine.skill_port import BusPort
 from engine.state import Context, Outcome
+from tests.engine.at_once import at_once
 from tests.engine.replay.bench import CATALOGUE, Act, DoLook, Look, Range, behavior_of, record_run, recorded, replayed
 
 TEXT = """
@@ -352,3 +353,29 @@ def test_a_recording_without_events_or_without_its_start_is_refused(tmp_path: Pa
         replay(replace(recording, events=()), CATALOGUE)
     with pytest.raises(RecordingError, match="does not begin with the start of its run"):
         replay(replace(recording, events=recording.events[1:]), CATALOGUE)
+
+
+def test_a_run_that_was_stepped_back_does_it_again_with_what_its_undoing_asked_for(tmp_path: Path) -> None:
+    acts: dict[float, Act] = {
+        1.125: lambda run: run.control.pause(),
+        2.0: lambda run: at_once(run.step_back()),
+        3.0: lambda run: at_once(run.step_back()),
+        4.0: lambda run: at_once(run.step_back()),
+        4.25: lambda run: run.control.pause(),
+        4.75: lambda run: run.control.resume(),
+        9.0: lambda run: run.control.resume(),
+    }
+    text = TEXT.replace("look: {state: bench.Look,", "look: {state: bench.Glance, with: {until: 9},")
+    text = text.replace("listen, c: bad}}\n      listen", "listen}}\n      listen")
+    text = text.replace("listen: {state: bench.Listen, with: {messages: 1}", "listen: {state: bench.Work").replace(
+        "{a: good, b: good, c: good}", "{a: good, b: bad, c: bad}"
+    )
+    recording = recorded(text, tmp_path / "r.mcap", acts=acts)
+    assert [each.event.path for each in recording.events if isinstance(each.event, SteppedBack)] == [
+        "root/listen",
+        "root/look",
+        "root/work",
+    ]
+    report = replay(recording, CATALOGUE)
+    assert report.difference is None, report.difference.explained()
+    assert report.compared == len(recording.events)

@@ -9,7 +9,7 @@ import pytest
 
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
-from engine.skills.gripper import GripperGrasp, GripperMove, GripperOpen, ReadGripper
+from engine.skills.gripper import GripperAction, GripperGrasp, GripperMove, GripperOpen, ReadGripper
 from robots.gripper import GripperServer
 from tests.robots.fake_port import FakeGripperPort
 
@@ -165,3 +165,15 @@ async def test_a_cancelled_grasp_ends_at_rest_and_the_next_goal_is_taken() -> No
     assert canceled.result is not None
     assert 0.03 < canceled.result.width_m < 0.08
     assert (canceled.status, at_rest, following.status) == (GoalStatus.CANCELED, True, GoalStatus.SUCCEEDED)
+
+
+@pytest.mark.virtual
+async def test_every_goal_tells_how_the_gripper_was_before() -> None:
+    """So that it can be undone: what it held, how hard, and how wide it was open."""
+    async with served(FakeGripperPort(obstacle_m=0.031)) as bus:
+        grasped = (await bus.send_goal(GRASP, to=HAND).result()).result
+        opened = (await bus.send_goal(GripperOpen(), to=HAND).result()).result
+    assert grasped is not None
+    assert opened is not None
+    assert grasped.start == GripperAction(width_m=0.08, held=False)
+    assert opened.start == GripperAction(width_m=0.031, held=True, force_n=20.0)

@@ -108,6 +108,7 @@ export const api = {
   pause: (run: string) => command(run, 'pause'),
   resume: (run: string) => command(run, 'resume'),
   step: (run: string, body: StepBody) => command(run, 'step', body),
+  stepBack: (run: string, path: string) => command(run, 'step_back', { path }),
   lock: (run: string, path: string, reason: string) => command(run, 'lock', { path, reason }),
   unlock: (run: string, path: string) => command(run, 'unlock', { path }),
   force: (run: string, path: string, outcome: string) => command(run, 'force', { path, outcome }),

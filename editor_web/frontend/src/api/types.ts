@@ -1148,6 +1148,11 @@ export interface StateBody {
   readonly outputs: readonly KeyBody[]
 }
 
+/** One step back of a paused run, in the branch of `path` where one is given. */
+export interface StepBackBody {
+  readonly path: string
+}
+
 /** One step of a paused run, in the branch of `path` where one is given. */
 export interface StepBody {
   readonly mode?: "into" | "over" | "out"

@@ -100,6 +100,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
     into: () => commands.step('into'),
     over: () => commands.step('over'),
     out: () => commands.step('out'),
+    back: commands.stepBack,
     stop: commands.stop,
     sheet: () => setSheetOpen(true),
     break: () => withNode('Breakpoint', 'breakpoint', (path) => void toggleBreakpoint(path)),

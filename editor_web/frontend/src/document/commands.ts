@@ -14,7 +14,7 @@ export const LEVEL_WORDS: Record<Level, string> = {
 }
 
 export type Command =
-  | 'pause' | 'resume' | 'step' | 'stop' | 'autonomy' | 'operate' | 'change' | 'lock' | 'force' | 'repeat' | 'breakpoint'
+  | 'pause' | 'resume' | 'step' | 'back' | 'stop' | 'autonomy' | 'operate' | 'change' | 'lock' | 'force' | 'repeat' | 'breakpoint'
 
 export interface Situation {
   readonly role: string
@@ -40,6 +40,9 @@ export function obstacleTo(command: Command, now: Situation): string | undefined
     case 'resume':
     case 'step':
       return control.paused ? undefined : 'pause the run first'
+    case 'back':
+      if (!control.paused) return 'pause the run first'
+      return control.stepping ? 'the run is stepping' : undefined
     case 'change':
       return control.paused || control.locks.length > 0 ? undefined : 'pause the run first'
     case 'lock':

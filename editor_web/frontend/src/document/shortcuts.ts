@@ -5,6 +5,7 @@ export const SHORTCUTS = [
   { key: 'i', id: 'into', words: 'Step into the next node' },
   { key: 'o', id: 'over', words: 'Step over what is inside the next node' },
   { key: 'u', id: 'out', words: 'Step out of the container' },
+  { key: 'z', id: 'back', words: 'Step back: undo what began last' },
   { key: 'b', id: 'break', words: 'Breakpoint before the chosen node, on or off' },
   { key: 'l', id: 'lock', words: 'Lock or unlock the chosen node' },
   { key: 'r', id: 'repeat', words: 'Run the chosen node again' },

@@ -2,6 +2,7 @@
 import {
   IconArrowBarDown,
   IconArrowBarUp,
+  IconArrowBackUp,
   IconArrowRampRight,
   IconHeadset,
   IconKeyboard,
@@ -59,6 +60,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
         <CommandButton {...bar('step', 'Step into')} hint="Go on to the entry of the next node" icon={<IconArrowBarDown size={16} aria-hidden />} shortcut={key('i')} onPress={() => commands.step('into')} />
         <CommandButton {...bar('step', 'Step over')} hint="Go on past everything inside this node" icon={<IconArrowRampRight size={16} aria-hidden />} shortcut={key('o')} onPress={() => commands.step('over')} />
         <CommandButton {...bar('step', 'Step out')} hint="Go on until the container around it has its outcome" icon={<IconArrowBarUp size={16} aria-hidden />} shortcut={key('u')} onPress={() => commands.step('out')} />
+        <CommandButton {...bar('back', 'Step back')} hint="Undo what began last, and stand before its entry again" icon={<IconArrowBackUp size={16} aria-hidden />} shortcut={key('z')} onPress={commands.stepBack} />
         <span className="run-bar-gap" />
         <CommitSlider
           label="Autonomy"

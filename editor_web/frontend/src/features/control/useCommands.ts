@@ -14,6 +14,7 @@ export interface Commands {
   readonly explain: (command: Command, words: string) => void
   readonly pauseOrResume: () => void
   readonly step: (mode: 'into' | 'over' | 'out') => void
+  readonly stepBack: () => void
   readonly stop: () => void
   readonly setAutonomy: (level: Level) => Promise<boolean>
   readonly toggleOperating: () => void
@@ -39,6 +40,8 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
 
   return useMemo(() => {
     const now: Situation = { role, isConnected, run, control, node, nodeStatus }
+    // A chosen node that waits says which branch is meant.
+    const branch = control?.waiting.some((each) => each.path === node) ? (node ?? '') : ''
     const obstacle = (command: Command) => obstacleTo(command, now)
     const of = (words: string) => (name ? `${name}: ${words}` : words)
     const sendOf = <T>(words: string, request: () => Promise<T>) => send(of(words), request)
@@ -56,11 +59,8 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
         if (isHeld) attempt('resume', 'Resume', () => api.resume(id))
         else attempt('pause', 'Pause', () => api.pause(id))
       },
-      // A chosen node that waits says which branch is meant.
-      step: (mode) => {
-        const path = control?.waiting.some((each) => each.path === node) ? (node ?? '') : ''
-        attempt('step', `Step ${mode}`, () => api.step(id, { mode, path }))
-      },
+      step: (mode) => attempt('step', `Step ${mode}`, () => api.step(id, { mode, path: branch })),
+      stepBack: () => attempt('back', 'Step back', () => api.stepBack(id, branch || (nodeStatus === 'active' ? (node ?? '') : ''))),
       stop: () => attempt('stop', 'Stop', () => api.stop(id)),
       setAutonomy: async (level) => (await sendOf('Autonomy', () => api.autonomy(id, level))) !== undefined,
       toggleOperating: () => {

@@ -1,0 +1,48 @@
+"""How the states of a gripper are undone: the fingers go back to how they were before."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from engine.errors import StateError
+from engine.skill import Action
+from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove
+from engine.state import ActivationRecord, Context
+from states.began import ended_goals
+
+
+def unknown_before(done: ActivationRecord, goal: type[Action[GraspResult, Any]]) -> str:
+    """Return why a gripper cannot be brought back to how it was before an activation; empty where it can."""
+    unknown = any(result is None or result.start is None for _, result in ended_goals(done, goal))
+    return "it is not known how the gripper was before" if unknown else ""
+
+
+async def restore(
+    ctx: Context,
+    done: ActivationRecord,
+    goal: type[Action[GraspResult, Any]],
+    *,
+    address: str,
+    speed_m_s: float,
+) -> None:
+    """Let go of what was grasped, or grasp again what was let go of.
+
+    Raises:
+        StateError: the fingers did not get there, or hold nothing where they held something.
+    """
+    for _, result in ended_goals(done, goal):
+        start = result.start if result is not None else None
+        if start is None:
+            raise StateError(unknown_before(done, goal), where=ctx.path)
+        if start.held:
+            again: GripperGrasp | GripperMove = GripperGrasp(
+                width_m=start.width_m, force_n=start.force_n, speed_m_s=speed_m_s
+            )
+        else:
+            again = GripperMove(width_m=start.width_m, speed_m_s=speed_m_s)
+        end = await ctx.perform(again, to=address)
+        if end.status != "succeeded" or end.result is None:
+            because = f": {end.cause.message}" if end.cause is not None else ""
+            raise StateError(f"{address} did not get back to {start.width_m * 1e3:.1f} mm{because}", where=ctx.path)
+        if start.held and not end.result.held:
+            raise StateError(f"{address} does not hold again what it held: {end.result.reason}", where=ctx.path)
