@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Literal, Unpack
 
 from engine.authoring.step import PartKeys, TreePart, given, new_part
-from engine.document.node import NodeKind, Status
+from engine.document.node import SLOTS, NodeKind, Status
 
 
 def sequence(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
@@ -72,6 +72,22 @@ def remap(
 def condition(child: TreePart, *, status: Status, **keys: Unpack[PartKeys]) -> TreePart:
     """Succeed when the child has this status, run until then."""
     return new_part("condition", {"child": child, "status": status}, **keys)
+
+
+def if_then_else(
+    condition: TreePart, then: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
+) -> TreePart:
+    """Ask the condition once, then run `then` where it has succeeded, else `otherwise`; fail where there is none."""
+    slots = zip(SLOTS["if_then_else"], (condition, then, otherwise), strict=True)
+    return new_part("if_then_else", given(**dict(slots)), **keys)
+
+
+def while_do_else(
+    condition: TreePart, body: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
+) -> TreePart:
+    """Run `body` while the condition succeeds, `otherwise` while it fails; fail where there is none."""
+    slots = zip(SLOTS["while_do_else"], (condition, body, otherwise), strict=True)
+    return new_part("while_do_else", given(**dict(slots)), **keys)
 
 
 def retry(child: TreePart, *, times: int, backoff: float | str | None = None, **keys: Unpack[PartKeys]) -> TreePart:

@@ -32,6 +32,8 @@ def end_statuses(node: Node, children: Sequence[tuple[str, Statuses]]) -> Status
         return _parallel(node.parallel, children)
     if node.behaviour is not None:
         return BOTH
+    if node.if_then_else is not None or node.while_do_else is not None:
+        return _branched(ends)
     child = ends[0]
     if node.inverter is not None:
         return frozenset(_OPPOSITE[status] for status in child)
@@ -57,6 +59,13 @@ def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
         if onward not in statuses:
             return frozenset(found)
     return frozenset({*found, onward})
+
+
+def _branched(ends: Sequence[Statuses]) -> Statuses:
+    """The first says which of the others is run; where there is no third, it fails."""
+    condition, then, *otherwise = ends
+    found: Statuses = then if "success" in condition else NEVER
+    return found | ((otherwise[0] if otherwise else FAILURE) if "failure" in condition else NEVER)
 
 
 def _parallel(group: tuple[Node, ...] | Parallel, children: Sequence[tuple[str, Statuses]]) -> Statuses:

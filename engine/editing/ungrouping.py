@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
+from engine.document.node import SLOTS
 from engine.editing.bench import Bench, Restructuring, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import Point, SetPositions, Ungroup
@@ -139,7 +140,7 @@ def _divert(node: Plain, leaving: Plain) -> None:
 def _in_tree(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -> None:
     if not spot.is_part:
         raise EditRefused(f"a {spot.kind} cannot become parts of a tree", hint="ungroup composites and decorators")
-    if len(children) > 1 and (home.kind != spot.kind or spot.kind == "parallel"):
+    if len(children) > 1 and (home.kind != spot.kind or spot.kind == "parallel" or spot.kind in SLOTS):
         raise EditRefused(
             f"a {spot.kind} in a {home.kind} means something else without it", hint="change its kind first"
         )
@@ -153,7 +154,7 @@ def _in_tree(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -
     elif home.kind == "tree":
         home.data["tree"] = first.data
     else:
-        home.body["child"] = first.data
+        home.body[spot.role or "child"] = first.data
     follow.finish()
     for child in children:
         bench.mark(child.data)

@@ -12,6 +12,7 @@ from py_trees.decorators import Decorator, Inverter
 from engine.cause import under
 from engine.diagnosis import explain
 from engine.event import Cause
+from engine.tree.branching import IfThenElse
 from engine.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
 from engine.tree.leaf import TreeLeaf
 from engine.tree.parallel import CountingParallel
@@ -49,6 +50,8 @@ def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
 def _culprit(behaviour: Behaviour) -> Behaviour | None:
     if isinstance(behaviour, Decorator):
         candidates = [behaviour.decorated]
+    elif isinstance(behaviour, IfThenElse):
+        candidates = [*behaviour.branches, behaviour.condition]
     elif isinstance(behaviour, composites.Selector):
         candidates = behaviour.children[::-1]
     else:

@@ -16,6 +16,7 @@ from engine.errors import ExpressionError, StateError
 from engine.event import Cause, Retried
 from engine.execution import Execution
 from engine.tree.alarms import Alarms
+from engine.tree.branching import IfThenElse, WhileDoElse
 from engine.tree.decorators import Condition, Cooldown, Guard, Remap, Repeat, Retry, Timeout
 from engine.tree.explanation import reason
 from engine.tree.foreign import Foreign
@@ -51,7 +52,7 @@ class Growth:
     foreign: dict[Behaviour, Foreign] = field(default_factory=dict[Behaviour, Foreign])
     statuses: Statuses = field(init=False)
     reactive: bool = False
-    """Whether it holds a composite without memory, which asks again what has ended."""
+    """Whether it holds a part that asks again what has ended: a composite without memory, or a `while_do_else`."""
     _rank: int = 0
 
     def __post_init__(self) -> None:
@@ -81,6 +82,8 @@ class Growth:
             node = self._parallel(part, place, caught)
         elif part.source.kind in ("sequence", "selector"):
             node = self._line(part, place, caught)
+        elif part.source.kind in nodes.SLOTS:
+            node = self._branching(part, place, caught)
         else:
             retry = part.source.retry
             errors = retry is not None and retry.errors
@@ -97,6 +100,13 @@ class Growth:
         if part.source.sequence is not None:
             return composites.Sequence(part.path, memory, children)
         return composites.Selector(part.path, memory, children)
+
+    def _branching(self, part: Part, place: Place, caught: bool) -> Behaviour:
+        children = [self.grow(child, place, caught=caught) for child in part.children]
+        if part.source.if_then_else is not None:
+            return IfThenElse(part.path, children)
+        self.reactive = True
+        return WhileDoElse(part.path, children)
 
     def _parallel(self, part: Part, place: Place, caught: bool) -> Behaviour:
         places = {child.name: Place(place.scope) for child in part.children}

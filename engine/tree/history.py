@@ -32,6 +32,8 @@ class Standing:
     since_s: float = 0.0
     order: int = -1
     """Which of the marks was the last one of this part."""
+    began: int = -1
+    """Which was the last one by which it was at work."""
     over: int = -1
     """Which was the last one by which it was not RUNNING: what is older belongs to an earlier activation."""
     ended_s: float | None = None
@@ -88,6 +90,7 @@ def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
         standing.order = number
         standing.over = number if mark.what in ("success", "failure", "invalid") else standing.over
         what, _, name = mark.what.partition(" ")
+        standing.began = number if what in ("entered", "running", "attempt") else standing.began
         ended = what in ("outcome", "target", "failed")
         own_retry = what == "attempt" and any(other is standing for other in unread)
         if not ended and not own_retry:

@@ -7,6 +7,7 @@ once, and loops of a machine a few times more.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
 from engine.check.flow.branches import concurrency_ends, parallel_ends
@@ -212,7 +213,8 @@ class Flow:
             return machine_graph(children, machine.initial, self.ways)
         if placed.node.concurrency is not None or placed.node.parallel is not None or placed.node.foreach is not None:
             return None
-        return tree_graph(placed, children, self.ways)
+        halted = {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
+        return tree_graph(placed, children, self.ways, defaultdict(lambda: NOTHING, halted))
 
     def _ways(self, placed: Placed, ends: dict[str, Effect], *, leaf: bool) -> list[Way]:
         node = placed.node

@@ -126,13 +126,21 @@ def machine_graph(children: Sequence[Placed], initial: str, ways: Mapping[str, S
     return Graph((numbers[initial],) if initial in numbers else (), arrows)
 
 
-def tree_graph(placed: Placed, children: Sequence[Placed], ways: Mapping[str, Sequence[Way]]) -> Graph:
-    """Return the graph of a tree, composite or decorator; all ways are called by statuses."""
+def tree_graph(
+    placed: Placed, children: Sequence[Placed], ways: Mapping[str, Sequence[Way]], halted: Mapping[str, Effect]
+) -> Graph:
+    """Return the graph of a tree, composite or decorator; all ways are called by statuses.
+
+    `halted` is what a child may have written that is stopped, by its path.
+    """
     lead = _leads(placed.node, len(children))
     arrows = [
         [(way.effect, to) for way in ways[child.path] for to in lead(number, way.label)]
         for number, child in enumerate(children)
     ]
+    if placed.node.while_do_else is not None:
+        # What it runs may be stopped at any time, when the condition says something else.
+        arrows[1:] = [[*found, (halted[child.path], 0)] for found, child in zip(arrows[1:], children[1:], strict=True)]
     return Graph((0,), arrows)
 
 
@@ -141,6 +149,8 @@ def _leads(node: Node, count: int) -> Callable[[int, str], tuple[Target, ...]]:
     if node.sequence is not None or node.selector is not None:
         onward = "success" if node.sequence is not None else "failure"
         return lambda number, status: (number + 1,) if status == onward and number + 1 < count else (status,)
+    if node.if_then_else is not None or node.while_do_else is not None:
+        return lambda number, status: (status,) if number else (_branch(status, count),)
     if node.inverter is not None:
         return lambda _, status: ("failure" if status == "success" else "success",)
     if node.remap is not None:
@@ -155,6 +165,13 @@ def _leads(node: Node, count: int) -> Callable[[int, str], tuple[Target, ...]]:
     if node.timeout is not None or node.guard is not None or node.cooldown is not None:
         return lambda _, status: (status, "failure")
     return lambda _, status: (status,)
+
+
+def _branch(status: str, count: int) -> Target:
+    """Return where the condition of an `if_then_else` or `while_do_else` leads; without `else` its failure ends it."""
+    if status == "success":
+        return 1
+    return 2 if count > 2 else status
 
 
 def _remap(remap: Remap) -> Callable[[int, str], tuple[Target, ...]]:

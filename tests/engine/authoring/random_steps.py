@@ -20,6 +20,7 @@ from engine.authoring import (
     cooldown,
     foreach,
     guard,
+    if_then_else,
     inverter,
     machine,
     one_shot,
@@ -34,6 +35,7 @@ from engine.authoring import (
     state,
     timeout,
     tree,
+    while_do_else,
 )
 from engine.document import Behavior
 from tests.engine.document.example_documents import DURATIONS, KEYS, TEXTS, VALUES
@@ -167,6 +169,8 @@ def _parts(draw: st.DrawFn, depth: int) -> TreePart:
         lambda: retry(draw(inner), times=draw(st.integers(1, 5)), backoff=draw(st.none() | DURATIONS), **more),
         lambda: timeout(draw(inner), after=draw(DURATIONS), **more),
         lambda: guard(draw(inner), when=draw(EXPRESSIONS), **more),
+        lambda: if_then_else(draw(inner), draw(inner), draw(st.none() | inner), **more),
+        lambda: while_do_else(draw(inner), draw(inner), draw(st.none() | inner), **more),
         lambda: behaviour("py_trees.behaviours:Success", parameters=draw(USERDATA), **more),
     ]
     return makers[draw(st.integers(0, len(makers) - 1))]()

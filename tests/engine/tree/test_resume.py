@@ -76,6 +76,27 @@ TREES = {
                 - {state: test.Act, name: d, with: {script: [[9, true]]}}
           - {state: test.Act, name: e, with: {script: [[1, true]]}}
     """,
+    "branches": """
+        sequence:
+          - if_then_else:
+              if: {state: test.Check, name: asked, with: {script: [[1, false]]}}
+              then: {state: test.Act, name: never}
+              else: {state: test.Act, name: a, with: {script: [[1, true]]}}
+          - while_do_else:
+              while: {state: test.Check, name: clear}
+              do:
+                sequence:
+                  memory: false
+                  children:
+                    - {state: test.Check, name: clear}
+                    - {state: test.Act, name: b, with: {script: [[2, true]]}}
+              else: {state: test.Act, name: c}
+    """,
+    "a condition that takes time": """
+        while_do_else:
+          while: {state: test.Check, name: clear, with: {script: [[1, true]]}}
+          do: {sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]}
+    """,
     "a check that watches": """
         sequence:
           memory: false

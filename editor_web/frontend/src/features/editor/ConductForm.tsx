@@ -110,7 +110,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
         targets={targets}
         onSet={(to) => set('on_error', to || null)}
       />
-      {(node.every !== null || asksAgain(parent)) && (
+      {(node.every !== null || asksAgain(node, parent)) && (
         <Line label="Ask again every">
           <TemplateInput
             label="Ask again every"
@@ -157,7 +157,8 @@ function targetsOf(
 }
 
 /** Whether a container asks what has ended again while what stands behind it is at work. */
-function asksAgain(parent: EditNode | undefined): boolean {
+function asksAgain(node: EditNode, parent: EditNode | undefined): boolean {
+  if (node.role === 'while') return true
   return (parent?.kind === 'sequence' || parent?.kind === 'selector') && lookup(parent.settings, 'memory') === false
 }
 
