@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, Unpack
 
-from engine.authoring.step import PartKeys, TreePart, given, new_part
+from engine.authoring.step import NameKeys, PartKeys, TreePart, given, new_part
 from engine.document.node import SLOTS, NodeKind, Status
 
 
@@ -100,9 +100,15 @@ def timeout(child: TreePart, *, after: float | str, **keys: Unpack[PartKeys]) ->
     return new_part("timeout", {"child": child, "after": after}, **keys)
 
 
-def guard(child: TreePart, *, when: str, **keys: Unpack[PartKeys]) -> TreePart:
-    """Run the child while the expression is true, else fail; for the key of a step see `Guard`."""
-    return new_part("guard", {"child": child, "when": when}, **keys)
+def guard(
+    child: TreePart,
+    *,
+    when: str,
+    to: Literal["success", "failure", "skipped"] | None = None,
+    **keys: Unpack[NameKeys],
+) -> TreePart:
+    """Run the child while the expression is true, else fail, or end as `to` says; for the key of a step see `Guard`."""
+    return new_part("guard", given(child=child, when=when, to=to), **keys)
 
 
 def _group(kind: NodeKind, children: Sequence[TreePart], memory: bool | None, keys: PartKeys) -> TreePart:

@@ -36,7 +36,7 @@ def _check_dead_children(subject: Subject, placed: Placed) -> Iterator[Finding]:
     children = subject.children(placed)
     for number, child in enumerate(children[:-1]):
         statuses = subject.statuses[child.path]
-        if statuses and onward not in statuses:
+        if statuses and onward not in statuses and "skipped" not in statuses:
             names = ", ".join(f"`{later.name}`" for later in children[number + 1 :][:3])
             message = f"{names} can never be asked: `{child.name}` before it always {always}"
             hint = "change the order, or give the outcomes that mean SUCCESS with `success`"
@@ -49,7 +49,7 @@ def _check_dead_branches(subject: Subject, placed: Placed) -> Iterator[Finding]:
     condition, *branches = subject.children(placed)
     said = subject.statuses[condition.path]
     for branch, chosen in zip(branches, TREE_OUTCOMES, strict=False):
-        if said and chosen not in said:
+        if said and chosen not in said and not (chosen == "failure" and "skipped" in said):
             always = "fails" if chosen == "success" else "succeeds"
             message = f"`{branch.name}` can never be asked: `{condition.name}` always {always}"
             hint = "change the condition, or give the outcomes that mean SUCCESS with `success`"

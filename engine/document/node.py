@@ -78,7 +78,8 @@ class Retry(Strict, frozen=True, kw_only=True):
 class Guard(Strict, frozen=True, kw_only=True):
     """Enter the node only when the expression `when` is true, else leave it at once for `to`.
 
-    As a decorator in a tree it has a `child`, which is stopped with FAILURE when `when` becomes false.
+    In a tree `to` is `success`, `failure` or `skipped`. As a decorator there it has a `child`, which is stopped when
+    `when` becomes false; without `to` it then fails.
     """
 
     when: Expression
@@ -261,6 +262,8 @@ class WhileDoElse(Strict, frozen=True, kw_only=True, rename={"condition": "while
 
 
 TREE_OUTCOMES = ("success", "failure")
+GUARD_TARGETS = (*TREE_OUTCOMES, "skipped")
+"""Where a guard may lead in a tree; what is skipped is passed over by the part around it."""
 FOREACH_OUTCOMES = ("exhausted", "broken")
 
 _Listed = Annotated[tuple["Node", ...], Meta(min_length=1, description="The children, at least one")]

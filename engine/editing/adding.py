@@ -6,7 +6,7 @@ import re
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node import KINDS, SLOTS, TREE_KINDS, WRAPPERS
+from engine.document.node import GUARD_TARGETS, KINDS, SLOTS, TREE_KINDS, WRAPPERS
 from engine.editing.bench import NAME, Bench, Restructuring, insert_key, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AddNode, Duplicate, Edge, Paste, Point, SetPositions
@@ -176,7 +176,9 @@ def fit(bench: Bench, container: Spot, node: Plain) -> None:
         for measure in ("timeout", "guard"):
             found = node.get(measure)
             if measure != kind and isinstance(found, dict) and "child" not in found:
-                cast("Plain", found)["to"] = "failure"
+                guarded = cast("Plain", found)
+                if measure != "guard" or guarded.get("to") not in GUARD_TARGETS:
+                    guarded["to"] = "failure"
         if isinstance(node.get("on_error"), str):
             node["on_error"] = "failure"
 

@@ -79,7 +79,7 @@ _DOCS = {
     "while_do_else": ("While, do, else", "Runs the second child while the first succeeds, the third while it fails."),
     "retry": ("Retry", "Runs its child again after failure."),
     "timeout": ("Timeout", "Fails when its child takes too long."),
-    "guard": ("Guard", "Lets its child run only while an expression is true."),
+    "guard": ("Guard", "Lets its child run only while an expression is true; else fails, or is skipped."),
 }
 
 

@@ -91,6 +91,10 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
         raise EditRefused(
             f"`{part.path}` has no memory", hint="only one with memory runs its children one after the other"
         )
+    if any(_guard(step).get("to") == "skipped" for step in steps):
+        raise EditRefused(
+            f"a step of `{spot.path}` may be skipped, which a machine does not know", hint="guard it else"
+        )
     leaving = cast("Plain", spot.data.get("transitions") or {})
     ends = {id(step.data): bench.ends(step) for step in steps}
     follow = Restructuring(bench)
@@ -124,6 +128,11 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
     follow.finish(instead={id(spot.data): names[0]}, stray=lambda _, target: target)
     for step in steps:
         bench.mark(step.data)
+
+
+def _guard(spot: Spot) -> Plain:
+    guard = spot.data.get("guard")
+    return cast("Plain", guard) if isinstance(guard, dict) else {}
 
 
 def _divert(node: Plain, leaving: Plain) -> None:

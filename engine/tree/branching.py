@@ -8,6 +8,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.composites import Composite
 
+from engine.tree.skips import Skips
+
 _FINAL = (Status.SUCCESS, Status.FAILURE)
 
 
@@ -19,10 +21,12 @@ class IfThenElse(Composite):
     Args:
         path: Its node path.
         children: The condition, the branch for success and, if there is one, that for failure.
+        skips: Which parts are skipped: this one is when the branch that runs is.
     """
 
-    def __init__(self, path: str, children: list[Behaviour]) -> None:
+    def __init__(self, path: str, children: list[Behaviour], skips: Skips) -> None:
         super().__init__(path, children)
+        self._skips = skips
         self.condition, *self.branches = children
 
     @property
@@ -57,6 +61,10 @@ class IfThenElse(Composite):
         if branch is not None:
             yield from branch.tick()
         status = branch.status if branch is not None else Status.FAILURE
+        if branch in self._skips:
+            status = self._skips.skip(self)
+        else:
+            self._skips.run(self)
         if status is not Status.RUNNING:
             self.stop(status)
         self.status = status

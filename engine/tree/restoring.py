@@ -55,6 +55,7 @@ class _Restoring:
     branches: Branches
     now_s: float
     tick_due: bool = False
+    echoed: set[Behaviour] = field(default_factory=set[Behaviour])
     going_on: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
 
     def part(self, node: Behaviour) -> bool:
@@ -70,7 +71,9 @@ class _Restoring:
         if part.foreign is not None:
             # Its own state is lost; it is INVALID, so the tick that is due initialises it again.
             return False
-        node.status = _STATUS.get(standing.status, Status.INVALID)
+        skips = self.growth.statuses.skips
+        skipped = standing.status == "skipped"
+        node.status = skips.skip(node) if skipped else _STATUS.get(standing.status, Status.INVALID)
         self.growth.statuses.take(node)
         running = node.status is Status.RUNNING
         if isinstance(node, Parallel) and running:
@@ -82,9 +85,10 @@ class _Restoring:
         if isinstance(node, WhileDoElse) and running and node.condition.status is Status.RUNNING:
             self._keep_ends(node)
         if running:
+            skips.restore(node, (child for child in node.children if self._was_skipped(child, standing)))
             unread = self._unread(node, standing)
             for child in unread:
-                _echo(child)
+                self._echo(child)
             if isinstance(node, composites.Composite):
                 node.current_child = unread[0] if unread else self._current(node, standing)
             # A tick was under way, or had just ended, when it was cut: it is done again.
@@ -138,7 +142,7 @@ class _Restoring:
             began = max(self._standing(each).began for each in inside)
             for leaf in inside:
                 if isinstance(leaf, TreeLeaf) and leaf.status in _FINAL and self._order(leaf) > began:
-                    _echo(leaf)
+                    self._echo(leaf)
 
     def _current(self, node: composites.Composite, standing: Standing) -> Behaviour:
         """Return the child at which a composite with memory goes on."""
@@ -152,6 +156,10 @@ class _Restoring:
             if child.status is passed and self._order(child) > standing.over:
                 following = index + 1
         return node.children[min(following, len(node.children) - 1)]
+
+    def _was_skipped(self, child: Behaviour, around: Standing) -> bool:
+        standing = self._standing(child)
+        return standing.skipped > max(around.over, standing.began)
 
     def _order(self, node: Behaviour) -> int:
         """Return which of the marks was the last one of a part."""
@@ -183,6 +191,12 @@ class _Restoring:
             leaf.restore(Left(standing.outcome or "", standing.target))
         return False
 
+    def _echo(self, node: Behaviour) -> None:
+        """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+        if node not in self.echoed:
+            self.echoed.add(node)
+            _echo(node)
+
     def _decorator(self, node: Behaviour, standing: Standing) -> bool:
         """Restore what a decorator keeps; tell whether it has set a timer."""
         elapsed_s = self.now_s - standing.since_s
@@ -204,10 +218,12 @@ class _Restoring:
 
 
 def _echo(node: Behaviour) -> None:
-    """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+    before = vars(node).pop("tick", None)
 
     def tick() -> Iterator[Behaviour]:
         del vars(node)["tick"]
+        if before is not None:
+            vars(node)["tick"] = before
         if node.status in _FINAL:
             yield node
         else:

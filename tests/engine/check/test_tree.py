@@ -202,3 +202,33 @@ def test_what_a_halted_branch_may_have_written_is_known_to_the_other() -> None:
     assert said_of(f"{head}{choice}") == []
     loop = f"while_do_else: {{while: {DECIDE}, do: {machine}, else: {read}}}\n"
     assert said_of(f"{head}{loop}") == ["maybe-type-mismatch root/while_do_else/Wait"]
+
+
+SKIPS = ", guard: {when: '${x}', to: skipped}}"
+
+
+def test_what_stands_behind_a_child_that_may_be_skipped_can_be_asked() -> None:
+    """Both in a sequence and in a selector; a tree that is skipped as a whole succeeds."""
+    head = HEAD.replace("root:", "parameters: {x: {type: boolean, default: true}}\nroot:")
+    fails = f"{{inverter: {{child: {LOG}}}}}"
+    for kind, first in (("sequence", fails), ("selector", LOG)):
+        assert said_of(f"{head}{kind}: [{first}, {DECIDE}]\n") == [
+            "unused-parameter root",
+            f"unreachable-node root/{kind}/CheckHeld",
+        ]
+        assert said_of(f"{head}{kind}: [{first[:-1]}{SKIPS}, {DECIDE}]\n") == []
+    sequence = (
+        "{tree: {sequence: [%s], guard: {when: '${x}', to: skipped}}, transitions: {success: good, failure: bad}}"
+    )
+    text = "root:\n  machine:\n    initial: tree\n    states:\n      tree: " + sequence % LOG + "\n"
+    assert said_of(text.replace("root:", "parameters: {x: {type: boolean, default: true}}\nroot:")) == []
+
+
+def test_a_guard_of_a_part_is_compared_with_what_it_reads() -> None:
+    """As that of a state."""
+    part = f"sequence: [{LOG}]\n    guard: {{when: '${{%s}}', to: skipped}}\n"
+    assert said_of(f"{HEAD}{part % 'nothing'}") == ["undeclared-name root/sequence"]
+    assert said_of(f"{HEAD}{part % '1 < 2'}") == ["constant-guard root/sequence"]
+    assert said_of(f"{HEAD.replace('root:', 'userdata: {x: 1}' + chr(10) + 'root:')}{part % 'x'}") == [
+        "type-mismatch root/sequence"
+    ]

@@ -375,3 +375,17 @@ def test_one_child_of_a_branching_is_grouped_and_ungrouped_in_its_role() -> None
     both = {"edit": "group", "paths": [f"{IF}/Give", f"{IF}/Give_2"], "kind": "sequence"}
     assert refusal(BRANCHING, both) == "the children of a if_then_else have roles"
     assert "means something else without it" in refusal(BRANCHING, {"edit": "ungroup", "path": IF})
+
+
+def test_a_guard_that_skips_is_kept_within_a_tree_and_not_taken_into_a_machine() -> None:
+    guarded = BRANCHING.replace("name: last}", "name: last, guard: {when: '${true}', to: skipped}}")
+    moved = edited(guarded, {"edit": "move_nodes", "paths": ["root/sequence/last"], "parent": IF})
+    assert "else: {state: test.Give, name: last, guard: {when: '${true}', to: skipped}}" in moved
+    text = (
+        "flexcell: 1\nname: t\noutcomes: [good, bad]\nroot:\n  machine:\n    initial: tree\n    states:\n      tree:\n"
+    )
+    tree = "{tree: {sequence: [{state: flow.Wait, with: {duration_s: 1}, guard: {when: '${true}', to: skipped}}]}"
+    machine = f"{text}        {tree}, transitions: {{success: good, failure: bad}}}}\n".replace(
+        "tree:\n        {", "tree: {"
+    )
+    assert "may be skipped" in refusal(machine, {"edit": "ungroup", "path": "root/tree"})

@@ -78,6 +78,7 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
       <KindIcon kind={node.kind} size={15} />
       {node.role && <span className="card-role">{node.role}</span>}
       <span className="card-name">{node.name}</span>
+      {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
       {!data.isOpen && data.count > 0 && <span className="twig-count">{data.count}</span>}
       <MarkIcon path={id} inside={!data.isOpen} />
       <Handle type="source" id="below" position={Position.Bottom} className="branch-port" isConnectable={false} />
