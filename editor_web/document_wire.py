@@ -29,10 +29,12 @@ class DocumentNodeBody(GraphNodeBody):
 
     `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are
     the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to.
+    `role` is the key by which the part around it knows it, such as `then`.
     """
 
     children: tuple[DocumentNodeBody, ...]  # pyright: ignore[reportIncompatibleVariableOverride]
     label: str
+    role: str
     description: str
     line: int
     column: int

@@ -166,7 +166,7 @@ class Diverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=T
 
 
 class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
-    """A composite or decorator of a behavior tree has another status: success, failure, running or invalid."""
+    """A composite or decorator of a behavior tree has another status: success, failure, running, skipped or invalid."""
 
     path: str
     status: str

@@ -28,6 +28,7 @@ from engine.authoring.tree_part import (
     condition,
     cooldown,
     guard,
+    if_then_else,
     inverter,
     one_shot,
     parallel,
@@ -37,6 +38,7 @@ from engine.authoring.tree_part import (
     selector,
     sequence,
     timeout,
+    while_do_else,
 )
 from engine.document.node import Guard, Retry, Timeout
 
@@ -57,6 +59,7 @@ __all__ = [
     "expr",
     "foreach",
     "guard",
+    "if_then_else",
     "inverter",
     "is_made_in_python",
     "load_python_behavior",
@@ -75,5 +78,6 @@ __all__ = [
     "timeout",
     "to_yaml",
     "tree",
+    "while_do_else",
     "write_behavior",
 ]

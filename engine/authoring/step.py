@@ -25,18 +25,23 @@ class Step(TreePart):
     """A node that can stand anywhere: in a machine, side by side with others, in a tree, at the root."""
 
 
-class PartKeys(TypedDict, total=False):
-    """What every part of a tree may be given."""
+class NameKeys(TypedDict, total=False):
+    """What a guard of a tree may be given beside its own."""
 
     name: str
     description: str
+
+
+class PartKeys(NameKeys, total=False):
+    """What every other part of a tree may be given."""
+
+    guard: Guard
 
 
 class StepKeys(PartKeys, total=False):
     """What every step may be given, named as in documents."""
 
     transitions: Mapping[str, str]
-    guard: Guard
     timeout: Timeout
     retry: Retry
     on_error: str

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, Unpack
 
-from engine.authoring.step import PartKeys, TreePart, given, new_part
-from engine.document.node import NodeKind, Status
+from engine.authoring.step import NameKeys, PartKeys, TreePart, given, new_part
+from engine.document.node import SLOTS, NodeKind, Status
 
 
 def sequence(*children: TreePart, memory: bool | None = None, **keys: Unpack[PartKeys]) -> TreePart:
@@ -74,6 +74,22 @@ def condition(child: TreePart, *, status: Status, **keys: Unpack[PartKeys]) -> T
     return new_part("condition", {"child": child, "status": status}, **keys)
 
 
+def if_then_else(
+    condition: TreePart, then: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
+) -> TreePart:
+    """Ask the condition once, then run `then` where it has succeeded, else `otherwise`; fail where there is none."""
+    slots = zip(SLOTS["if_then_else"], (condition, then, otherwise), strict=True)
+    return new_part("if_then_else", given(**dict(slots)), **keys)
+
+
+def while_do_else(
+    condition: TreePart, body: TreePart, otherwise: TreePart | None = None, **keys: Unpack[PartKeys]
+) -> TreePart:
+    """Run `body` while the condition succeeds, `otherwise` while it fails; fail where there is none."""
+    slots = zip(SLOTS["while_do_else"], (condition, body, otherwise), strict=True)
+    return new_part("while_do_else", given(**dict(slots)), **keys)
+
+
 def retry(child: TreePart, *, times: int, backoff: float | str | None = None, **keys: Unpack[PartKeys]) -> TreePart:
     """Run the child again after failure, up to `times` more; for the key of a step see `Retry`."""
     return new_part("retry", given(child=child, times=times, backoff=backoff), **keys)
@@ -84,9 +100,15 @@ def timeout(child: TreePart, *, after: float | str, **keys: Unpack[PartKeys]) ->
     return new_part("timeout", {"child": child, "after": after}, **keys)
 
 
-def guard(child: TreePart, *, when: str, **keys: Unpack[PartKeys]) -> TreePart:
-    """Run the child while the expression is true, else fail; for the key of a step see `Guard`."""
-    return new_part("guard", {"child": child, "when": when}, **keys)
+def guard(
+    child: TreePart,
+    *,
+    when: str,
+    to: Literal["success", "failure", "skipped"] | None = None,
+    **keys: Unpack[NameKeys],
+) -> TreePart:
+    """Run the child while the expression is true, else fail, or end as `to` says; for the key of a step see `Guard`."""
+    return new_part("guard", given(child=child, when=when, to=to), **keys)
 
 
 def _group(kind: NodeKind, children: Sequence[TreePart], memory: bool | None, keys: PartKeys) -> TreePart:

@@ -107,7 +107,8 @@ class Instants:
                 return frozenset()
         if not children:
             return frozenset()
-        return frozenset(self._subject.statuses.get(placed.path) or self._subject.statuses[children[0].path])
+        found = self._subject.statuses.get(placed.path) or self._subject.statuses[children[0].path]
+        return found if placed.is_part else frozenset("success" if end == "skipped" else end for end in found)
 
     def _seen(self, child: Placed) -> frozenset[str]:
         guard = child.node.guard

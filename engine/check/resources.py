@@ -10,7 +10,8 @@ from engine.check.subject import Placed, Subject
 from engine.document.signature import StateSignature
 
 _NONE: frozenset[str] = frozenset()
-_SIDE_BY_SIDE = ("concurrency", "parallel")
+_SIDE_BY_SIDE = ("concurrency", "parallel", "while_do_else")
+"""Of the last one only its condition runs beside the others."""
 _MOST_USES = 20_000
 """Uses of referred behaviors that are looked at, each with the parameters it gives."""
 
@@ -24,9 +25,11 @@ def check_resources(subject: Subject) -> Iterator[Finding]:
         if placed.kind not in _SIDE_BY_SIDE:
             continue
         owners: dict[str, Placed] = {}
-        for child in subject.children(placed):
+        children = subject.children(placed)
+        for child in children:
             for resource in sorted(used[child.path]):
-                other = owners.setdefault(resource, child)
+                alone = placed.kind == "while_do_else" and child is not children[0]
+                other = owners.get(resource, child) if alone else owners.setdefault(resource, child)
                 if other is not child:
                     message = f"`{other.name}` and `{child.name}` run side by side and both command `{resource}`"
                     yield subject.finding("shared-resource", message, child.path, hint="run them one after the other")

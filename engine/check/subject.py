@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 
 from engine.check.finding import Finding, new_finding
 from engine.check.gaps import Gaps
-from engine.check.status import BOTH, Status, Statuses, end_statuses
+from engine.check.status import BOTH, Status, Statuses, closed_statuses, end_statuses
 from engine.document.behavior import Behavior
 from engine.document.expression import Template, compile_template
-from engine.document.node import FOREACH_OUTCOMES, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
+from engine.document.node import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
 from engine.document.signature import StateSignature, read_signature
 from engine.errors import ExpressionError, FlexcellError, RegistryError, StateError
 from engine.state_catalogue import Catalogue, find_state
@@ -110,7 +110,9 @@ class Subject:
         if placed.node.tree is None or outcomes is None:
             return outcomes
         ends = self.statuses[self.inside[placed.path][0].path]
-        return tuple(outcome for outcome in outcomes if outcome not in TREE_OUTCOMES or outcome in ends)
+        # A tree whose root is skipped has nothing to do, and succeeds.
+        seen = {"success" if end == "skipped" else end for end in ends}
+        return tuple(outcome for outcome in outcomes if outcome not in TREE_OUTCOMES or outcome in seen)
 
     def children(self, placed: Placed) -> tuple[Placed, ...]:
         """Return the nodes directly inside a container."""
@@ -328,11 +330,12 @@ def _statuses(placed: Placed, subject: Subject) -> Statuses:
     if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_course(placed.path):
         return BOTH
     if placed.is_part:
-        return end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
+        ends = end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
+        return ends | closed_statuses(placed.node)
     outcomes = subject.outcomes.get(placed.path)
     if not outcomes:
         return BOTH
     good = leaf_success(placed, subject)
     led = diversions(placed.node).values()
     found: set[Status] = {"success" if outcome in good else "failure" for outcome in outcomes}
-    return frozenset([*found, *(status for status in BOTH if status in led)])
+    return frozenset([*found, *(status for status in GUARD_TARGETS if status in led)])

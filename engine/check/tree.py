@@ -9,7 +9,7 @@ from engine.check.finding import Finding
 from engine.check.instant import Instants
 from engine.check.subject import Placed, Subject
 from engine.document.expression import Template
-from engine.document.node import Composite, Node, Parallel
+from engine.document.node import SLOTS, TREE_OUTCOMES, Composite, Node, Parallel
 from engine.document.signature import StateSignature
 from engine.errors import ModuleNotAllowed, RegistryError
 from engine.nearness import near_names
@@ -28,18 +28,32 @@ def check_trees(subject: Subject) -> Iterator[Finding]:
 
 
 def _check_dead_children(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    if placed.kind in SLOTS:
+        yield from _check_dead_branches(subject, placed)
     if placed.node.sequence is None and placed.node.selector is None:
         return
     onward, always = ("success", "fails") if placed.node.sequence is not None else ("failure", "succeeds")
     children = subject.children(placed)
     for number, child in enumerate(children[:-1]):
         statuses = subject.statuses[child.path]
-        if statuses and onward not in statuses:
+        if statuses and onward not in statuses and "skipped" not in statuses:
             names = ", ".join(f"`{later.name}`" for later in children[number + 1 :][:3])
             message = f"{names} can never be asked: `{child.name}` before it always {always}"
             hint = "change the order, or give the outcomes that mean SUCCESS with `success`"
             yield subject.finding("unreachable-node", message, children[number + 1].path, hint=hint)
             return
+
+
+def _check_dead_branches(subject: Subject, placed: Placed) -> Iterator[Finding]:
+    """Look at what an `if_then_else` or `while_do_else` can never choose."""
+    condition, *branches = subject.children(placed)
+    said = subject.statuses[condition.path]
+    for branch, chosen in zip(branches, TREE_OUTCOMES, strict=False):
+        if said and chosen not in said and not (chosen == "failure" and "skipped" in said):
+            always = "fails" if chosen == "success" else "succeeds"
+            message = f"`{branch.name}` can never be asked: `{condition.name}` always {always}"
+            hint = "change the condition, or give the outcomes that mean SUCCESS with `success`"
+            yield subject.finding("unreachable-node", message, branch.path, hint=hint)
 
 
 def _check_end(subject: Subject, placed: Placed) -> Iterator[Finding]:
@@ -79,7 +93,7 @@ def _check_watching(subject: Subject, placed: Placed) -> Iterator[Finding]:
         if child.node.every is not None and (is_action or not in_front):
             what = "an action" if is_action else "not in front of anything that is at work meanwhile"
             message = f"`{child.name}` is {what}, so `every` has no effect"
-            hint = "it is for checks in front of an action in a `sequence` or `selector` without memory"
+            hint = "it is for checks in front of an action in a `sequence` or `selector` without memory, or in `while`"
             yield subject.finding("idle-every", message, child.path, "every", hint=hint, at_key=True)
         elif in_front and not is_action and not _is_asked_again(subject, child, signature):
             message = (
@@ -99,7 +113,10 @@ def _is_in_front(subject: Subject, placed: Placed) -> bool:
     below = placed
     while below.parent is not None and below.in_tree:
         around = subject.nodes[below.parent]
-        if _without_memory(around.node) and below.path != subject.children(around)[-1].path:
+        children = subject.children(around)
+        if _without_memory(around.node) and below.path != children[-1].path:
+            return True
+        if around.node.while_do_else is not None and below.path == children[0].path:
             return True
         below = around
     return False

@@ -11,48 +11,31 @@ import re
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import PurePosixPath
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
 from engine.document.condition import Condition, read_condition
 from engine.document.conversion import Strict
 from engine.document.duration import Duration, seconds
-
-PlainKind = Literal["state", "machine", "concurrency", "priority", "tree", "foreach", "behavior"]
-TreeKind = Literal[
-    "sequence",
-    "selector",
-    "parallel",
-    "inverter",
-    "one_shot",
-    "repeat",
-    "cooldown",
-    "remap",
-    "condition",
-    "behaviour",
-]
-"""Kinds that stand only inside a tree; `retry`, `timeout` and `guard` with a `child` are three more."""
-Wrapper = Literal["retry", "timeout", "guard"]
-NodeKind = PlainKind | TreeKind | Wrapper
-KINDS: tuple[PlainKind, ...] = get_args(PlainKind)
-TREE_KINDS: tuple[TreeKind, ...] = get_args(TreeKind)
-WRAPPERS: tuple[Wrapper, ...] = get_args(Wrapper)
-"""Keys of every node that, given a `child` inside a tree, are decorators of it."""
-
-Key = Annotated[str, Meta(pattern="^[A-Za-z_][A-Za-z0-9_]{0,63}$", description="Letters, digits and `_`")]
-NodeName = Annotated[
-    str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`, no `/`")
-]
-OutcomeName = Annotated[
-    str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")
-]
-Reference = Annotated[str, Meta(min_length=1, description="A behavior file, relative to this document")]
-Expression = Annotated[str, Meta(min_length=1, description="An expression, `${…}`")]
-AutonomyLevel = Literal["off", "low", "high", "full"]
-Status = Literal["success", "failure", "running"]
-Count = Annotated[int, Meta(ge=1, description="For `at_least`: how many of these")]
-Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or more")]
+from engine.document.node_kind import (
+    KINDS,
+    SLOTS,
+    TREE_KINDS,
+    WRAPPERS,
+    AutonomyLevel,
+    Count,
+    Expression,
+    Key,
+    NodeKind,
+    NodeName,
+    OutcomeName,
+    Reference,
+    Status,
+    Times,
+    Wrapper,
+    numbered,
+)
 
 
 class Timeout(Strict, frozen=True, kw_only=True):
@@ -95,7 +78,8 @@ class Retry(Strict, frozen=True, kw_only=True):
 class Guard(Strict, frozen=True, kw_only=True):
     """Enter the node only when the expression `when` is true, else leave it at once for `to`.
 
-    As a decorator in a tree it has a `child`, which is stopped with FAILURE when `when` becomes false.
+    In a tree `to` is `success`, `failure` or `skipped`. As a decorator there it has a `child`, which is stopped when
+    `when` becomes false; without `to` it then fails.
     """
 
     when: Expression
@@ -254,7 +238,32 @@ class StatusCondition(Strict, frozen=True, kw_only=True):
         return seconds(self.every)
 
 
+class IfThenElse(Strict, frozen=True, kw_only=True, rename={"condition": "if", "body": "then", "otherwise": "else"}):
+    """Asks `if` once; then runs `then` where that has succeeded, else `else`, and ends as that does.
+
+    Without `else` it fails where `if` has failed.
+    """
+
+    condition: Node
+    body: Node
+    otherwise: Node | None = None
+
+
+class WhileDoElse(Strict, frozen=True, kw_only=True, rename={"condition": "while", "body": "do", "otherwise": "else"}):
+    """Runs `do` while `while` succeeds, `else` while it fails, and ends as that does; without `else` it fails.
+
+    `while` is asked again in the meantime as checks are in a composite without memory. When it says something else,
+    what runs is halted and its clean-up awaited before the other begins.
+    """
+
+    condition: Node
+    body: Node
+    otherwise: Node | None = None
+
+
 TREE_OUTCOMES = ("success", "failure")
+GUARD_TARGETS = (*TREE_OUTCOMES, "skipped")
+"""Where a guard may lead in a tree; what is skipped is passed over by the part around it."""
 FOREACH_OUTCOMES = ("exhausted", "broken")
 
 _Listed = Annotated[tuple["Node", ...], Meta(min_length=1, description="The children, at least one")]
@@ -291,6 +300,8 @@ class Node(
     cooldown: Cooldown | None = None
     remap: Remap | None = None
     condition: StatusCondition | None = None
+    if_then_else: IfThenElse | None = None
+    while_do_else: WhileDoElse | None = None
     behaviour: str | None = None
     every: Duration | None = None
     name: NodeName | None = None
@@ -371,6 +382,11 @@ class Node(
             if group is not None:
                 named = zip(_names(group.children), group.children, strict=True)
                 return [(n, (kind, "children", i), c) for i, (n, c) in enumerate(named)]
+        branching = self.if_then_else or self.while_do_else
+        if branching is not None:
+            roles = zip(SLOTS[self.kind], (branching.condition, branching.body, branching.otherwise), strict=True)
+            filled = [(key, child) for key, child in roles if child is not None]
+            return [(n, (self.kind, k), c) for n, (k, c) in zip(_names(c for _, c in filled), filled, strict=True)]
         single = self.inverter or self.one_shot or self.repeat or self.cooldown or self.remap or self.condition
         if single is not None:
             return [(single.child.own_name, (self.kind, "child"), single.child)]
@@ -396,15 +412,4 @@ def shared_keys(node: Node) -> tuple[str, ...]:
 
 
 def _names(children: Iterable[Node]) -> list[str]:
-    """Name the children of a composite; a name that is taken gets a number."""
-    names: list[str] = []
-    taken: set[str] = set()
-    seen: dict[str, int] = {}
-    for child in children:
-        own = name = child.own_name
-        while name in taken:
-            seen[own] = seen.get(own, 1) + 1
-            name = f"{own}_{seen[own]}"
-        taken.add(name)
-        names.append(name)
-    return names
+    return numbered(child.own_name for child in children)

@@ -11,7 +11,16 @@ from engine.document.condition import AT_LEAST
 from engine.document.conversion import together
 from engine.document.duration import seconds
 from engine.document.mistakes import MAX_MISTAKES
-from engine.document.node import KINDS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Concurrency, Node, Parallel
+from engine.document.node import (
+    GUARD_TARGETS,
+    KINDS,
+    TREE_KINDS,
+    TREE_OUTCOMES,
+    WRAPPERS,
+    Concurrency,
+    Node,
+    Parallel,
+)
 from engine.errors import DocumentError
 from engine.nearness import near_names
 
@@ -141,13 +150,14 @@ def _tree_part(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
         wrapper = getattr(node, key)
         if wrapper is None:
             continue
-        if wrapper.child is not None and wrapper.to is not None:
+        statuses = GUARD_TARGETS if key == "guard" else TREE_OUTCOMES
+        if wrapper.child is not None and wrapper.to is not None and key != "guard":
             where = behavior.key_position(path, key, "to")
             error = DocumentError(f"`{key}` with a `child` has no `to`", where=where, hint="it fails; remove `to`")
             yield Breach(path=path, error=error, excess=(key, "to"))
-        if wrapper.child is None and wrapper.to not in TREE_OUTCOMES:
+        if wrapper.to not in statuses and not (wrapper.child is not None and wrapper.to is None):
             where = behavior.position(path, key)
-            hint = f"add `to: failure`, or give it a `child` to make it a decorator; it may be {_list(TREE_OUTCOMES)}"
+            hint = f"add `to: failure`, or give it a `child` to make it a decorator; it may be {_list(statuses)}"
             error = DocumentError(f"`{key}` inside a tree needs a `to` that is a status", where=where, hint=hint)
             yield Breach(path=path, error=error, excess=(key,))
     if node.on_error is not None and node.on_error not in TREE_OUTCOMES:
@@ -211,9 +221,9 @@ def _counts(behavior: Behavior, path: str, container: Concurrency) -> Iterator[B
 
 
 def _bare(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:
-    """A composite or decorator has nothing beside its kind."""
+    """A composite or decorator has nothing beside its kind, except for a guard."""
     for key in (*WRAPPERS, "on_error", "resume", "success"):
-        if key != node.kind and getattr(node, key):
+        if key not in (node.kind, "guard") and getattr(node, key):
             where = behavior.key_position(path, key)
             hint = f"wrap it: `{key}: {{…, child: …}}`" if key in WRAPPERS else "remove it"
             error = DocumentError(f"a `{node.kind}` of a tree has no `{key}`", where=where, hint=hint)

@@ -6,7 +6,7 @@ import re
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.node import GUARD_TARGETS, KINDS, SLOTS, TREE_KINDS, WRAPPERS
 from engine.editing.bench import NAME, Bench, Restructuring, insert_key, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import AddNode, Duplicate, Edge, Paste, Point, SetPositions
@@ -36,7 +36,7 @@ _EMPTY: dict[str, object] = {
     "tree": {"sequence": []}, "foreach": {"times": 1}, "sequence": [], "selector": [], "parallel": [],
     "inverter": {}, "one_shot": {}, "repeat": {"times": 2}, "cooldown": {"after": "1 s"}, "remap": {},
     "condition": {"status": "success"}, "retry": {"times": 1}, "timeout": {"after": "10 s"},
-    "guard": {"when": "${true}"},
+    "guard": {"when": "${true}"}, "if_then_else": {}, "while_do_else": {},
 }  # fmt: skip
 
 
@@ -176,7 +176,9 @@ def fit(bench: Bench, container: Spot, node: Plain) -> None:
         for measure in ("timeout", "guard"):
             found = node.get(measure)
             if measure != kind and isinstance(found, dict) and "child" not in found:
-                cast("Plain", found)["to"] = "failure"
+                guarded = cast("Plain", found)
+                if measure != "guard" or guarded.get("to") not in GUARD_TARGETS:
+                    guarded["to"] = "failure"
         if isinstance(node.get("on_error"), str):
             node["on_error"] = "failure"
 
@@ -201,7 +203,12 @@ def _new_node(edit: AddNode) -> Plain:
 def _check_room(container: Spot, nodes: dict[str, Plain]) -> None:
     if container.kind not in CONTAINERS:
         raise EditRefused(f"`{container.path}` holds no other nodes", hint="put it into a container")
-    if container.kind not in NAMED and container.kind not in GROUPS:
+    if container.kind in SLOTS:
+        free = _free_slots(container)
+        if len(nodes) > len(free):
+            left = f"only {', '.join(f'`{key}`' for key in free)} is free" if free else "none of its roles is free"
+            raise EditRefused(f"`{container.path}` has no room: {left}", hint="remove a child first")
+    elif container.kind not in NAMED and container.kind not in GROUPS:
         inside = container.data.get("tree") if container.kind == "tree" else container.body.get("child")
         if inside or len(nodes) > 1:
             hint = (
@@ -210,6 +217,28 @@ def _check_room(container: Spot, nodes: dict[str, Plain]) -> None:
                 else "remove that first, or put it into a container inside"
             )
             raise EditRefused(f"`{container.path}` has one child only", hint=hint)
+
+
+def _free_slots(container: Spot, index: int | None = None) -> list[str]:
+    """Return the roles that no child has, those from a place among all on first."""
+    order = SLOTS[container.kind]
+    start = 0 if index is None else max(0, min(index, len(order) - 1))
+    return [key for key in (*order[start:], *order[:start]) if not isinstance(container.body.get(key), dict)]
+
+
+def _put_in_slots(container: Spot, nodes: dict[str, Plain], index: int | None) -> None:
+    """Give new children the free roles, in the order in which they are asked."""
+    order = SLOTS[container.kind]
+    free = sorted(_free_slots(container, index)[: len(nodes)], key=order.index)
+    body = container.data.get(container.kind)
+    if not isinstance(body, dict):
+        body = container.data[container.kind] = {}
+    inside = cast("Plain", body)
+    inside.update(zip(free, nodes.values(), strict=True))
+    kept = {key: inside[key] for key in order if key in inside}
+    rest = {key: each for key, each in inside.items() if key not in kept}
+    inside.clear()
+    inside.update({**kept, **rest})
 
 
 def _put_in_tree(
@@ -231,6 +260,16 @@ def _put_in_tree(
                 and name != own_name(node)
             ):
                 name_part(node, names[name])
+        follow.finish()
+        return
+    if container.kind in SLOTS:
+        follow = Restructuring(bench)
+        _put_in_slots(container, nodes, index)
+        bench.stale()
+        for child in bench.outline.children(bench.at(container.path)):
+            for name, node in nodes.items():
+                if child.data is node and child.name != names[name] and (named or name != own_name(node)):
+                    name_part(node, names[name])
         follow.finish()
         return
     (name, node), *_ = nodes.items()

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import cast
 
 from engine.document.condition import AT_LEAST
+from engine.document.node import SLOTS
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Ends, Knowledge
 from engine.editing.outline import MACHINES, NAMED, Outline, Plain, Spot, leads
@@ -103,6 +104,12 @@ def insert_key(mapping: Plain, key: str, value: object, index: int | None) -> No
     items.insert(len(items) if index is None else max(0, index), (key, value))
     mapping.clear()
     mapping.update(items)
+
+
+def seat(container: Spot, nodes: list[Plain]) -> None:
+    """Give the children of a part whose children have roles these roles in turn: those that were taken before."""
+    taken = [key for key in SLOTS[container.kind] if isinstance(container.body.get(key), dict)]
+    container.body.update(zip(taken, nodes, strict=True))
 
 
 def drop(node: Plain, key: str, entry: str) -> None:

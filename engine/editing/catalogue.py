@@ -75,9 +75,11 @@ _DOCS = {
     "cooldown": ("Cooldown", "Fails without asking its child until some time has passed since that ended."),
     "remap": ("Remap", "Shows another status than its child has."),
     "condition": ("Condition", "Succeeds when its child has a status, and runs until then."),
+    "if_then_else": ("If, then, else", "Asks one child, then runs the second if that succeeded, else the third."),
+    "while_do_else": ("While, do, else", "Runs the second child while the first succeeds, the third while it fails."),
     "retry": ("Retry", "Runs its child again after failure."),
     "timeout": ("Timeout", "Fails when its child takes too long."),
-    "guard": ("Guard", "Lets its child run only while an expression is true."),
+    "guard": ("Guard", "Lets its child run only while an expression is true; else fails, or is skipped."),
 }
 
 

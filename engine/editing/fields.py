@@ -11,12 +11,14 @@ import msgspec
 from engine.document.behavior import BehaviorDocument
 from engine.document.conversion import in_words
 from engine.document.node import (
+    SLOTS,
     Composite,
     Concurrency,
     Cooldown,
     Decorator,
     ForEach,
     Guard,
+    IfThenElse,
     Machine,
     Node,
     OneShot,
@@ -26,8 +28,9 @@ from engine.document.node import (
     Retry,
     StatusCondition,
     Timeout,
+    WhileDoElse,
 )  # fmt: skip
-from engine.editing.bench import Bench, drop, states_of
+from engine.editing.bench import Bench, drop, seat, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import ClearParameter, SetDocument, SetField, SetParameter, SetPositions
 from engine.editing.matching import graft
@@ -42,10 +45,10 @@ _OF_KINDS: Mapping[str, type[msgspec.Struct]] = {
     "machine": Machine, "priority": Machine, "concurrency": Concurrency, "foreach": ForEach, "sequence": Composite,
     "selector": Composite, "parallel": Parallel, "inverter": Decorator, "one_shot": OneShot, "repeat": Repeat,
     "cooldown": Cooldown, "remap": Remap, "condition": StatusCondition, "retry": Retry, "timeout": Timeout,
-    "guard": Guard,
+    "guard": Guard, "if_then_else": IfThenElse, "while_do_else": WhileDoElse,
 }  # fmt: skip
 _FARTHEST_PX = 1_000_000
-_INSIDE = frozenset(("states", "child", "children"))
+_INSIDE = frozenset(("states", "child", "children", *SLOTS["if_then_else"], *SLOTS["while_do_else"]))
 _OF_DOCUMENTS = ("name", "description", "cell", "parameters", "userdata", "outcomes", "success")
 _HEAD = (
     "flexcell",
@@ -229,6 +232,8 @@ def _reorder(bench: Bench, spot: Spot, value: object) -> None:
         listed = spot.data[spot.kind]
         items = cast("list[object]", listed if isinstance(listed, list) else cast("Plain", listed)["children"])
         items[:] = [by_name[name].data for name in order]
+    elif spot.kind in SLOTS:
+        seat(spot, [by_name[name].data for name in order])
 
 
 def _note(bench: Bench, spot: Spot, value: object) -> None:

@@ -9,6 +9,7 @@ from typing import cast
 import msgspec
 
 from engine.document.condition import Condition
+from engine.document.node import SLOTS
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Ends, Knowledge, rules, texts
 from engine.editing.outline import MACHINES, Outline, Plain, Spot
@@ -24,10 +25,11 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     `targets` are its own transitions, outcome to target; `transitions` are, as in the graph of a run, the
     arrows between its children. `settings` are the remaining keys of its kind, such as `memory` or `times`.
     `document` is the id of the behavior that it refers to. `exits` are the outcomes that its container does not lead
-    anywhere yet.
+    anywhere yet. `role` is the key by which the part around it knows it, such as `then`.
     """
 
     label: str
+    role: str
     line: int
     column: int
     end_line: int
@@ -122,6 +124,7 @@ class _Drawing:
             path=spot.path,
             name=spot.name,
             label=_text(self._draft.data.get("name")) or "root" if spot.parent is None else spot.name,
+            role=spot.role,
             kind=spot.kind,
             title=_text(data.get("state") or reference or data.get("behaviour")),
             description=_text(data.get("description")),
@@ -155,7 +158,7 @@ class _Drawing:
             otherwise=_optional(body.get("otherwise")) if spot.kind == "concurrency" else None,
             userdata=_mapping(body.get("userdata")),
             settings={key: value for key, value in body.items() if key not in _SHOWN_APART}
-            if spot.kind != "tree"
+            if spot.kind != "tree" and spot.kind not in SLOTS
             else {},
         )
 

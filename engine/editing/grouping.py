@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import product
 from typing import cast
 
+from engine.document.node import SLOTS
 from engine.editing.adding import name_part
 from engine.editing.bench import Bench, Restructuring, insert_key, states_of
 from engine.editing.draft import EditRefused
@@ -199,6 +200,8 @@ def _in_tree(bench: Bench, edit: Group, home: Spot, spots: list[Spot]) -> None:
     places = [next(i for i, child in enumerate(children) if child.data is spot.data) for spot in spots]
     if places != list(range(places[0], places[0] + len(places))):
         raise EditRefused("these do not follow one another", hint="choose neighbours")
+    if home.kind in SLOTS and len(spots) > 1:
+        raise EditRefused(f"the children of a {home.kind} have roles", hint="group one of them")
     follow = Restructuring(bench)
     if home.kind in GROUPS:
         body = home.data[home.kind]
@@ -207,7 +210,7 @@ def _in_tree(bench: Bench, edit: Group, home: Spot, spots: list[Spot]) -> None:
     elif home.kind == "tree":
         home.data["tree"] = made
     else:
-        home.body["child"] = made
+        home.body[spots[0].role or "child"] = made
     follow.finish()
     bench.mark(made)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import cast
 
+from engine.document.node import SLOTS
 from engine.editing.adding import put_in
-from engine.editing.bench import Bench, Restructuring, rename_key, states_of
+from engine.editing.bench import Bench, Restructuring, rename_key, seat, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import MoveNodes, RemoveNodes, RenameNode
 from engine.editing.outline import GROUPS, MACHINES, NAMED, Plain, Spot, own_name
@@ -96,7 +97,7 @@ def take_out(spot: Spot) -> None:
     elif container.kind == "tree":
         container.data["tree"] = {}
     else:
-        container.body.pop("child", None)
+        container.body.pop(spot.role or "child", None)
 
 
 def outermost(spots: list[Spot]) -> list[Spot]:
@@ -124,6 +125,8 @@ def _among_siblings(bench: Bench, container: Spot, spots: list[Spot], index: int
         body = container.data[container.kind]
         listed = cast("list[object]", body if isinstance(body, list) else cast("Plain", body)["children"])
         listed[:] = [child.data for child in order]
+    elif container.kind in SLOTS:
+        seat(container, [child.data for child in order])
     follow.finish()
     for spot in spots:
         bench.mark(spot.data)

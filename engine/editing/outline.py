@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.node import KINDS, SLOTS, TREE_KINDS, WRAPPERS
+from engine.document.node_kind import numbered
 from engine.editing.draft import EditRefused
 from engine.nearness import near_names
 
@@ -21,7 +22,7 @@ GROUPS = ("sequence", "selector", "parallel")
 """Parts of a tree with any number of children."""
 SINGLES = ("inverter", "one_shot", "repeat", "cooldown", "remap", "condition")
 """Decorators: parts of a tree with one child."""
-CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *WRAPPERS)
+CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *SLOTS, *WRAPPERS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +51,11 @@ class Spot:
         """What is under the key of its kind, where that is a mapping; else an empty one."""
         found = self.data.get(self.kind)
         return cast("Plain", found) if isinstance(found, dict) else {}
+
+    @property
+    def role(self) -> str:
+        """The key by which the part around it knows it, such as `then`; empty where children have no roles."""
+        return str(self.keys[-1]) if self.parent is not None and self.parent.kind in SLOTS else ""
 
     @property
     def states(self) -> Plain:
@@ -123,6 +129,12 @@ def placed(node: Plain) -> list[tuple[str, Keys, Plain]]:
         found = [(index, cast("Plain", each)) for index, each in enumerate(nodes) if isinstance(each, dict)]
         names = tree_names([each for _, each in found])
         return [(name, (*keys, index), each) for name, (index, each) in zip(names, found, strict=True)]
+    if kind in SLOTS and isinstance(body, dict):
+        filled = [
+            (key, cast("Plain", each)) for key in SLOTS[kind] if isinstance(each := cast("Plain", body).get(key), dict)
+        ]
+        names = tree_names([each for _, each in filled])
+        return [(name, (kind, key), each) for name, (key, each) in zip(names, filled, strict=True)]
     if kind and isinstance(body, dict) and isinstance(cast("Plain", body).get("child"), dict):
         child = cast("Plain", cast("Plain", body)["child"])
         return [("child" if kind == "foreach" else own_name(child), (kind, "child"), child)]
@@ -142,15 +154,7 @@ def own_name(node: Plain) -> str:
 
 def tree_names(children: list[Plain]) -> list[str]:
     """Name the children of a composite; a name that is taken gets a number."""
-    names: dict[str, None] = {}
-    seen: dict[str, int] = {}
-    for child in children:
-        own = name = own_name(child)
-        while name in names:
-            seen[own] = seen.get(own, 1) + 1
-            name = f"{own}_{seen[own]}"
-        names[name] = None
-    return list(names)
+    return numbered(map(own_name, children))
 
 
 def leads(node: Plain) -> Iterator[tuple[Plain, str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import cast
 
+from engine.document.node import SLOTS
 from engine.editing.bench import Bench, Restructuring, states_of
 from engine.editing.draft import EditRefused
 from engine.editing.edit import Point, SetPositions, Ungroup
@@ -90,6 +91,10 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
         raise EditRefused(
             f"`{part.path}` has no memory", hint="only one with memory runs its children one after the other"
         )
+    if any(_guard(step).get("to") == "skipped" for step in steps):
+        raise EditRefused(
+            f"a step of `{spot.path}` may be skipped, which a machine does not know", hint="guard it else"
+        )
     leaving = cast("Plain", spot.data.get("transitions") or {})
     ends = {id(step.data): bench.ends(step) for step in steps}
     follow = Restructuring(bench)
@@ -125,6 +130,11 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
         bench.mark(step.data)
 
 
+def _guard(spot: Spot) -> Plain:
+    guard = spot.data.get("guard")
+    return cast("Plain", guard) if isinstance(guard, dict) else {}
+
+
 def _divert(node: Plain, leaving: Plain) -> None:
     """Let timeout, guard and on_error of what was a leaf of a tree lead where its status led."""
     for key in ("timeout", "guard"):
@@ -139,7 +149,7 @@ def _divert(node: Plain, leaving: Plain) -> None:
 def _in_tree(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -> None:
     if not spot.is_part:
         raise EditRefused(f"a {spot.kind} cannot become parts of a tree", hint="ungroup composites and decorators")
-    if len(children) > 1 and (home.kind != spot.kind or spot.kind == "parallel"):
+    if len(children) > 1 and (home.kind != spot.kind or spot.kind == "parallel" or spot.kind in SLOTS):
         raise EditRefused(
             f"a {spot.kind} in a {home.kind} means something else without it", hint="change its kind first"
         )
@@ -153,7 +163,7 @@ def _in_tree(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -
     elif home.kind == "tree":
         home.data["tree"] = first.data
     else:
-        home.body["child"] = first.data
+        home.body[spot.role or "child"] = first.data
     follow.finish()
     for child in children:
         bench.mark(child.data)

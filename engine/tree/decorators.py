@@ -102,7 +102,7 @@ class Cooldown(Decorator):
 
 
 class Guard(Decorator):
-    """Ticks its child only while a condition holds; stops it with FAILURE when it does not.
+    """Ticks its child only while a condition holds; stops it when it does not, and then has its target for a status.
 
     Args:
         path: Its node path.
@@ -110,10 +110,18 @@ class Guard(Decorator):
         keys: The userdata keys and parameters that the condition reads.
         holds: Evaluates the condition; may raise FlexcellError.
         text: The condition as written.
+        closed: Gives the status that it has when the condition does not hold.
     """
 
     def __init__(
-        self, path: str, child: Behaviour, *, keys: frozenset[str], holds: Callable[[], bool], text: str
+        self,
+        path: str,
+        child: Behaviour,
+        *,
+        keys: frozenset[str],
+        holds: Callable[[], bool],
+        text: str,
+        closed: Callable[[Behaviour], Status],
     ) -> None:
         super().__init__(path, child)
         self.refusal = ""
@@ -123,6 +131,7 @@ class Guard(Decorator):
         self.said: bool | None = None
         """What the condition was in the tick under way, or in the last one; None where it was not asked."""
         self._text = text
+        self._closed = closed
 
     def tick(self) -> Iterator[Behaviour]:
         """Ask, then tick the child or stop it."""
@@ -131,7 +140,7 @@ class Guard(Decorator):
             yield from super().tick()
             return
         self.refusal = f"{self._text} is false"
-        self.stop(Status.FAILURE)
+        self.stop(self._closed(self))
         yield self
 
     def update(self) -> Status:

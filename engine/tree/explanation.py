@@ -12,19 +12,24 @@ from py_trees.decorators import Decorator, Inverter
 from engine.cause import under
 from engine.diagnosis import explain
 from engine.event import Cause
+from engine.tree.branching import IfThenElse
 from engine.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
+from engine.tree.entry_guard import EntryGuard
 from engine.tree.leaf import TreeLeaf
 from engine.tree.parallel import CountingParallel
 from engine.tree.part import Part
 
 
-def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
+def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part], guards: Mapping[Behaviour, EntryGuard]) -> Cause:
     """Return why a behaviour is FAILURE, the outermost part first."""
     part = parts[behaviour]
     if isinstance(behaviour, TreeLeaf):
         if behaviour.left is None:
             return Cause(message=f"{part.name} failed", where=part.path)
         return explain(behaviour.plan.node, behaviour.left)
+    guard = guards.get(behaviour)
+    if guard is not None and guard.refusal:
+        return Cause(message=guard.refusal, where=part.path, kind="Guard")
     if isinstance(behaviour, Timeout | Cooldown | Guard | Remap) and behaviour.refusal:
         return Cause(message=behaviour.refusal, where=part.path, kind=type(behaviour).__name__)
     if part.foreign is not None:
@@ -33,7 +38,7 @@ def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
     if isinstance(behaviour, Inverter):
         return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
     below = _culprit(behaviour)
-    because = reason(below, parts) if below is not None else None
+    because = reason(below, parts, guards) if below is not None else None
     if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
         return under(f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path)
     if isinstance(behaviour, CountingParallel):
@@ -49,6 +54,8 @@ def reason(behaviour: Behaviour, parts: Mapping[Behaviour, Part]) -> Cause:
 def _culprit(behaviour: Behaviour) -> Behaviour | None:
     if isinstance(behaviour, Decorator):
         candidates = [behaviour.decorated]
+    elif isinstance(behaviour, IfThenElse):
+        candidates = [*behaviour.branches, behaviour.condition]
     elif isinstance(behaviour, composites.Selector):
         candidates = behaviour.children[::-1]
     else:

@@ -16,7 +16,9 @@ from engine.errors import ExpressionError, StateError
 from engine.event import Cause, Retried
 from engine.execution import Execution
 from engine.tree.alarms import Alarms
+from engine.tree.branching import IfThenElse, WhileDoElse
 from engine.tree.decorators import Condition, Cooldown, Guard, Remap, Repeat, Retry, Timeout
+from engine.tree.entry_guard import EntryGuard
 from engine.tree.explanation import reason
 from engine.tree.foreign import Foreign
 from engine.tree.leaf import TreeLeaf, Turn
@@ -47,24 +49,26 @@ class Growth:
     clear: Callable[[Behaviour], None]
     turn: Turn = field(default_factory=Turn)
     parts: dict[Behaviour, Part] = field(default_factory=dict[Behaviour, Part])
-    guards: list[Guard] = field(default_factory=list[Guard])
+    guards: list[Guard | EntryGuard] = field(default_factory=list["Guard | EntryGuard"])
+    entry_guards: dict[Behaviour, EntryGuard] = field(default_factory=dict[Behaviour, EntryGuard])
     foreign: dict[Behaviour, Foreign] = field(default_factory=dict[Behaviour, Foreign])
     statuses: Statuses = field(init=False)
     reactive: bool = False
-    """Whether it holds a composite without memory, which asks again what has ended."""
+    """Whether it holds a part that asks again what has ended: a composite without memory, or a `while_do_else`."""
     _rank: int = 0
 
     def __post_init__(self) -> None:
         """Begin with nothing recorded."""
         self.statuses = Statuses(self.execution)
 
-    def grow(self, part: Part, place: Place, *, caught: bool = False) -> Behaviour:
+    def grow(self, part: Part, place: Place, *, caught: bool = False, passing: Status = Status.SUCCESS) -> Behaviour:
         """Return the py_trees node for a part with everything below it.
 
         Args:
             part: What to grow.
             place: Where it reads and writes.
             caught: Whether a decorator around it takes the errors of its leaves.
+            passing: The status by which the part around it passes over it when it is skipped.
 
         Raises:
             FlexcellError: a foreign behaviour cannot be made.
@@ -74,6 +78,7 @@ class Growth:
             rank = self._rank
             leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank=rank, caught=caught)
             self.parts[leaf] = part
+            self.statuses.skips.place(leaf, passing)
             return leaf
         if part.foreign is not None:
             node: Behaviour = self._foreign(part, place)
@@ -81,16 +86,25 @@ class Growth:
             node = self._parallel(part, place, caught)
         elif part.source.kind in ("sequence", "selector"):
             node = self._line(part, place, caught)
+        elif part.source.kind in nodes.SLOTS:
+            node = self._branching(part, place, caught)
         else:
             retry = part.source.retry
             errors = retry is not None and retry.errors
-            node = self._decorator(part, self.grow(part.children[0], place, caught=caught or errors), place)
+            inside = self.grow(part.children[0], place, caught=caught or errors, passing=passing)
+            node = self._decorator(part, inside, place)
         self.parts[node] = part
+        self.statuses.skips.place(node, passing)
+        if part.skips and node not in self.foreign and part.source.kind not in nodes.SLOTS:
+            self.statuses.skips.follow(node)
+        if part.source.guard is not None and part.source.kind != "guard":
+            self._entry_guard(part, part.source.guard, node, place)
         self.statuses.follow(node, part.path)
         return node
 
     def _line(self, part: Part, place: Place, caught: bool) -> Behaviour:
-        children = [self.grow(child, place, caught=caught) for child in part.children]
+        passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
+        children = [self.grow(child, place, caught=caught, passing=passing) for child in part.children]
         group = part.source.sequence or part.source.selector
         memory = group.memory if isinstance(group, nodes.Composite) else True
         self.reactive = self.reactive or not memory
@@ -98,14 +112,24 @@ class Growth:
             return composites.Sequence(part.path, memory, children)
         return composites.Selector(part.path, memory, children)
 
+    def _branching(self, part: Part, place: Place, caught: bool) -> Behaviour:
+        # A condition that is skipped does not hold.
+        children = [self.grow(child, place, caught=caught, passing=Status.FAILURE) for child in part.children]
+        if part.source.if_then_else is not None:
+            return IfThenElse(part.path, children, self.statuses.skips)
+        self.reactive = True
+        return WhileDoElse(part.path, children, self.statuses.skips)
+
     def _parallel(self, part: Part, place: Place, caught: bool) -> Behaviour:
         places = {child.name: Place(place.scope) for child in part.children}
-        children = [self.grow(child, places[child.name], caught=caught) for child in part.children]
         group = part.source.parallel
         written = group if isinstance(group, nodes.Parallel) else nodes.Parallel(children=())
+        # Where one success or a number of them decides, what is skipped is neither.
+        passing = Status.INVALID if written.counts or written.policy == "one" else Status.SUCCESS
+        children = [self.grow(child, places[child.name], caught=caught, passing=passing) for child in part.children]
         policy: ParallelPolicy.Base
         if written.counts:
-            policy = Thresholds(written.success_count or len(children), written.failure_count or 1)
+            policy = Thresholds(written.success_count, written.failure_count or 1)
         elif written.policy == "one":
             policy = ParallelPolicy.SuccessOnOne()
         elif written.policy == "all":
@@ -114,7 +138,15 @@ class Growth:
             chosen = [node for node, child in zip(children, part.children, strict=True) if child.name in written.policy]
             policy = ParallelPolicy.SuccessOnSelected(chosen, synchronise=written.synchronise)
         kind = CountingParallel if written.counts else Parallel
-        return kind(part.path, policy, children, places=places, outside=place, execution=self.execution)
+        return kind(
+            part.path,
+            policy,
+            children,
+            places=places,
+            outside=place,
+            execution=self.execution,
+            skips=self.statuses.skips,
+        )
 
     def _foreign(self, part: Part, place: Place) -> Behaviour:
         plan = part.foreign
@@ -162,9 +194,32 @@ class Growth:
         if when is None:
             raise StateError("a guard without a condition", where=part.position)
         holds = partial(_holds, when, place, part.position)
-        node = Guard(part.path, child, keys=when.names, holds=holds, text=guard.when)
+        closed = partial(self._closed, guard.to or "failure")
+        node = Guard(part.path, child, keys=when.names, holds=holds, text=guard.when, closed=closed)
         self.guards.append(node)
         return node
+
+    def _entry_guard(self, part: Part, guard: nodes.Guard, node: Behaviour, place: Place) -> None:
+        when = part.when
+        if when is None:
+            raise StateError("a guard without a condition", where=part.position)
+        holds = partial(_holds, when, place, part.position)
+        made = EntryGuard(
+            node,
+            keys=when.names,
+            holds=holds,
+            text=guard.when,
+            to=guard.to or "failure",
+            skips=self.statuses.skips,
+        )
+        self.guards.append(made)
+        self.entry_guards[node] = made
+
+    def _closed(self, to: str, node: Behaviour) -> Status:
+        if to == "skipped":
+            return self.statuses.skips.skip(node)
+        self.statuses.skips.run(node)
+        return _STATUS[to]
 
     def _retry(self, part: Part, retry: nodes.Retry, child: Behaviour) -> Behaviour:
         return Retry(
@@ -180,7 +235,11 @@ class Growth:
 
     def _tell_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
         self.execution.recorder.emit(
-            Retried, path=path, attempt=attempt, wait_s=wait_s, cause=error or reason(child, self.parts)
+            Retried,
+            path=path,
+            attempt=attempt,
+            wait_s=wait_s,
+            cause=error or reason(child, self.parts, self.entry_guards),
         )
 
 

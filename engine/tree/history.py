@@ -20,6 +20,10 @@ class Standing:
     since_s: float = 0.0
     order: int = -1
     """Which of the marks was the last one of this part."""
+    began: int = -1
+    """Which was the last one by which it was at work."""
+    skipped: int = -1
+    """Which was the last one by which it was skipped."""
     over: int = -1
     """Which was the last one by which it was not RUNNING: what is older belongs to an earlier activation."""
     ended_s: float | None = None
@@ -54,8 +58,10 @@ def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
     for number, mark in enumerate(marks):
         standing = found.setdefault(mark.path, Standing())
         standing.order = number
-        standing.over = number if mark.what in ("success", "failure", "invalid") else standing.over
+        standing.over = number if mark.what in ("success", "failure", "skipped", "invalid") else standing.over
         what, _, name = mark.what.partition(" ")
+        standing.began = number if what in ("entered", "running", "attempt") else standing.began
+        standing.skipped = number if mark.what in ("skipped", "target skipped") else standing.skipped
         ended = what in ("outcome", "target", "failed")
         own_retry = what == "attempt" and any(other is standing for other in unread)
         if not ended and not own_retry:

@@ -127,10 +127,16 @@ class TreeLeaf(Behaviour):
 
     def status_of(self, left: Left) -> Status:
         """Return what it means in the tree to end so."""
+        if left.target == "skipped":
+            return self._statuses.skips.passing(self)
         succeeded = left.target == "success" if left.target is not None else left.outcome in self.plan.success
         return Status.SUCCESS if succeeded else Status.FAILURE
 
     def _end(self, left: Left) -> None:
         self.left = left
         self.status = self.said = self.status_of(left)
+        if left.target == "skipped":
+            self._statuses.skips.skip(self)
+        elif self._statuses.skips:
+            self._statuses.skips.run(self)
         self.stale = False

@@ -11,6 +11,7 @@ from py_trees.common import ParallelPolicy, Status
 from engine.concurrency import branch_scope, merge
 from engine.execution import Execution
 from engine.tree.place import Place
+from engine.tree.skips import Skips
 
 
 class Parallel(composites.Parallel):
@@ -23,6 +24,7 @@ class Parallel(composites.Parallel):
         places: Where each branch reads and writes, by name, in document order.
         outside: Where the parallel itself stands.
         execution: The run.
+        skips: Which parts are skipped.
     """
 
     def __init__(
@@ -34,8 +36,10 @@ class Parallel(composites.Parallel):
         places: Mapping[str, Place],
         outside: Place,
         execution: Execution,
+        skips: Skips,
     ) -> None:
         super().__init__(path, policy, children)
+        self.skips = skips
         self._places = places
         self._outside = outside
         self._execution = execution
@@ -59,9 +63,9 @@ class Parallel(composites.Parallel):
 
 
 class Thresholds(ParallelPolicy.Base):
-    """How many children must succeed, and how many must fail."""
+    """How many children must succeed, all that are not skipped where that is None, and how many must fail."""
 
-    def __init__(self, success_count: int, failure_count: int) -> None:
+    def __init__(self, success_count: int | None, failure_count: int) -> None:
         super().__init__(synchronise=True)
         self.success_count = success_count
         self.failure_count = failure_count
@@ -76,7 +80,12 @@ class CountingParallel(Parallel):
     @property
     def success_count(self) -> int:
         """How many children must succeed."""
-        return self._thresholds.success_count
+        needed = self._thresholds.success_count
+        return len(self.children) - self._skipped if needed is None else needed
+
+    @property
+    def _skipped(self) -> int:
+        return sum(child in self.skips for child in self.children)
 
     @property
     def _thresholds(self) -> Thresholds:
@@ -92,9 +101,10 @@ class CountingParallel(Parallel):
     def verdict(self) -> Status:
         """What follows from how the children stand."""
         succeeded = sum(child.status is Status.SUCCESS for child in self.children)
+        left = len(self.children) - self.failed - self._skipped
         if succeeded >= self.success_count:
             return Status.SUCCESS
-        if self.failed >= self._thresholds.failure_count or len(self.children) - self.failed < self.success_count:
+        if self.failed >= self._thresholds.failure_count or left < self.success_count:
             return Status.FAILURE
         return Status.RUNNING
 
@@ -106,7 +116,7 @@ class CountingParallel(Parallel):
                     child.stop(Status.INVALID)
             self.initialise()
         for child in self.children:
-            if child.status not in (Status.SUCCESS, Status.FAILURE):
+            if child.status not in (Status.SUCCESS, Status.FAILURE) and child not in self.skips:
                 yield from child.tick()
         self.current_child = self.children[-1]
         verdict = self.verdict

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from py_trees.behaviour import Behaviour
 
@@ -57,6 +58,12 @@ class Part:
     foreign: ForeignPlan | None = None
     when: Template | None = None
     """The condition of a guard."""
+
+    @cached_property
+    def skips(self) -> bool:
+        """Whether it may be skipped, by a guard of its own or because of what is inside."""
+        guard = self.source.guard
+        return (guard is not None and guard.to == "skipped") or any(child.skips for child in self.children)
 
     def walk(self) -> Iterator[Part]:
         """Go through this part and everything below it, in document order."""

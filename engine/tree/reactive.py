@@ -1,8 +1,9 @@
-"""Asks checks again in the middle of an action: those in front of it in composites without memory.
+"""Asks checks again in the middle of an action: those in front of it where there is no memory.
 
-Such a composite asks them again at every tick, and acts on what they say. Nothing ticks while nothing has ended, so
-they are observed beside the tree: when userdata that they read is written, when a topic that they have read has
-news, and at their period. Only where one would end otherwise than it has, a tick is due, which runs it.
+A composite without memory asks them again at every tick, a `while_do_else` its condition, and acts on what they say.
+Nothing ticks while nothing has ended, so they are observed beside the tree: when userdata that they read is written,
+when a topic that they have read has news, and at their period. Only where one would end otherwise than it has, a tick
+is due, which runs it.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from engine.node_path import inside
 from engine.observation import Observation, observe
 from engine.preemption import preempt
 from engine.timer import Timer
+from engine.tree.branching import WhileDoElse
 from engine.tree.decorators import Cooldown
 from engine.tree.foreign import Foreign
 from engine.tree.growth import Growth
@@ -147,7 +149,9 @@ class Reactive:
 
     def _in_front(self, node: Behaviour) -> Iterator[Behaviour]:
         """Go through the leaves in front of what is RUNNING in composites without memory, below a RUNNING node."""
-        without_memory = isinstance(node, composites.Sequence | composites.Selector) and not node.memory
+        without_memory = isinstance(node, WhileDoElse) or (
+            isinstance(node, composites.Sequence | composites.Selector) and not node.memory
+        )
         for child in node.children:
             if child.status is Status.RUNNING:
                 yield from self._in_front(child)

@@ -15,6 +15,7 @@ from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 from py_trees.decorators import Decorator
 
 from engine.node_exit import Left
+from engine.tree.branching import IfThenElse, WhileDoElse
 from engine.tree.decorators import Condition, Cooldown, Remap, Repeat, Retry, Timeout
 from engine.tree.growth import Growth
 from engine.tree.history import Standing
@@ -54,6 +55,7 @@ class _Restoring:
     branches: Branches
     now_s: float
     tick_due: bool = False
+    echoed: set[Behaviour] = field(default_factory=set[Behaviour])
     going_on: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
 
     def part(self, node: Behaviour) -> bool:
@@ -69,7 +71,9 @@ class _Restoring:
         if part.foreign is not None:
             # Its own state is lost; it is INVALID, so the tick that is due initialises it again.
             return False
-        node.status = _STATUS.get(standing.status, Status.INVALID)
+        skips = self.growth.statuses.skips
+        skipped = standing.status == "skipped"
+        node.status = skips.skip(node) if skipped else _STATUS.get(standing.status, Status.INVALID)
         self.growth.statuses.take(node)
         running = node.status is Status.RUNNING
         if isinstance(node, Parallel) and running:
@@ -78,10 +82,13 @@ class _Restoring:
         awake = any(wakes)
         if isinstance(node, Decorator):
             awake = self._decorator(node, standing) or awake
+        if isinstance(node, WhileDoElse) and running and node.condition.status is Status.RUNNING:
+            self._keep_ends(node)
         if running:
+            skips.restore(node, (child for child in node.children if self._was_skipped(child, standing)))
             unread = self._unread(node, standing)
             for child in unread:
-                _echo(child)
+                self._echo(child)
             if isinstance(node, composites.Composite):
                 node.current_child = unread[0] if unread else self._current(node, standing)
             # A tick was under way, or had just ended, when it was cut: it is done again.
@@ -96,6 +103,8 @@ class _Restoring:
         if isinstance(node, composites.Parallel):
             failed = any(child.status is Status.FAILURE for child in ended)
             return ended if failed or isinstance(node.policy, ParallelPolicy.SuccessOnOne) else []
+        if isinstance(node, IfThenElse):
+            return self._unread_choice(node, standing)
         if isinstance(node, composites.Composite):
             final = Status.FAILURE if isinstance(node, composites.Sequence) else Status.SUCCESS
             decisive = [child for child in ended if child.status is final]
@@ -113,8 +122,32 @@ class _Restoring:
             case _:
                 return ended
 
+    def _unread_choice(self, node: IfThenElse, standing: Standing) -> list[Behaviour]:
+        """Return what has ended, in the order in which it is to be read: the condition, the branch at work."""
+        ended = [branch for branch in node.branches if branch.status in _FINAL]
+        unread = [branch for branch in ended if self._order(branch) > standing.over]
+        if node.condition.status not in _FINAL or self._order(node.condition) < standing.over:
+            return unread if isinstance(node, WhileDoElse) else []
+        asked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
+        at_work = [branch for branch in node.branches if branch.status is Status.RUNNING]
+        if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or asked_last)):
+            # A tick was cut in which the condition had been asked, and nothing had come of it.
+            return [] if at_work == [node.chosen] else [node.condition, *unread]
+        return unread
+
+    def _keep_ends(self, node: WhileDoElse) -> None:
+        """Let ends below a branch be read later: no tick has come there since the condition was asked."""
+        for branch in node.branches:
+            inside = tuple(branch.iterate())
+            began = max(self._standing(each).began for each in inside)
+            for leaf in inside:
+                if isinstance(leaf, TreeLeaf) and leaf.status in _FINAL and self._order(leaf) > began:
+                    self._echo(leaf)
+
     def _current(self, node: composites.Composite, standing: Standing) -> Behaviour:
         """Return the child at which a composite with memory goes on."""
+        if isinstance(node, IfThenElse):
+            return next((branch for branch in node.branches if branch.status is Status.RUNNING), node.condition)
         passed = Status.SUCCESS if isinstance(node, composites.Sequence) else Status.FAILURE
         following = 0
         for index, child in enumerate(node.children):
@@ -124,15 +157,23 @@ class _Restoring:
                 following = index + 1
         return node.children[min(following, len(node.children) - 1)]
 
+    def _was_skipped(self, child: Behaviour, around: Standing) -> bool:
+        standing = self._standing(child)
+        return standing.skipped > max(around.over, standing.began)
+
     def _order(self, node: Behaviour) -> int:
         """Return which of the marks was the last one of a part."""
-        return self.known.get(self.growth.parts[node].path, _NEVER).order
+        return self._standing(node).order
+
+    def _standing(self, node: Behaviour) -> Standing:
+        # What a py_trees behaviour brings with it is no part.
+        return self.known.get(self.growth.parts[node].path, _NEVER) if node in self.growth.parts else _NEVER
 
     def _last(self, node: Behaviour) -> int:
         """Return which of the marks was the last one by which something below a part was at work, or ended."""
         found = -1
         for child in node.children:
-            standing = self.known.get(self.growth.parts[child].path, _NEVER) if child in self.growth.parts else _NEVER
+            standing = self._standing(child)
             own = standing.order if standing.status != "invalid" else -1
             found = max(found, own, self._last(child))
         return found
@@ -149,6 +190,12 @@ class _Restoring:
         if standing.status == "ended" and (standing.outcome is not None or standing.target is not None):
             leaf.restore(Left(standing.outcome or "", standing.target))
         return False
+
+    def _echo(self, node: Behaviour) -> None:
+        """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+        if node not in self.echoed:
+            self.echoed.add(node)
+            _echo(node)
 
     def _decorator(self, node: Behaviour, standing: Standing) -> bool:
         """Restore what a decorator keeps; tell whether it has set a timer."""
@@ -171,10 +218,15 @@ class _Restoring:
 
 
 def _echo(node: Behaviour) -> None:
-    """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+    before = vars(node).pop("tick", None)
 
     def tick() -> Iterator[Behaviour]:
         del vars(node)["tick"]
-        yield node
+        if before is not None:
+            vars(node)["tick"] = before
+        if node.status in _FINAL:
+            yield node
+        else:
+            yield from node.tick()  # it was halted before the tick came to it
 
     vars(node)["tick"] = tick

@@ -237,7 +237,7 @@ class TreeRunner:
     def _outcome(self, root: Behaviour) -> Outcome:
         if root.status is Status.SUCCESS:
             return Outcome("success")
-        return Outcome("failure", cause=reason(root, self._growth.parts))
+        return Outcome("failure", cause=reason(root, self._growth.parts, self._growth.entry_guards))
 
     def _clear(self, torn: Behaviour) -> None:
         """Halt everything at and below a node, also what py_trees forgets when an exception has torn its tick."""

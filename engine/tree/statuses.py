@@ -14,6 +14,7 @@ from py_trees.common import Status
 
 from engine.event import StatusChanged
 from engine.execution import Execution
+from engine.tree.skips import Skips
 
 
 class Statuses:
@@ -22,7 +23,9 @@ class Statuses:
     def __init__(self, execution: Execution) -> None:
         self._recorder = execution.recorder
         self._paths: dict[Behaviour, str] = {}
-        self._recorded: dict[Behaviour, Status] = {}
+        self._recorded: dict[Behaviour, Status | None] = {}
+        """None for those that were skipped."""
+        self.skips = Skips()
         self._ended_below: set[Behaviour] = set()
         """Those below which something has ended since their own status was recorded."""
         self.closing = False
@@ -37,7 +40,7 @@ class Statuses:
 
     def take(self, behaviour: Behaviour) -> None:
         """Count the present status as recorded."""
-        self._recorded[behaviour] = behaviour.status
+        self._recorded[behaviour] = self._present(behaviour)
 
     def repeat(self, behaviour: Behaviour) -> None:
         """Record that one that is RUNNING begins a further round."""
@@ -59,7 +62,7 @@ class Statuses:
 
     def note(self, behaviour: Behaviour) -> None:
         """Record the status of one that was just ticked, if it has changed, or has come about anew."""
-        status = behaviour.status
+        status = self._present(behaviour) if self.skips else behaviour.status
         ended = status is not Status.RUNNING
         anew = ended and behaviour in self._ended_below
         if anew or self._recorded.get(behaviour, status) is not status:
@@ -68,15 +71,19 @@ class Statuses:
             if ended:
                 self.end(behaviour)
 
+    def _present(self, behaviour: Behaviour) -> Status | None:
+        return None if behaviour in self.skips else behaviour.status
+
     def _terminate(self, behaviour: Behaviour, own: Callable[[Status], None], new_status: Status) -> None:
         own(new_status)
         before = self._recorded[behaviour]
         if new_status is Status.INVALID and before is not new_status and (before is Status.RUNNING or not self.closing):
             self._record(behaviour, new_status)
 
-    def _record(self, behaviour: Behaviour, status: Status) -> None:
+    def _record(self, behaviour: Behaviour, status: Status | None) -> None:
         self._recorded[behaviour] = status
         self._tell(self._paths[behaviour], status)
 
-    def _tell(self, path: str, status: Status) -> None:
-        self._recorder.emit(StatusChanged, path=path, status=status.value.lower())
+    def _tell(self, path: str, status: Status | None) -> None:
+        said = status.value.lower() if status is not None else "skipped"
+        self._recorder.emit(StatusChanged, path=path, status=said)

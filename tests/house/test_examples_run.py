@@ -39,7 +39,7 @@ TRIGGERS = "\ntriggers:"
 TAGS = "\ntags:"
 PARTS_OF_CELLS = ("robots:", "parts:", "fixtures:", "world:", "people:", "cameras:")
 STORES = ("store:",)
-PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:")
+PARTS_OF_TREES = ("condition:", "behaviour:", "sequence:", "while_do_else:")
 SHOWN = {
     f"{page.relative_to(ROOT)}-{number}": text
     for page in sorted(PAGES)

@@ -38,13 +38,16 @@ def parallel_ends(placed: Placed, children: Sequence[Placed], ways: Ways, entry:
     policy = "all" if group is None or isinstance(group, tuple) else group.policy
     branches = _Branches(children, ways, entry)
     names = [child.name for child in children if policy in ("all", "one") or child.name in policy]
+    skipping = {child.name for child in children if any(way.label == "skipped" for way in ways[child.path])}
     if policy == "one":
         succeeded = 0
         for name in names:
             succeeded |= branches.merged({name: "success"})
     else:
-        succeeded = branches.merged(dict.fromkeys(names, "success"))
-    return {"success": succeeded, "failure": branches.merged({})}
+        # What may have been skipped need not have written anything.
+        succeeded = branches.merged({name: "success" for name in names if name not in skipping})
+    ends = {"success": succeeded, "failure": branches.merged({})}
+    return {**ends, "skipped": entry} if skipping else ends
 
 
 class _Branches:

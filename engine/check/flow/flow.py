@@ -7,6 +7,7 @@ once, and loops of a machine a few times more.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 
 from engine.check.flow.branches import concurrency_ends, parallel_ends
@@ -189,7 +190,7 @@ class Flow:
         keys = frozenset[str]().union(*(self.anywhere[child.path].keys for child in children))
         keys |= self.anywhere[placed.path].keys
         if not keys:
-            labels = _STATUSES if placed.is_part else self.subject.outcomes.get(placed.path, ())
+            labels = self._statuses(placed) if placed.is_part else self.subject.outcomes.get(placed.path, ())
             return dict.fromkeys(labels, NOTHING)
         of_defined = self.solve(placed, children, self.sites.entries)[1]
         of_undefined = self.solve(placed, children, self.sites.undefined)[1]
@@ -197,6 +198,9 @@ class Flow:
         if placed.node.foreach is not None:
             return whole  # each of its rounds has a scope of its own, which is already left
         return {label: self._seen(placed, effect) for label, effect in whole.items()}
+
+    def _statuses(self, placed: Placed) -> tuple[str, ...]:
+        return (*_STATUSES, "skipped") if "skipped" in self.subject.statuses[placed.path] else _STATUSES
 
     def _seen(self, placed: Placed, effect: Effect) -> Effect:
         """Return what is seen of an effect outside the scope of a container, if it has one."""
@@ -212,7 +216,8 @@ class Flow:
             return machine_graph(children, machine.initial, self.ways)
         if placed.node.concurrency is not None or placed.node.parallel is not None or placed.node.foreach is not None:
             return None
-        return tree_graph(placed, children, self.ways)
+        halted = {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
+        return tree_graph(placed, children, self.ways, defaultdict(lambda: NOTHING, halted))
 
     def _ways(self, placed: Placed, ends: dict[str, Effect], *, leaf: bool) -> list[Way]:
         node = placed.node

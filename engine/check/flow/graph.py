@@ -126,41 +126,74 @@ def machine_graph(children: Sequence[Placed], initial: str, ways: Mapping[str, S
     return Graph((numbers[initial],) if initial in numbers else (), arrows)
 
 
-def tree_graph(placed: Placed, children: Sequence[Placed], ways: Mapping[str, Sequence[Way]]) -> Graph:
-    """Return the graph of a tree, composite or decorator; all ways are called by statuses."""
+def tree_graph(
+    placed: Placed, children: Sequence[Placed], ways: Mapping[str, Sequence[Way]], halted: Mapping[str, Effect]
+) -> Graph:
+    """Return the graph of a tree, composite or decorator; all ways are called by statuses.
+
+    `halted` is what a child may have written that is stopped, by its path.
+    """
     lead = _leads(placed.node, len(children))
     arrows = [
         [(way.effect, to) for way in ways[child.path] for to in lead(number, way.label)]
         for number, child in enumerate(children)
     ]
+    if placed.node.while_do_else is not None:
+        # What it runs may be stopped at any time, when the condition says something else.
+        arrows[1:] = [[*found, (halted[child.path], 0)] for found, child in zip(arrows[1:], children[1:], strict=True)]
     return Graph((0,), arrows)
 
 
 def _leads(node: Node, count: int) -> Callable[[int, str], tuple[Target, ...]]:
     """Return where child number i leads after a status; a part that may fail by itself leads to failure as well."""
     if node.sequence is not None or node.selector is not None:
-        onward = "success" if node.sequence is not None else "failure"
-        return lambda number, status: (number + 1,) if status == onward and number + 1 < count else (status,)
+        return _line("success" if node.sequence is not None else "failure", count)
+    if node.tree is not None:
+        return lambda _, status: ("success" if status == "skipped" else status,)
+    if node.if_then_else is not None or node.while_do_else is not None:
+        return lambda number, status: (status,) if number else (_branch(status, count),)
     if node.inverter is not None:
-        return lambda _, status: ("failure" if status == "success" else "success",)
+        opposite = {"success": "failure", "failure": "success"}
+        return lambda _, status: (opposite.get(status, status),)
     if node.remap is not None:
         return _remap(node.remap)
     if node.condition is not None:
         waited = node.condition.status
-        return lambda _, status: ("success", 0) if waited in (status, "running") else (0,)
+        return lambda _, status: (
+            (status,) if status == "skipped" else ("success", 0) if waited in (status, "running") else (0,)
+        )
     if node.retry is not None:
         return lambda _, status: (0, "failure") if status == "failure" else (status,)
     if node.repeat is not None:
         return lambda _, status: (0, "success") if status == "success" else (status,)
     if node.timeout is not None or node.guard is not None or node.cooldown is not None:
-        return lambda _, status: (status, "failure")
+        closed = node.guard.to if node.guard is not None and node.guard.to is not None else "failure"
+        return lambda _, status: (status, closed)
     return lambda _, status: (status,)
+
+
+def _line(onward: str, count: int) -> Callable[[int, str], tuple[Target, ...]]:
+    def lead(number: int, status: str) -> tuple[Target, ...]:
+        if status in (onward, "skipped") and number + 1 < count:
+            return (number + 1,)
+        return (onward, status) if status == "skipped" else (status,)
+
+    return lead
+
+
+def _branch(status: str, count: int) -> Target:
+    """Return where the condition of an `if_then_else` or `while_do_else` leads; without `else` its failure ends it."""
+    if status == "success":
+        return 1
+    return 2 if count > 2 else "failure"
 
 
 def _remap(remap: Remap) -> Callable[[int, str], tuple[Target, ...]]:
     shown = {"success": remap.success, "failure": remap.failure}
 
     def lead(_: int, status: str) -> tuple[Target, ...]:
+        if status not in shown:
+            return (status,)
         # What is shown as RUNNING is ticked again from the start.
         ends = {0 if found == "running" else found for found in (shown[status], remap.running)}
         return tuple(sorted(ends, key=str))

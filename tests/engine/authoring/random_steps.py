@@ -20,6 +20,7 @@ from engine.authoring import (
     cooldown,
     foreach,
     guard,
+    if_then_else,
     inverter,
     machine,
     one_shot,
@@ -34,6 +35,7 @@ from engine.authoring import (
     state,
     timeout,
     tree,
+    while_do_else,
 )
 from engine.document import Behavior
 from tests.engine.document.example_documents import DURATIONS, KEYS, TEXTS, VALUES
@@ -70,9 +72,10 @@ _ALONE = _optional(
     on_error=OUTCOMES,
 )
 _STATUS = st.sampled_from(["success", "failure"])
+_GUARD_TO = st.sampled_from(["success", "failure", "skipped"])
 _IN_TREE = _optional(
     **_COMMON,
-    guard=st.builds(Guard, when=EXPRESSIONS, to=_STATUS),
+    guard=st.builds(Guard, when=EXPRESSIONS, to=_GUARD_TO),
     timeout=st.builds(Timeout, after=DURATIONS, to=_STATUS),
     on_error=_STATUS,
     name=NAMES,
@@ -145,7 +148,8 @@ def _parts(draw: st.DrawFn, depth: int) -> TreePart:
         return draw(_states(_IN_TREE))
     inner = _parts(depth - 1)
     children = st.lists(inner, min_size=1, max_size=3)
-    more = draw(_PART)
+    named = draw(_PART)
+    more = {**named, **draw(_optional(guard=st.builds(Guard, when=EXPRESSIONS, to=_GUARD_TO)))}
     makers: list[Any] = [
         lambda: draw(_steps(depth - 1, _IN_TREE)),
         lambda: sequence(*draw(children), memory=draw(st.none() | st.booleans()), **more),
@@ -166,7 +170,9 @@ def _parts(draw: st.DrawFn, depth: int) -> TreePart:
         lambda: condition(draw(inner), status=draw(st.sampled_from(["success", "failure", "running"])), **more),
         lambda: retry(draw(inner), times=draw(st.integers(1, 5)), backoff=draw(st.none() | DURATIONS), **more),
         lambda: timeout(draw(inner), after=draw(DURATIONS), **more),
-        lambda: guard(draw(inner), when=draw(EXPRESSIONS), **more),
+        lambda: guard(draw(inner), when=draw(EXPRESSIONS), to=draw(st.none() | _GUARD_TO), **named),
+        lambda: if_then_else(draw(inner), draw(inner), draw(st.none() | inner), **more),
+        lambda: while_do_else(draw(inner), draw(inner), draw(st.none() | inner), **more),
         lambda: behaviour("py_trees.behaviours:Success", parameters=draw(USERDATA), **more),
     ]
     return makers[draw(st.integers(0, len(makers) - 1))]()

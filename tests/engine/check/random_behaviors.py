@@ -12,7 +12,8 @@ Plain = dict[str, Any]
 KEYS = ("k", "m")
 VALUES = (1, 2.5, "word")
 LABELS = ("x", "y")
-PARTS = ("sequence", "selector", "parallel", "inverter", "retry", "repeat", "timeout")
+PARTS = ("sequence", "selector", "parallel", "inverter", "retry", "repeat", "timeout", "if_then_else", "while_do_else")
+SLOTS = {"if_then_else": ("if", "then", "else"), "while_do_else": ("while", "do", "else")}
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,17 @@ class _Maker:
     def _part(self, depth: int, levels: int) -> Plain:
         if levels == 0 or self._draw(st.booleans()):
             return self.node(depth).node
+        part = self._composite(depth, levels)
+        if self._draw(st.integers(0, 3)) == 0:
+            to = self._draw(st.sampled_from(("success", "failure", "skipped")))
+            part["guard"] = {"when": self._draw(st.sampled_from(("${1 < 2}", "${1 > 2}"))), "to": to}
+        return part
+
+    def _composite(self, depth: int, levels: int) -> Plain:
         kind = self._draw(st.sampled_from(PARTS))
+        if kind in SLOTS:
+            roles = SLOTS[kind][: self._draw(st.integers(2, 3))]
+            return {kind: {role: self._part(depth, levels - 1) for role in roles}}
         if kind in ("sequence", "selector"):
             children = [self._part(depth, levels - 1) for _ in range(self._draw(st.integers(1, 3)))]
             return {kind: {"children": children, "memory": self._draw(st.booleans())}}

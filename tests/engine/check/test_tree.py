@@ -155,3 +155,80 @@ def test_a_py_trees_class_must_be_there_and_take_what_it_is_given(name: str, giv
     """The engine gives the name where it is left out."""
     text = f'{HEAD}sequence: [{{behaviour: "{name}", with: {{{given}}}}}, {DECIDE}]\n'
     assert [finding.code for finding in findings_in(text)] == ([expected] if expected else [])
+
+
+def test_a_branch_that_is_never_chosen_is_told() -> None:
+    """Where the condition always says the same."""
+    branching = "if_then_else: {if: %s, then: {state: flow.Log, name: a, with: {message: a}}, else: %s}\n"
+    told = "unreachable-node root/if_then_else/"
+    assert said_of(f"{HEAD}{branching % (DECIDE, LOG)}") == []
+    assert said_of(f"{HEAD}{branching % (LOG, DECIDE)}") == [f"{told}CheckHeld"]
+    assert said_of(f"{HEAD}{branching % (f'{{inverter: {{child: {LOG}}}}}', DECIDE)}") == [f"{told}a"]
+
+
+def test_a_condition_that_commands_what_its_branches_command_is_told() -> None:
+    """It is asked beside them; the branches take turns."""
+    move = "{state: motion.MoveJoints, name: %s, with: {robot: %s, target: [0, -0.4, 0, -2.2, 0, 1.8, 0.8]}}"
+    loop = "while_do_else: {while: %s, do: %s, else: %s}\n"
+    both = (move % ("b", "left"), move % ("c", "left"))
+    assert said_of(f"{HEAD}{loop % (DECIDE, *both)}") == []
+    assert said_of(f"{HEAD}{loop % (move % ('a', 'left'), *both)}") == [
+        "shared-resource root/while_do_else/b",
+        "shared-resource root/while_do_else/c",
+    ]
+
+
+def test_the_condition_of_a_loop_is_one_that_can_be_asked_again() -> None:
+    """As in front of an action in a composite without memory; a period belongs to it alone."""
+    scene = "{state: scene.Check, with: {robot: left}%s}"
+    motion = "{state: motion.MoveJoints, with: {robot: left, target: [0, -0.4, 0, -2.2, 0, 1.8, 0.8]}}"
+    loop = "while_do_else: {while: %s, do: %s}\n"
+    assert said_of(f"{HEAD}{loop % (scene % '', motion)}") == ["unwatched-check root/while_do_else/Check"]
+    assert said_of(f"{HEAD}{loop % (scene % ', every: 1 s', motion)}") == []
+    once = f"if_then_else: {{if: {scene % ''}, then: {motion}}}\n"
+    assert said_of(f"{HEAD}{once}") == []
+
+
+def test_what_a_halted_branch_may_have_written_is_known_to_the_other() -> None:
+    """`do` may be stopped after its first state, and `else` then reads what that wrote."""
+    states = (
+        "a: {state: flow.SetValue, with: {value: text}, out: {value: x}, transitions: {done: b}}, "
+        "b: {state: flow.Wait, with: {duration_s: 1}, transitions: {done: done}}"
+    )
+    machine = f"{{machine: {{initial: a, states: {{{states}}}}}}}"
+    read = "{state: flow.Wait, with: {duration_s: '${x}'}}"
+    head = HEAD.replace("root:", "userdata: {x: 1}\nroot:")
+    choice = f"if_then_else: {{if: {DECIDE}, then: {machine}, else: {read}}}\n"
+    assert said_of(f"{head}{choice}") == []
+    loop = f"while_do_else: {{while: {DECIDE}, do: {machine}, else: {read}}}\n"
+    assert said_of(f"{head}{loop}") == ["maybe-type-mismatch root/while_do_else/Wait"]
+
+
+SKIPS = ", guard: {when: '${x}', to: skipped}}"
+
+
+def test_what_stands_behind_a_child_that_may_be_skipped_can_be_asked() -> None:
+    """Both in a sequence and in a selector; a tree that is skipped as a whole succeeds."""
+    head = HEAD.replace("root:", "parameters: {x: {type: boolean, default: true}}\nroot:")
+    fails = f"{{inverter: {{child: {LOG}}}}}"
+    for kind, first in (("sequence", fails), ("selector", LOG)):
+        assert said_of(f"{head}{kind}: [{first}, {DECIDE}]\n") == [
+            "unused-parameter root",
+            f"unreachable-node root/{kind}/CheckHeld",
+        ]
+        assert said_of(f"{head}{kind}: [{first[:-1]}{SKIPS}, {DECIDE}]\n") == []
+    sequence = (
+        "{tree: {sequence: [%s], guard: {when: '${x}', to: skipped}}, transitions: {success: good, failure: bad}}"
+    )
+    text = "root:\n  machine:\n    initial: tree\n    states:\n      tree: " + sequence % LOG + "\n"
+    assert said_of(text.replace("root:", "parameters: {x: {type: boolean, default: true}}\nroot:")) == []
+
+
+def test_a_guard_of_a_part_is_compared_with_what_it_reads() -> None:
+    """As that of a state."""
+    part = f"sequence: [{LOG}]\n    guard: {{when: '${{%s}}', to: skipped}}\n"
+    assert said_of(f"{HEAD}{part % 'nothing'}") == ["undeclared-name root/sequence"]
+    assert said_of(f"{HEAD}{part % '1 < 2'}") == ["constant-guard root/sequence"]
+    assert said_of(f"{HEAD.replace('root:', 'userdata: {x: 1}' + chr(10) + 'root:')}{part % 'x'}") == [
+        "type-mismatch root/sequence"
+    ]

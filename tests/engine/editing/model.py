@@ -138,9 +138,9 @@ def _children(node: Plain) -> list[tuple[str, Plain]]:
         return [("child", node["foreach"]["child"])]
     if "tree" in node:
         return [(_name(node["tree"]), node["tree"])]
-    for kind in ("sequence", "selector", "parallel"):
+    for kind in ("sequence", "selector", "parallel", "if_then_else", "while_do_else"):
         if kind in node:
-            children = node[kind] if isinstance(node[kind], list) else node[kind]["children"]
+            children = node[kind] if isinstance(node[kind], list) else node[kind].get("children", node[kind].values())
             names: list[str] = []
             counts: dict[str, int] = {}
             for child in children:

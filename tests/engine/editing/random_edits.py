@@ -61,7 +61,20 @@ def _one(draw: st.DrawFn, spots: list[Spot]) -> Spot | None:
 
 _NAMES = st.sampled_from(["fresh", "s0", "s1", "x", "b0", "child", "a b", ""])
 _KINDS = st.sampled_from(
-    ["state", "behavior", "machine", "concurrency", "tree", "foreach", "sequence", "retry", "inverter", "zzz"]
+    [
+        "state",
+        "behavior",
+        "machine",
+        "concurrency",
+        "tree",
+        "foreach",
+        "sequence",
+        "retry",
+        "inverter",
+        "if_then_else",
+        "while_do_else",
+        "zzz",
+    ]
 )
 _ODD = st.sampled_from(
     [None, 1, 0.5, "text", "${k}", [], ["s0"], {}, {"after": 1, "to": "x"}, {"a": "b"}, [{"x": {"b0": "a"}}]]

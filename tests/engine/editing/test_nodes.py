@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from engine.document import parse_behavior
 from tests.engine.editing.bench import changed, difference, edited, refusal
 
 TEXT = """\
@@ -317,3 +318,74 @@ def test_duplicates_stand_beside_and_lead_to_one_another() -> None:
     assert "transitions: {a: second_2, b: bad, c: third}" in made
     assert "timeout: {after: 5 s, to: second_2}" in made
     assert "root/first_2: [40, 40]" in made
+
+
+BRANCHING = """\
+flexcell: 1
+name: tree
+outcomes: [success, failure]
+success: [success]
+root:
+  tree:
+    sequence:
+      - if_then_else:
+          # Asked once.
+          if: {state: test.Give}
+          then: {state: test.Give, with: {after_s: 2}}   # if so
+      - {state: test.Give, name: last}
+"""
+IF = "root/sequence/if_then_else"
+
+
+def test_a_new_child_of_a_branching_takes_the_role_that_is_free() -> None:
+    made = edited(BRANCHING, {"edit": "add_node", "parent": IF, "kind": "state", "runs": "flow.Log"})
+    assert difference(BRANCHING, made) == ["+          else: {state: flow.Log}"]
+    added = {"edit": "add_node", "parent": IF, "kind": "state", "runs": "flow.Log"}
+    assert refusal(made, added) == f"`{IF}` has no room: none of its roles is free"
+    emptied = edited(made, {"edit": "remove_nodes", "paths": [f"{IF}/Give_2"]})
+    assert difference(made, emptied) == ["-          then: {state: test.Give, with: {after_s: 2}}   # if so"]
+    filled = edited(emptied, {"edit": "move_nodes", "paths": ["root/sequence/last"], "parent": IF})
+    assert "          then: {state: test.Give, name: last}\n          else: {state: flow.Log}\n" in filled
+
+
+def test_a_branching_is_made_from_nothing() -> None:
+    text = edited(
+        "flexcell: 1\nname: t\noutcomes: [success, failure]\nroot:\n  tree: {}\n",
+        {"edit": "add_node", "parent": "root", "kind": "while_do_else"},
+        *({"edit": "add_node", "parent": "root/while_do_else", "kind": "state", "runs": "test.Give"} for _ in range(3)),
+    )
+    assert list(parse_behavior(text, file="t.yaml").root.children["while_do_else"].children) == [
+        "Give",
+        "Give_2",
+        "Give_3",
+    ]
+
+
+def test_the_roles_of_a_branching_are_exchanged_by_order() -> None:
+    made = edited(BRANCHING, {"edit": "set_field", "path": IF, "field": "order", "value": ["Give_2", "Give"]})
+    assert "if: {state: test.Give, with: {after_s: 2}}" in made
+    assert "then: {state: test.Give}" in made
+
+
+def test_one_child_of_a_branching_is_grouped_and_ungrouped_in_its_role() -> None:
+    made = edited(BRANCHING, {"edit": "group", "paths": [f"{IF}/Give_2"], "kind": "sequence"})
+    node = parse_behavior(made, file="t.yaml").root.children["sequence"].children["if_then_else"]
+    assert [child.kind for child in node.children.values()] == ["state", "sequence"]
+    assert edited(made, {"edit": "ungroup", "path": f"{IF}/sequence"}) == BRANCHING
+    both = {"edit": "group", "paths": [f"{IF}/Give", f"{IF}/Give_2"], "kind": "sequence"}
+    assert refusal(BRANCHING, both) == "the children of a if_then_else have roles"
+    assert "means something else without it" in refusal(BRANCHING, {"edit": "ungroup", "path": IF})
+
+
+def test_a_guard_that_skips_is_kept_within_a_tree_and_not_taken_into_a_machine() -> None:
+    guarded = BRANCHING.replace("name: last}", "name: last, guard: {when: '${true}', to: skipped}}")
+    moved = edited(guarded, {"edit": "move_nodes", "paths": ["root/sequence/last"], "parent": IF})
+    assert "else: {state: test.Give, name: last, guard: {when: '${true}', to: skipped}}" in moved
+    text = (
+        "flexcell: 1\nname: t\noutcomes: [good, bad]\nroot:\n  machine:\n    initial: tree\n    states:\n      tree:\n"
+    )
+    tree = "{tree: {sequence: [{state: flow.Wait, with: {duration_s: 1}, guard: {when: '${true}', to: skipped}}]}"
+    machine = f"{text}        {tree}, transitions: {{success: good, failure: bad}}}}\n".replace(
+        "tree:\n        {", "tree: {"
+    )
+    assert "may be skipped" in refusal(machine, {"edit": "ungroup", "path": "root/tree"})

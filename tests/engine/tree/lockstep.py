@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -76,6 +76,41 @@ class Scripted(Behaviour):
             self.world.pending.remove(self)
 
 
+class Branching(composites.Composite):
+    """IfThenElseNode and WhileDoElseNode of BehaviorTree.CPP 4, `tick` by `tick` as they are written there."""
+
+    def __init__(self, name: str, children: list[Behaviour], *, reactive: bool) -> None:
+        super().__init__(name, children)
+        self.reactive = reactive
+        self.child_idx = 0
+
+    def tick(self) -> Iterator[Behaviour]:
+        if self.status is not Status.RUNNING:
+            self.stop(Status.INVALID)
+            self.child_idx = 0
+        if self.reactive or self.child_idx == 0:
+            condition = self.children[0]
+            yield from condition.tick()
+            if condition.status is Status.RUNNING:
+                self.status = Status.RUNNING
+                yield self
+                return
+            self.child_idx = 1 if condition.status is Status.SUCCESS else 2
+            other = 3 - self.child_idx
+            if self.reactive and other < len(self.children):
+                self.children[other].stop(Status.INVALID)
+        status = Status.FAILURE
+        if self.child_idx < len(self.children):
+            yield from self.children[self.child_idx].tick()
+            status = self.children[self.child_idx].status
+        if status is not Status.RUNNING:
+            for child in self.children:
+                child.stop(Status.INVALID)
+            self.stop(status)
+        self.status = status
+        yield self
+
+
 @dataclass(frozen=True)
 class Course:
     """What came of it: the final status, None when it did not end, and what was begun."""
@@ -90,18 +125,25 @@ def run_lockstep(specimen: Specimen, *, until_s: float, instant_limit: int) -> C
     """Tick a plain py_trees tree in step with its scripts."""
     world = World()
     root = _grown(specimen, "", world)
-    instants = 0
+    instants = number = 0
+    ticked: dict[Behaviour, tuple[int, float]] = {}
+    woken: set[tuple[Behaviour, float]] = set()
     module: Any = py_trees.decorators
     real_time, module.time = module.time, world
     try:
         while world.now_s < until_s:
-            root.tick_once()
+            number += 1
+            for node in root.tick():
+                ticked[node] = number, world.now_s
             for leaf in world.pending:
                 leaf.begin()
             world.pending.clear()
             if root.status is not Status.RUNNING:
                 return Course(root.status.value.lower(), world.now_s, tuple(world.begun))
-            due_s = min(_due(root, world), default=until_s)
+            reasons = [(key, due_s) for key, due_s in _due(root, ticked) if key not in woken]
+            due_s = min((due_s for _, due_s in reasons), default=until_s)
+            # What a tick does not come to is not the reason for another one.
+            woken.update(key for key, each_s in reasons if each_s <= max(due_s, world.now_s))
             instants = instants + 1 if due_s <= world.now_s else 0
             if instants >= instant_limit:
                 return Course(None, world.now_s, tuple(world.begun), endless=True)
@@ -111,19 +153,22 @@ def run_lockstep(specimen: Specimen, *, until_s: float, instant_limit: int) -> C
     return Course(None, until_s, tuple(world.begun))
 
 
-def _due(root: Behaviour, world: World) -> Iterator[float]:
-    """Go through the times at which there is a reason to tick."""
+def _due(
+    root: Behaviour, ticked: Mapping[Behaviour, tuple[int, float]]
+) -> Iterator[tuple[tuple[Behaviour, float], float]]:
+    """Go through the reasons to tick: which one it is, and its time."""
     for node in root.iterate():
         if node.status is not Status.RUNNING:
             continue
+        number, at_s = ticked.get(node, (0, 0.0))
         if isinstance(node, Scripted):
-            yield node.ends_s
+            yield (node, node.count), node.ends_s
         if isinstance(node, decorators.Repeat | decorators.Retry) and node.decorated.status is not Status.RUNNING:
-            yield world.now_s
+            yield (node, number), at_s
         if isinstance(node, decorators.Timeout):
-            yield round(node.finish_time, 3)
+            yield (node, node.finish_time), round(node.finish_time, 3)
         if isinstance(node, HIDING) and node.decorated.status is not Status.RUNNING:
-            yield world.now_s + EVERY_S
+            yield (node, number), at_s + EVERY_S
 
 
 def _grown(specimen: Specimen, path: str, world: World) -> Behaviour:
@@ -139,6 +184,8 @@ def _grown(specimen: Specimen, path: str, world: World) -> Behaviour:
             return composites.Selector(here, said["memory"], children)
         case "parallel":
             return composites.Parallel(here, _policy(said["policy"], said["synchronise"], specimen, children), children)
+        case "if_then_else" | "while_do_else":
+            return Branching(here, children, reactive=specimen.kind == "while_do_else")
         case "inverter":
             return decorators.Inverter(here, children[0])
         case "one_shot":

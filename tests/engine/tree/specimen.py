@@ -7,6 +7,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
+SLOTS = {"if_then_else": ("if", "then", "else"), "while_do_else": ("while", "do", "else")}
 EVERY_S = 0.25
 """The period of polled decorators; a binary fraction, so that sums of it are exact."""
 
@@ -35,6 +36,8 @@ class Specimen:
             state = "test.Act" if self.leaf.commands else "test.Check"
             return {"state": state, "name": self.name, "with": {"script": [list(entry) for entry in self.leaf.script]}}
         inside = [child.document() for child in self.children]
+        if self.kind in SLOTS:
+            return {self.kind: dict(zip(SLOTS[self.kind], inside, strict=False)), "name": self.name}
         group = self.kind in ("sequence", "selector", "parallel")
         below = {"children": inside} if group else {"child": inside[0]}
         return {self.kind: {**self.arguments, **below}, "name": self.name}
@@ -68,6 +71,13 @@ def _group(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
 
 
 @st.composite
+def _branching(draw: st.DrawFn, children: st.SearchStrategy[Specimen]) -> Specimen:
+    drawn = draw(st.lists(children, min_size=2, max_size=3))
+    kind = draw(st.sampled_from(sorted(SLOTS)))
+    return Specimen(kind, kind, None, tuple(_renamed(child, f"n{index}") for index, child in enumerate(drawn)))
+
+
+@st.composite
 def _decorated(draw: st.DrawFn, child: st.SearchStrategy[Specimen], polling: bool) -> Specimen:
     kind = draw(st.sampled_from(_DECORATORS if polling else [each for each in _DECORATORS if each != "condition"]))
     return Specimen(kind, kind, None, (_renamed(draw(child), "child"),), _arguments(draw, kind, polling))
@@ -92,7 +102,11 @@ def _arguments(draw: st.DrawFn, kind: str, polling: bool) -> dict[str, Any]:
 
 def trees(*, durations: list[float], polling: bool = True) -> st.SearchStrategy[Specimen]:
     """Return random trees whose leaves take these times; without `polling` nothing is asked periodically."""
-    return st.recursive(_leaf(durations), lambda inner: _group(inner) | _decorated(inner, polling), max_leaves=16)
+    return st.recursive(
+        _leaf(durations),
+        lambda inner: _group(inner) | _decorated(inner, polling) | _branching(inner),
+        max_leaves=16,
+    )
 
 
 specimens = trees(durations=[0.0, 0.0, 0.5, 1.0, 2.0])

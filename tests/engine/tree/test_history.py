@@ -22,6 +22,7 @@ from engine.tree_mark import Mark, mark_of
 from engine.userdata import Scope
 from tests.engine.tree.run_tree import Told, run_plan, tree_plan
 from tests.engine.tree.scripted_states import REMAINING
+from tests.engine.tree.skipping import Guarded, guarded_trees
 from tests.engine.tree.specimen import Specimen, trees
 
 END_S = 6.125
@@ -170,3 +171,14 @@ def test_an_end_that_no_tick_had_read_is_read_first() -> None:
     cut = Told(told.result, tuple(event for event in told.events if event.seq <= seq))
     rest = _cut(plan, cut, 1.0)
     assert (rest.story, rest.result.outcome) == (["0 +sequence/b", "0 -sequence/b yes"], "success")
+
+
+@given(specimen=guarded_trees, data=st.data())
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+def test_a_tree_with_guards_goes_on_as_if_it_had_not_been_cut(specimen: Guarded, data: st.DataObject) -> None:
+    """What was skipped stays so."""
+    plan = tree_plan(json.dumps(specimen.document()))
+    whole = run_plan(plan, stop_at_s=(END_S,), instant_limit=100)
+    moments = [at * 0.25 + 0.125 for at in range(24) if at * 0.25 + 0.125 < whole.result.duration_s]
+    assume(whole.result.status != "errored" and moments)
+    _goes_on(json.dumps(specimen.document()), data.draw(st.sampled_from(moments)))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from engine.event import Entered, Exited, Logged
 from engine.journal import encode_event_log
 from tests.engine.tree.run_tree import Told, run_tree
-from tests.engine.tree.specimen import Specimen, specimens
+from tests.engine.tree.specimen import SLOTS, Specimen, specimens
 
 stops = st.none() | st.sampled_from([0.0, 0.5, 0.75, 1.0, 2.5])
 
@@ -27,6 +27,8 @@ def _with(document: dict[str, Any], more: dict[str, Any]) -> dict[str, Any]:
     inner = document[kind]
     if "child" in inner:
         return {**document, kind: {**inner, "child": _with(inner["child"], more)}}
+    if kind in SLOTS:
+        return {**document, kind: {key: _with(child, more) for key, child in inner.items()}}
     return {**document, kind: {**inner, "children": [_with(child, more) for child in inner["children"]]}}
 
 
@@ -37,9 +39,17 @@ def _run(specimen: Specimen, stop_at_s: float | None, **more: object) -> Told:
 
 def _without_parallels(specimen: Specimen) -> Specimen:
     children = tuple(_without_parallels(child) for child in specimen.children)
+    if specimen.kind == "while_do_else":
+        # Its condition is asked beside what it runs, so it is none that commands.
+        return replace(specimen, children=(_only_checks(children[0]), *children[1:]))
     if specimen.kind == "parallel":
         return replace(specimen, kind="sequence", children=children, arguments={"memory": False})
     return replace(specimen, children=children)
+
+
+def _only_checks(specimen: Specimen) -> Specimen:
+    leaf = replace(specimen.leaf, commands=False) if specimen.leaf is not None else None
+    return replace(specimen, leaf=leaf, children=tuple(map(_only_checks, specimen.children)))
 
 
 @given(specimen=specimens, stop_at_s=stops, cleanup_s=st.sampled_from([0.0, 0.25, 0.5, 3.0]))

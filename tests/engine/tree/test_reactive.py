@@ -360,3 +360,15 @@ def test_a_tree_that_polls_for_ever_in_virtual_time_is_named() -> None:
     assert any("asked condition/CheckHeld again 2000 times" in line for line in told.why), told.why
     told = _told(_plan(tree), held=lambda now_s: now_s > 150.0, polling_limit=2_000)
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(150.1))
+
+
+@pytest.mark.parametrize(
+    "check", ["{state: test.CheckHeld}", "{inverter: {child: {inverter: {child: {state: test.CheckHeld}}}}}"]
+)
+def test_the_condition_of_a_loop_watches_over_what_it_runs(check: str) -> None:
+    """Asked as checks are in a composite without memory; what it ends makes room for the other branch."""
+    other = "{state: test.Act, name: other, with: {script: [[1, true]]}}"
+    told = _told(_plan(f"{{while_do_else: {{while: {check}, do: {CARRY}, else: {other}}}}}"))
+    assert (told.result.outcome, _left(told, "carry")) == ("success", [(1.1, True)])
+    assert (told.entered("CheckHeld"), told.entered("other")) == ([0.0, 1.1, 2.1], [1.1])
+    assert len([event for event in told.events if isinstance(event, Called)]) == 3

@@ -76,6 +76,46 @@ TREES = {
                 - {state: test.Act, name: d, with: {script: [[9, true]]}}
           - {state: test.Act, name: e, with: {script: [[1, true]]}}
     """,
+    "branches": """
+        sequence:
+          - if_then_else:
+              if: {state: test.Check, name: asked, with: {script: [[1, false]]}}
+              then: {state: test.Act, name: never}
+              else: {state: test.Act, name: a, with: {script: [[1, true]]}}
+          - while_do_else:
+              while: {state: test.Check, name: clear}
+              do:
+                sequence:
+                  memory: false
+                  children:
+                    - {state: test.Check, name: clear}
+                    - {state: test.Act, name: b, with: {script: [[2, true]]}}
+              else: {state: test.Act, name: c}
+    """,
+    "a condition that takes time": """
+        while_do_else:
+          while: {state: test.Check, name: clear, with: {script: [[1, true]]}}
+          do: {sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]}
+    """,
+    "what is skipped": """
+        inverter:
+          child:
+            selector:
+              - {state: test.Act, name: never, guard: {when: "${value > 5}", to: skipped}}
+              - sequence: [{state: test.Act, name: unasked}]
+                guard: {when: "${value > 5}", to: skipped}
+              - parallel:
+                  success_count: 1
+                  children:
+                    - {state: test.Act, name: not_now, guard: {when: "${value > 5}", to: skipped}}
+                    - sequence:
+                        - {state: test.Write, name: w, with: {value: 3, after_s: 1}}
+                        - {state: test.Act, name: a, with: {script: [[1, false]]}}
+              - guard:
+                  when: "${value > 5}"
+                  to: skipped
+                  child: {state: test.Act, name: b}
+    """,
     "a check that watches": """
         sequence:
           memory: false

@@ -352,7 +352,7 @@ export interface DocumentInfoBody {
   readonly success: readonly string[]
 }
 
-/** One node as written: beside what a run shows, all that a form edits, raw; lines and columns count from 1. `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to. */
+/** One node as written: beside what a run shows, all that a form edits, raw; lines and columns count from 1. `targets` are its own transitions, outcome to target; `exits` the outcomes that lead nowhere yet. `settings` are the remaining keys of its kind, such as `memory` or `times`. `document` is the id of the behavior it refers to. `role` is the key by which the part around it knows it, such as `then`. */
 export interface DocumentNodeBody {
   readonly path: string
   readonly name: string
@@ -364,6 +364,7 @@ export interface DocumentNodeBody {
   readonly initial: string | null
   readonly conditions: readonly string[]
   readonly label: string
+  readonly role: string
   readonly description: string
   readonly line: number
   readonly column: number

@@ -34,6 +34,6 @@ export function kindLabel(kind: string): string {
     case 'state':
       return 'State'
     default:
-      return kind.charAt(0).toUpperCase() + kind.slice(1)
+      return (kind.charAt(0).toUpperCase() + kind.slice(1)).replaceAll('_', ' ')
   }
 }

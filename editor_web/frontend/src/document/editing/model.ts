@@ -60,11 +60,16 @@ const TREE_PARTS: ReadonlySet<string> = new Set([
   'cooldown',
   'remap',
   'condition',
+  'if_then_else',
+  'while_do_else',
   'retry',
   'timeout',
   'guard',
 ])
 const COMPOSITES: ReadonlySet<string> = new Set(['sequence', 'selector', 'parallel'])
+
+/** Parts whose children have roles, which say how many there may be. */
+const MOST_CHILDREN: Readonly<Record<string, number>> = { if_then_else: 3, while_do_else: 3 }
 
 /** Is its inside drawn as a tree of lines instead of a frame? */
 export function isTreePart(kind: string): boolean {
@@ -93,7 +98,7 @@ export function isFrame(node: EditNode): boolean {
 /** Has it room for one more child? A behavior that is referred to is edited in its own file. */
 export function isHolder(node: EditNode): boolean {
   if (HOLDERS.has(node.kind)) return true
-  return (isTreePart(node.kind) || node.kind === 'foreach') && node.children.length === 0
+  return (isTreePart(node.kind) || node.kind === 'foreach') && node.children.length < (MOST_CHILDREN[node.kind] ?? 1)
 }
 
 /** Is it inside a behavior that is referred to, and so not of this document? */

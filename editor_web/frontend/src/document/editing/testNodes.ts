@@ -34,6 +34,7 @@ export function node(path: string, outcomes: readonly string[], more: Partial<Ed
     exits: [],
     success: [],
     every: null,
+    role: '',
     notes: '',
     userdata: {},
     settings: {},

@@ -30,6 +30,7 @@ export const LeafCard = memo(function LeafCard({ id, data, selected }: NodeProps
       {data.isInitial && <InitialMark />}
       <div className="card-head">
         <KindIcon kind={node.kind} />
+        {node.role && <span className="card-role">{node.role}</span>}
         <div className="card-titles">
           <span className="card-name">{node.name}</span>
           <span className="card-title">{node.title || insideText(data)}</span>
@@ -75,7 +76,9 @@ export const TwigCard = memo(function TwigCard({ id, data, selected }: NodeProps
     <div className={`card twig-card kind-${node.kind}${stateClasses(data, selected)}`}>
       <Handle type="target" id="above" position={Position.Top} className="branch-port" isConnectable={false} />
       <KindIcon kind={node.kind} size={15} />
+      {node.role && <span className="card-role">{node.role}</span>}
       <span className="card-name">{node.name}</span>
+      {node.guard && <IconShieldHalf size={13} aria-label="guarded" />}
       {!data.isOpen && data.count > 0 && <span className="twig-count">{data.count}</span>}
       <MarkIcon path={id} inside={!data.isOpen} />
       <Handle type="source" id="below" position={Position.Bottom} className="branch-port" isConnectable={false} />

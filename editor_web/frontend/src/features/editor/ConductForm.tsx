@@ -27,9 +27,11 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
       const leads = field !== 'retry' && !('to' in next) && targets[0] ? { to: worst(targets, success) } : {}
       return [setField(node.path, field, { ...leads, ...next })]
     })
+  const inTree = parent !== undefined && isTreePart(parent.kind)
+  const isPart = isTreePart(node.kind) && node.kind !== 'tree' && inTree
   const isSet = [node.guard, node.timeout, node.retry, node.on_error, node.every, node.resume].some((each) => each !== null)
   return (
-    <Section title="Guard, timeout, retry" isClosed={!isSet} note={isSet ? 'set' : undefined}>
+    <Section title={isPart ? 'Guard' : 'Guard, timeout, retry'} isClosed={!isSet} note={isSet ? 'set' : undefined}>
       <Line label="Enter only when">
         <TemplateInput
           label="Guard"
@@ -44,10 +46,27 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           label="Else go to"
           name="Guard leads to"
           value={shownValue(node.guard['to'])}
-          targets={targets}
+          targets={inTree ? [...targets, 'skipped'] : targets}
           onSet={(to) => measure('guard', 'to', to)}
         />
       )}
+      {!isPart && <MoreConduct node={node} parent={parent} targets={targets} set={set} measure={measure} />}
+    </Section>
+  )
+}
+
+interface ConductProps {
+  readonly node: EditNode
+  readonly parent: EditNode | undefined
+  readonly targets: readonly string[]
+  readonly set: (field: string, value: unknown) => void
+  readonly measure: (field: 'guard' | 'timeout' | 'retry', key: string, value: unknown) => void
+}
+
+/** What only nodes that run something have. */
+function MoreConduct({ node, parent, targets, set, measure }: ConductProps) {
+  return (
+    <>
       <Line label="Stop it after">
         <TemplateInput
           label="Timeout"
@@ -110,7 +129,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
         targets={targets}
         onSet={(to) => set('on_error', to || null)}
       />
-      {(node.every !== null || asksAgain(parent)) && (
+      {(node.every !== null || asksAgain(node, parent)) && (
         <Line label="Ask again every">
           <TemplateInput
             label="Ask again every"
@@ -137,7 +156,7 @@ export function ConductForm({ node, parent }: { node: EditNode; parent: EditNode
           ))}
         </select>
       </Line>
-    </Section>
+    </>
   )
 }
 
@@ -157,7 +176,8 @@ function targetsOf(
 }
 
 /** Whether a container asks what has ended again while what stands behind it is at work. */
-function asksAgain(parent: EditNode | undefined): boolean {
+function asksAgain(node: EditNode, parent: EditNode | undefined): boolean {
+  if (node.role === 'while') return true
   return (parent?.kind === 'sequence' || parent?.kind === 'selector') && lookup(parent.settings, 'memory') === false
 }
 

@@ -102,7 +102,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       <SettingsForm node={node} />
       {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
       <FlowSection node={node} />
-      {node.path !== ROOT && !isTreePart(node.kind) && <ConductForm node={node} parent={parent} />}
+      {node.path !== ROOT && node.kind !== 'guard' && <ConductForm node={node} parent={parent} />}
       <Section title="Notes">
         <TemplateInput
           label="Description"

@@ -10,6 +10,7 @@ export function OrderForm({ node }: { node: EditNode }) {
       <ol className="order-list">
         {node.children.map((child, index) => (
           <li key={child.name}>
+            {child.role && <span className="card-role">{child.role}</span>}
             <button
               type="button"
               className="link"

@@ -40,7 +40,10 @@ const SETTINGS: Record<string, readonly Setting[]> = {
   ],
   timeout: [{ key: 'after', words: 'After', hint: 'Such as 30 s' }],
   cooldown: [{ key: 'after', words: 'After', hint: 'Such as 30 s' }],
-  guard: [{ key: 'when', words: 'While', hint: 'An expression, ${…}' }],
+  guard: [
+    { key: 'when', words: 'While', hint: 'An expression, ${…}' },
+    { key: 'to', words: 'Else', hint: 'failure, success or skipped; failure without' },
+  ],
   one_shot: [{ key: 'policy', words: 'Once', hint: '`completion` or `success`' }],
 }
 

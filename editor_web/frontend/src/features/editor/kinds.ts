@@ -8,6 +8,7 @@ import {
   IconSitemap,
   IconArrowsShuffle,
   IconArrowRight,
+  IconGitFork,
   IconQuestionMark,
   IconEqual,
   IconRefresh,
@@ -33,6 +34,8 @@ const ICONS: Record<string, typeof IconBox> = {
   timeout: IconClock,
   cooldown: IconClock,
   guard: IconShieldHalf,
+  if_then_else: IconGitFork,
+  while_do_else: IconGitFork,
 }
 
 export function iconOf(kind: string): typeof IconBox {
