@@ -28,6 +28,7 @@ from engine.event import Event
 from engine.faults import FaultPort
 from engine.journal import Journal, NullJournal
 from engine.plan import Plan
+from engine.prompt_turns import prompt_turns
 from engine.recorder import Watcher
 from engine.recording import RecordingOrder, RunRecording
 from engine.run import Run, RunResult
@@ -157,7 +158,7 @@ async def _execute(order: Order) -> Ended:
                 # A collection that went through all that was loaded would hold the loop while arms move.
                 gc.collect()
                 gc.freeze()
-            with Watchdog():
+            with prompt_turns(), Watchdog():
                 result = await _within(order.timeout_s, run)
             over.set()
     if faults is not None and order.quiet:

@@ -21,6 +21,7 @@ from engine.cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
 from engine.journal import Journal
+from engine.prompt_turns import prompt_turns
 from engine.registry import SERVERS, load_maker, load_states
 from engine.session import Session
 from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
@@ -127,7 +128,7 @@ async def _serve(
 
     if cell is not None:
         sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
-    with Journal.open(state) as journal, ExitStack() as watched:
+    with Journal.open(state) as journal, prompt_turns(), ExitStack() as watched:
         async with (
             StopRelay(host=host, port=stop_port) as relay,
             OpenCell(cell, seed=seed, relay=relay) as opened,

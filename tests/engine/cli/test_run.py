@@ -14,7 +14,9 @@ import pytest
 
 from engine.event import RunEnded, StopRequested
 from engine.journal import list_runs, read_events
+from engine.prompt_turns import INTERVAL_S
 from tests.engine.cli.command import FLEXCELL, flexcell
+from tests.engine.project_folder import STATE, ProjectFolder
 
 COUNT = """
 flexcell: 1
@@ -30,6 +32,12 @@ root:
       wait: {state: flow.Wait, with: {duration_s: "${pause}"}, transitions: {done: choose}}
       choose: {state: flow.Decide, with: {when: "${flag}"}, transitions: {"true": finished, "false": failed}}
 """
+
+PROMPTLY = f"""\
+import sys
+        if sys.getswitchinterval() > 1.01 * {INTERVAL_S}:
+            raise TimeoutError(sys.getswitchinterval())
+        return Outcome("done")"""
 
 
 @pytest.fixture
@@ -183,3 +191,13 @@ def test_a_run_is_refused_where_its_cell_lacks_what_it_names(tmp_path: Path) -> 
     assert not (tmp_path / ".flexcell").exists()
     said = flexcell("run", "b.yaml", "--clock", "virtual", "-q", "--cell", "other.yaml", "-p", "arm=arm", cwd=tmp_path)
     assert (said.code, "has no robot" in said.err) == (0, False), said
+
+
+def test_states_run_beside_threads_that_leave_the_loop_its_turn(tmp_path: Path) -> None:
+    """A state sees the interval after which Python takes the interpreter from a thread."""
+    project = ProjectFolder(tmp_path)
+    module = project.module(STATE.replace('return Outcome("done")', PROMPTLY))
+    project.allow(module)
+    project.behavior("nod", f"{module}:Nod")
+    said = flexcell("run", "behaviors/nod.yaml", "--clock", "virtual", "-q", cwd=tmp_path)
+    assert said.code == 0, said.err
