@@ -94,7 +94,7 @@ def _machine(children: list[Node], *, kind: str) -> Node:
     states: Node = {}
     for index, child in enumerate(children):
         following = f"s{index + 1}" if index + 1 < len(children) else "a"
-        outs = ("a", "b", "c", "turned", "failed", "exhausted", "broken")
+        outs = ("a", "b", "c", "turned", "failed", "exhausted", "broken", "success", "failure")
         transitions = {out: following for out in outs if out in _outs(child)}
         divert: Node = {"on_error": following} if "on_error" in child else {}
         if "timeout" in child:
@@ -113,6 +113,12 @@ def _foreach(child: Node) -> Node:
     return {"foreach": {"times": 2, "child": child, "next": [*_outs(child)]}}
 
 
+def _tree(children: list[Node], kind: str) -> Node:
+    """A composite of a behavior tree, in which errors are failures."""
+    parts = [{**child, "name": f"t{index}"} for index, child in enumerate(children)]
+    return {"tree": {kind: [part | ({"on_error": "failure"} if "on_error" in part else {}) for part in parts]}}
+
+
 def _measured(child: Node, timeout_s: float, times: int) -> Node:
     """Give a node a timeout, which only a machine can lead on, and a retry."""
     measures: Node = {"timeout": {"after": timeout_s}, **({"retry": {"times": times}} if times else {})}
@@ -124,6 +130,8 @@ def _outs(node: Node) -> tuple[str, ...]:
         return ("turned", "failed", "c")
     if "state" in node:
         return ("a", "b", "c")
+    if "tree" in node:
+        return ("success", "failure")
     return ("exhausted", "broken") if "foreach" in node else ("a",)
 
 
@@ -134,6 +142,7 @@ TREES = st.recursive(
         | st.lists(inner, min_size=1, max_size=2).map(partial(_machine, kind="priority"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
         | inner.map(_foreach)
+        | st.builds(_tree, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["sequence", "selector", "parallel"]))
         | st.builds(_measured, inner, st.sampled_from([0.25, 1.0, 2.5]), st.integers(0, 2))
     ),
     max_leaves=6,
