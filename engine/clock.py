@@ -12,7 +12,8 @@ import asyncio
 import logging
 import math
 import selectors
-from collections.abc import Callable, Coroutine
+import types
+from collections.abc import Callable, Coroutine, Generator
 from concurrent.futures import Executor
 from contextvars import Context
 from typing import Any, Protocol, TypeVar
@@ -35,7 +36,7 @@ class Clock(Protocol):
         """Seconds since the clock started."""
         ...
 
-    async def sleep(self, duration_s: float) -> None:
+    def sleep(self, duration_s: float) -> Coroutine[Any, Any, None]:
         """Let `duration_s` pass; 0 lets everything that is ready run first."""
         ...
 
@@ -65,6 +66,12 @@ _LEAP_S = 0.25
 
 class NothingCanWake(FlexcellError):
     """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
+
+
+@types.coroutine
+def turn() -> Generator[None, None, None]:
+    """Let everything that is ready run first: what `asyncio.sleep(0)` awaits, without the coroutine around it."""
+    yield
 
 
 class LoopClock:

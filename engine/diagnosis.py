@@ -34,15 +34,11 @@ class Diagnosis:
 
     def take(self, child: Node, left: Left) -> None:
         """Note how a child has ended."""
-        is_plain = left.cause is None and left.target is None and not (child.has_choice or self._is_decided)
-        if is_plain and left.outcome in child.work.nominal:
+        if left.outcome in child.expected and left.cause is None and left.target is None:
             # Nearly all that end do so.
-            self._reason = (child, left)
-        else:
-            self._weigh(child, left)
-
-    def _weigh(self, child: Node, left: Left) -> None:
-        if went_wrong(child, left):
+            if not self._is_decided:
+                self._reason = (child, left)
+        elif went_wrong(child, left):
             self.cause = self._reason = explain(child, left)
             self._is_decided = True
         elif _has_chosen(child, left):

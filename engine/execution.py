@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from engine.activity import Activity
 from engine.bus import SkillBus
-from engine.clock import Clock
+from engine.clock import Clock, turn
 from engine.control.gate import Gate
 from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
@@ -42,6 +42,8 @@ class Execution:
     skills: SkillPort
     suspensions: Suspensions
     gate: Gate
+    loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
+    """The one that it runs on."""
     activity: Activity = field(default_factory=Activity)
     instant_limit: int = 10_000
     """Transitions in a row in which nothing is waited for, before a loop is reported."""
@@ -164,7 +166,7 @@ class Execution:
         if not duration_s <= LONGEST_S:
             raise StateError(f"this would wait for {duration_s:g} s", where=path, hint=f"{LONGEST_S:g} s are the most")
         if duration_s <= 0:
-            await self.clock.sleep(0)
+            await turn()
             return
         self.waits.add_timed(path, duration_s)
         timer = self.suspensions.timer(path, duration_s)

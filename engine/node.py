@@ -111,6 +111,11 @@ class Node:
         return len({self.transitions[each] for each in self.work.nominal if each in self.transitions}) > 1
 
     @cached_property
+    def expected(self) -> frozenset[str]:
+        """The ends that explain nothing: good ones, where it had no choice of them."""
+        return frozenset() if self.has_choice else self.work.nominal
+
+    @cached_property
     def _plain(self) -> bool:
         return self.timeout is None and self.retry is None and self.on_error is None and self.guard is None
 
@@ -144,7 +149,7 @@ class Node:
         except BaseException as error:
             ended = _raised(error)
         else:
-            if not (execution.gate.armed or being_cancelled()):
+            if not (execution.gate.armed or being_cancelled(execution.loop)):
                 record_exit(execution, path, visit, outcome.name, cause=outcome.cause)
                 return left_with(outcome)
             ended = _ended(outcome)
@@ -238,7 +243,7 @@ class Node:
             raise
         except FlexcellError as error:
             # A stop beats on_error, also when the clean-up fails.
-            if self.on_error is None or being_cancelled():
+            if self.on_error is None or being_cancelled(execution.loop):
                 raise
             cause = cause_of(error)
             record_diverted(execution, self.path, "on_error", self.on_error, cause)
@@ -293,7 +298,7 @@ class Node:
             except (JournalError, NotStopped):
                 raise
             except FlexcellError as error:
-                if retry is None or not retry.errors or attempt > retry.times or being_cancelled():
+                if retry is None or not retry.errors or attempt > retry.times or being_cancelled(execution.loop):
                     raise
                 again = cause_of(error)
             point = None
@@ -331,7 +336,7 @@ class Node:
         try:
             outcome = await begun.work
         except asyncio.CancelledError as stray:
-            if being_cancelled():
+            if being_cancelled(execution.loop):
                 record_exit(execution, self.path, visit, "", preempted=True)
                 raise
             error = StateError("a CancelledError came out though nobody asked it to stop", where=self.position or path)
@@ -340,11 +345,13 @@ class Node:
         except Exception as raised:
             error = self._named(raised)
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
-            record_exit(execution, self.path, visit, "", preempted=being_cancelled(), cause=cause_of(error))
-            if being_cancelled() and self.work.kind == "state":
+            record_exit(
+                execution, self.path, visit, "", preempted=being_cancelled(execution.loop), cause=cause_of(error)
+            )
+            if being_cancelled(execution.loop) and self.work.kind == "state":
                 execution.recorder.log(path, f"clean-up failed: {describe(cause_of(error))}", level="error")
             raise error from error.__cause__
-        if being_cancelled():
+        if being_cancelled(execution.loop):
             # It took no notice, or was just done; whoever stops it must not find its successor running.
             record_exit(execution, self.path, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError

@@ -30,8 +30,9 @@ class ContainerOutcome(Outcome, frozen=True):
 
 def left_with(outcome: Outcome) -> Left:
     """Return how a node is left whose work has ended so."""
-    reason = outcome.reason if isinstance(outcome, ContainerOutcome) else None
-    return Left(outcome.name, None, outcome.cause, reason)
+    if isinstance(outcome, ContainerOutcome):
+        return Left(outcome.name, None, outcome.cause, outcome.reason)
+    return Left(outcome.name, None, outcome.cause)
 
 
 def guard_closed(path: str) -> Cause:

@@ -67,7 +67,7 @@ async def observe(node: Node, scope: Scope, execution: Execution) -> Observation
     except GeneratorExit:
         raise
     except asyncio.CancelledError:
-        if being_cancelled():
+        if being_cancelled(execution.loop):
             raise
     except BaseException:
         # As above: also what is no Exception is an error of the node once it is run.

@@ -37,9 +37,13 @@ _FOR_ORDERS: set[asyncio.Task[Any]] = set()
 """Those of them that clean up for an order, and are to go on."""
 
 
-def being_cancelled() -> bool:
-    """Tell whether the running branch has been asked to stop."""
-    task = asyncio.current_task()
+def being_cancelled(loop: asyncio.AbstractEventLoop) -> bool:
+    """Tell whether the running branch has been asked to stop.
+
+    Args:
+        loop: The running one, which to find out costs more than the rest of a state that ends at once.
+    """
+    task = asyncio.current_task(loop)
     return task is not None and (task.cancelling() > 0 or task in _ASKED)
 
 
