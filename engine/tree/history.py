@@ -7,16 +7,16 @@ stood. That is enough: composites of py_trees keep nothing that does not follow 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged
+from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged, UserdataWritten
 
 
 class Mark(NamedTuple):
     """One thing that happened to a part: its path, what, and the run's time.
 
-    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME` or `attempt NUMBER`.
+    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME`, `attempt NUMBER` or `assigned WHEN`.
     """
 
     path: str
@@ -44,6 +44,8 @@ class Standing:
     """The first status that a one-shot keeps: success wins over an earlier failure."""
     first: str | None = None
     """The first final status at all."""
+    assigned: dict[str, int] = field(default_factory=dict[str, int])
+    """Assignments of post-conditions since anything else happened to it, by `on_success` and so on."""
     attempt: int = 1
     rounds: int = 0
     """How often it has begun a further round in this activation."""
@@ -69,6 +71,8 @@ def mark_of(event: Event) -> Mark | None:
             return Mark(event.path, f"{said} {event.target}", event.time_s)
         case Retried():
             return Mark(event.path, f"attempt {event.attempt}", event.time_s)
+        case UserdataWritten() if event.post:
+            return Mark(event.path, f"assigned {event.post}", event.time_s)
         case _:
             return None
 
@@ -89,6 +93,11 @@ def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
     unread: list[Standing] = []
     for number, mark in enumerate(marks):
         standing = found.setdefault(mark.path, Standing())
+        if mark.what.startswith("assigned "):
+            when = mark.what.partition(" ")[2]
+            standing.assigned[when] = standing.assigned.get(when, 0) + 1
+            continue
+        standing.assigned.clear()
         standing.order = number
         standing.over = number if mark.what in ("success", "failure", "skipped", "invalid") else standing.over
         what, _, name = mark.what.partition(" ")
