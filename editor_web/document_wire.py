@@ -51,6 +51,7 @@ class DocumentNodeBody(GraphNodeBody):
     timeout: dict[str, object] | None
     retry: dict[str, object] | None
     guard: dict[str, object] | None
+    post: dict[str, object] | None
     on_error: str | None
     resume: str | None
     success: tuple[str, ...]

@@ -69,13 +69,14 @@ class Exited(Event, frozen=True, kw_only=True, tag="exited", omit_defaults=True)
     cause: Cause | None = None
 
 
-class UserdataWritten(Event, frozen=True, kw_only=True, tag="userdata"):
-    """A node wrote `key` into the scope of the container `scope`."""
+class UserdataWritten(Event, frozen=True, kw_only=True, tag="userdata", omit_defaults=True):
+    """A node wrote `key` into the scope of the container `scope`, or a post-condition of it did, which `post` names."""
 
     path: str
     scope: str
     key: str
     value: object
+    post: str = ""
 
 
 class UserdataAppended(Event, frozen=True, kw_only=True, tag="userdata_appended"):

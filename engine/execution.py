@@ -122,7 +122,7 @@ class Execution:
         found = self.replaced.get(path)
         return found if isinstance(found, type(node)) else node
 
-    def write(self, path: str, scope: Scope, key: str, value: object) -> None:
+    def write(self, path: str, scope: Scope, key: str, value: object, *, post: str = "") -> None:
         """Write where the key lives as seen from `scope`, and record that.
 
         Raises:
@@ -131,7 +131,7 @@ class Execution:
         plain = plain_value(value, key=key, where=path)
         with self.counted():
             owner = scope.write(key, value)
-        self.record_write(path, owner, key, plain)
+        self.record_write(path, owner, key, plain, post=post)
 
     def append(self, path: str, scope: Scope, key: str, value: object) -> int:
         """Append a value, which must be nobody else's, to a list as seen from `scope`, and record that.
@@ -152,10 +152,10 @@ class Execution:
             self.recorder.emit(UserdataAppended, path=path, scope=owner, key=key, value=plain)
         return len(grown)
 
-    def record_write(self, path: str, scope: str, key: str, value: object) -> None:
-        """Record that the node at `path` wrote a plain value to `key` of `scope`."""
+    def record_write(self, path: str, scope: str, key: str, value: object, *, post: str = "") -> None:
+        """Record that the node at `path`, or a post-condition of it, wrote a plain value to `key` of `scope`."""
         self.stirs += 1
-        self.recorder.emit(UserdataWritten, path=path, scope=scope, key=key, value=value)
+        self.recorder.emit(UserdataWritten, path=path, scope=scope, key=key, value=value, post=post)
 
     async def sleep(self, path: str, duration_s: float) -> None:
         """Let `duration_s` pass in which the branch of `path` is not held.

@@ -260,7 +260,11 @@ class History:
 
     def _write(self, event: UserdataWritten | UserdataAppended) -> None:
         """What a node writes counts from its end on: one that is entered again writes again."""
-        if event.path in self._open and event.path != event.scope:
+        own = f"{event.path}*"
+        # A branch that is still being stopped is merged, or a post-condition has written: that counts at once.
+        merged = own in self._scopes and event.scope != own
+        post = isinstance(event, UserdataWritten) and bool(event.post)
+        if event.path in self._open and event.path != event.scope and not (merged or post):
             self._pending.setdefault(event.path, []).append(event)
         else:
             self._keep(event)

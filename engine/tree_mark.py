@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged
+from engine.event import Diverted, Entered, Event, Exited, Retried, StatusChanged, UserdataWritten
 
 
 class Mark(NamedTuple):
     """One thing that happened to a part: its path, what, and the run's time.
 
-    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME` or `attempt NUMBER`.
+    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME`, `attempt NUMBER` or `assigned WHEN`.
     """
 
     path: str
@@ -34,5 +34,7 @@ def mark_of(event: Event) -> Mark | None:
             return Mark(event.path, f"{said} {event.target}", event.time_s)
         case Retried():
             return Mark(event.path, f"attempt {event.attempt}", event.time_s)
+        case UserdataWritten() if event.post:
+            return Mark(event.path, f"assigned {event.post}", event.time_s)
         case _:
             return None

@@ -41,11 +41,13 @@ from engine.authoring.tree_part import (
     while_do_else,
 )
 from engine.document.node import Guard, Retry, Timeout
+from engine.document.node_kind import Post
 
 __all__ = [
     "Guard",
     "Param",
     "PartKeys",
+    "Post",
     "Retry",
     "Step",
     "StepKeys",

@@ -9,7 +9,7 @@ import msgspec
 
 from engine.authoring.place import calling_position
 from engine.authoring.plain import as_plain, has_expression
-from engine.authoring.step import Step, StepKeys, TreePart, new_part, new_step, with_keys
+from engine.authoring.step import PartKeys, Step, StepKeys, TreePart, new_part, new_step, with_keys
 from engine.document.behavior import Behavior
 from engine.document.signature import read_signature
 from engine.errors import DocumentError, Position
@@ -90,14 +90,11 @@ def reference(
     return with_keys(step, {"with": plain, "in": dict(inputs), "out": dict(outputs)})
 
 
-def behaviour(
-    what: str, *, parameters: Mapping[str, object] = _NOTHING, name: str = "", description: str = ""
-) -> TreePart:
+def behaviour(what: str, *, parameters: Mapping[str, object] = _NOTHING, **keys: Unpack[PartKeys]) -> TreePart:
     """Put a `Behaviour` of py_trees into a tree, named as `module:Class`; `parameters` go to its constructor."""
     plain = as_plain(parameters, what=f"the parameters of {what}", where=calling_position())
-    part = new_part("behaviour", what)
-    more = {"with": plain, "name": name, "description": description}
-    return TreePart(keys={**part.keys, **{key: value for key, value in more.items() if value}}, place=part.place)
+    part = new_part("behaviour", what, **keys)
+    return TreePart(keys={**part.keys, **({"with": plain} if plain else {})}, place=part.place)
 
 
 def _parameters_of(what: State, place: Position) -> Mapping[str, object]:

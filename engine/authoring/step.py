@@ -9,6 +9,7 @@ from typing import TypedDict, Unpack
 from engine.authoring.place import calling_position
 from engine.authoring.plain import as_plain
 from engine.document.node import AutonomyLevel, Guard, NodeKind, Retry, Timeout
+from engine.document.node_kind import Post
 from engine.errors import Position
 
 
@@ -30,6 +31,7 @@ class NameKeys(TypedDict, total=False):
 
     name: str
     description: str
+    post: Post
 
 
 class PartKeys(NameKeys, total=False):

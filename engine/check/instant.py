@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from engine.check.component import components
 from engine.check.finding import Finding
-from engine.check.flow.read import Read
+from engine.check.flow.read import Read, assignments
 from engine.check.subject import Placed, Subject
 from engine.document.node import FOREACH_OUTCOMES, Concurrency, Node
 
@@ -154,6 +154,7 @@ def _can_change(subject: Subject, loop: Sequence[Placed], keys: Mapping[str, set
         written |= set(placed.node.outputs.values())
         if signature is not None:
             written |= {key for key in signature.outputs if key not in placed.node.outputs}
+        written |= {key for _, _, key in assignments(placed)}
         if placed.node.foreach is not None:
             written |= set(placed.node.foreach.collect.values())
     return bool(read & written)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from engine.check.finding import Finding
 from engine.check.flow.flow import Flow
-from engine.check.flow.read import Read
+from engine.check.flow.read import Read, assignments
 from engine.check.flow.route import route, shown
 from engine.check.flow.site import Site
 from engine.check.subject import Placed, Subject
@@ -65,7 +65,7 @@ class _Keys:
             hint = f"{where} defines it later, or in a scope of its own; declare it in a `userdata` around both"
             return self.subject.finding("undefined-key", message, path, *read.keys, hint=hint)
         near = near_names(key, self._names)
-        if read.by == "expression":
+        if read.by in ("expression", "post"):
             message = f"`{key}` is neither a parameter nor a userdata key that can be read here"
             return self.subject.finding("undeclared-name", message, path, *read.keys, hint=near)
         if read.by == "shared":
@@ -81,7 +81,7 @@ class _Keys:
     def _perhaps_undefined(self, read: Read, *, with_route: bool) -> Finding:
         path, key = read.placed.path, read.key
         message = f"`{read.placed.name}` reads `{key}`, which may not be defined"
-        if with_route and read.by not in ("collect", "shared"):
+        if with_route and read.by not in ("collect", "shared", "post"):
             steps = route(self.flow, path, self.flow.sites.undefined_bit(key))
             message += f": nothing defines it on the way {shown(steps)}"
         hint = f"give `{key}` an initial value in `userdata`, or lead this way elsewhere"
@@ -97,7 +97,7 @@ class _Keys:
         names = {*document.parameters, *document.userdata}
         for placed in self.subject.nodes.values():
             node = placed.node
-            names |= {*node.userdata, *node.outputs.values()}
+            names |= {*node.userdata, *node.outputs.values(), *(key for _, _, key in assignments(placed))}
             signature = self.subject.signature(node)
             if signature is not None:
                 names |= {key for key in signature.outputs if key not in node.outputs}

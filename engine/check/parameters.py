@@ -9,7 +9,7 @@ from typing import Any, cast
 import msgspec
 
 from engine.check.finding import Finding
-from engine.check.flow.read import conditions
+from engine.check.flow.read import assignments, conditions
 from engine.check.subject import Placed, Subject
 from engine.document.conversion import in_words
 from engine.document.expression import Template
@@ -63,7 +63,7 @@ def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, o
 
 def _check_expressions(subject: Subject, placed: Placed) -> Iterator[Finding]:
     given = {("with", name): found for name, found in subject.given_to(placed).items()}
-    for keys, found in {**given, **conditions(placed)}.items():
+    for keys, found in {**given, **conditions(placed), **assignments(placed)}.items():
         if isinstance(found, ExpressionError):
             yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
 

@@ -30,6 +30,7 @@ from engine.document.node_kind import (
     NodeKind,
     NodeName,
     OutcomeName,
+    Post,
     Reference,
     Status,
     Times,
@@ -280,6 +281,7 @@ class Node(
     `autonomy` names for an outcome the level from which on it does not pass by itself any more;
     `resume` says what to do with the node after a crash: `rerun`, `ask`, or take an outcome.
     `success` (in a tree) names the outcomes that mean SUCCESS; `name` (in a tree) is its place in paths.
+    `post` (in a tree) says which userdata is assigned when it has ended, or was halted.
     `every` (in a tree) is how often a py_trees `behaviour` is ticked while it is RUNNING, 0.1 s without it,
     and how often a check is asked again while it stands in front of a running action in a composite without memory.
     """
@@ -310,6 +312,7 @@ class Node(
     outputs: dict[str, Key] = {}
     transitions: dict[str, str] = {}
     guard: Guard | None = None
+    post: Post | None = None
     timeout: Timeout | None = None
     retry: Retry | None = None
     on_error: str | None = None

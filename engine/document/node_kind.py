@@ -7,6 +7,8 @@ from typing import Annotated, Literal, get_args
 
 from msgspec import Meta
 
+from engine.document.conversion import Strict
+
 PlainKind = Literal["state", "machine", "concurrency", "priority", "tree", "foreach", "behavior"]
 TreeKind = Literal[
     "sequence",
@@ -49,6 +51,21 @@ AutonomyLevel = Literal["off", "low", "high", "full"]
 Status = Literal["success", "failure", "running"]
 Count = Annotated[int, Meta(ge=1, description="For `at_least`: how many of these")]
 Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or more")]
+
+
+Assignments = Annotated[dict[Key, object], Meta(description="`{userdata key: value}`, in this order")]
+
+
+class Post(Strict, frozen=True, kw_only=True):
+    """Userdata that is assigned when a part of a tree has ended, or was halted; values may hold `${…}`.
+
+    `always` is after success and failure, behind the others. Nothing is assigned for a part that was skipped.
+    """
+
+    on_success: Assignments = {}
+    on_failure: Assignments = {}
+    on_halted: Assignments = {}
+    always: Assignments = {}
 
 
 def numbered(wanted: Iterable[str]) -> list[str]:

@@ -242,7 +242,7 @@ def _no_tree_part(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]
         error = DocumentError(f"`{node.kind}` stands only inside a tree", where=where, hint=hint)
         yield Breach(path=path, error=error, excess=None)
         return
-    for key in ("name", "success"):
+    for key in ("name", "success", "post"):
         if getattr(node, key):
             where = behavior.key_position(path, key)
             error = DocumentError(f"`{key}` of a node stands only inside a tree", where=where, hint="remove it")

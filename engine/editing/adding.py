@@ -170,6 +170,7 @@ def fit(bench: Bench, container: Spot, node: Plain) -> None:
             raise EditRefused(f"a `{kind}` stands only inside a tree", hint="put it into a `tree`")
         node.pop("name", None)
         node.pop("success", None)
+        node.pop("post", None)
     if container.kind not in MACHINES:
         node.pop("transitions", None)
     if tree:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from engine.check.flow.flow import Flow
-from engine.check.flow.read import Read, reads
+from engine.check.flow.read import Read, assignments, reads
 from engine.check.flow.route import route, shown
 from engine.check.flow.site import Sites
 from engine.check.subject import Catalogue, Placed, Subject, new_subjects
 from engine.document.behavior import Behavior
 
-Origin = Literal["parameter", "userdata", "item", "index", "output", "collect"]
+Origin = Literal["parameter", "userdata", "item", "index", "output", "collect", "post"]
 Defined = Literal["always", "maybe", "never", "unreachable"]
 _MOST_ROUTES = 200
 
@@ -95,6 +95,8 @@ def _written(subject: Subject, placed: Placed) -> Iterator[tuple[str, KeyWriter]
             yield rounds.index, KeyWriter(path=path, origin="index", name="index")
         for inner, outer in rounds.collect.items():
             yield outer, KeyWriter(path=path, origin="collect", name=inner)
+    for _, when, key in assignments(placed):
+        yield key, KeyWriter(path=path, origin="post", name=when)
     signature = subject.signature(node)
     for name in signature.outputs if signature is not None else ():
         if name not in node.outputs:
@@ -113,7 +115,7 @@ def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
         undefined, known = fact & sites.undefined_bit(read.key), fact & sites.defined_bits(read.key)
         defined = "always" if not undefined else "maybe" if known else "never"
         sources = tuple(site.path for site in sites.places(read.key, known))
-        if undefined and known and with_way and read.by not in ("collect", "shared"):
+        if undefined and known and with_way and read.by not in ("collect", "shared", "post"):
             way = shown(route(flow, path, sites.undefined_bit(read.key)))
     return KeyReader(
         path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, way=way

@@ -105,8 +105,8 @@ class ClearParameter(Edit, frozen=True, kw_only=True, tag="clear_parameter"):
 class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
     """Set one thing of a node; null takes it away.
 
-    For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes,
-    and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
+    For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post,
+    notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions,
     otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count,
     failure_count, after, status, running, failure; and `order`, the names of all children in their new order.
     """

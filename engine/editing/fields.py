@@ -39,7 +39,7 @@ from engine.nearness import near_names
 
 _OF_NODES = frozenset(
     ("description", "timeout", "retry", "guard", "on_error", "autonomy", "resume", "in", "out", "success", "every",
-     "state", "behavior", "behaviour", "name")
+     "post", "state", "behavior", "behaviour", "name")
 )  # fmt: skip
 _OF_KINDS: Mapping[str, type[msgspec.Struct]] = {
     "machine": Machine, "priority": Machine, "concurrency": Concurrency, "foreach": ForEach, "sequence": Composite,
@@ -63,7 +63,7 @@ _HEAD = (
     "notes",
 )
 _ORDER = (
-    "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "timeout", "retry",
+    "description", "name", "state", "behavior", "behaviour", "with", "in", "out", "guard", "post", "timeout", "retry",
     "on_error", "autonomy", "resume", "success", "every", "transitions",
 )  # fmt: skip
 """In which order the keys of a state are written."""

@@ -45,6 +45,7 @@ class DocumentNode(GraphNode, frozen=True, kw_only=True, gc=False):
     timeout: dict[str, object] | None
     retry: dict[str, object] | None
     guard: dict[str, object] | None
+    post: dict[str, object] | None
     on_error: str | None
     resume: str | None
     success: tuple[str, ...]
@@ -148,6 +149,7 @@ class _Drawing:
             timeout=_measure(data.get("timeout"), spot.kind == "timeout"),
             retry=_measure(data.get("retry"), spot.kind == "retry"),
             guard=_measure(data.get("guard"), spot.kind == "guard"),
+            post=_measure(data.get("post"), False),
             on_error=_optional(data.get("on_error")),
             resume=_optional(data.get("resume")),
             success=texts(data.get("success")),

@@ -11,7 +11,7 @@ from engine.editing.edit import Point, SetPositions, Ungroup
 from engine.editing.fields import set_positions
 from engine.editing.outline import GROUPS, MACHINES, NAMED, Plain, Spot
 
-_LOST = ("guard", "timeout", "retry", "on_error", "autonomy", "resume")
+_LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume")
 
 
 def ungroup(bench: Bench, edit: Ungroup) -> None:
@@ -91,6 +91,8 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
         raise EditRefused(
             f"`{part.path}` has no memory", hint="only one with memory runs its children one after the other"
         )
+    if any("post" in step.data for step in steps):
+        raise EditRefused(f"a step of `{spot.path}` has a `post`, which would be lost", hint="take it away first")
     if any(_guard(step).get("to") == "skipped" for step in steps):
         raise EditRefused(
             f"a step of `{spot.path}` may be skipped, which a machine does not know", hint="guard it else"

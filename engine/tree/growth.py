@@ -26,6 +26,7 @@ from engine.tree.leaves import Leaves
 from engine.tree.parallel import CountingParallel, Parallel, Thresholds
 from engine.tree.part import Part
 from engine.tree.place import Place
+from engine.tree.post_conditions import PostConditions
 from engine.tree.statuses import Statuses
 
 _STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
@@ -52,6 +53,7 @@ class Growth:
     guards: list[Guard | EntryGuard] = field(default_factory=list["Guard | EntryGuard"])
     entry_guards: dict[Behaviour, EntryGuard] = field(default_factory=dict[Behaviour, EntryGuard])
     foreign: dict[Behaviour, Foreign] = field(default_factory=dict[Behaviour, Foreign])
+    posts: dict[Behaviour, PostConditions] = field(default_factory=dict[Behaviour, PostConditions])
     statuses: Statuses = field(init=False)
     reactive: bool = False
     """Whether it holds a part that asks again what has ended: a composite without memory, or a `while_do_else`."""
@@ -78,6 +80,7 @@ class Growth:
             rank = self._rank
             leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank=rank, caught=caught)
             self.parts[leaf] = part
+            self._post(part, leaf, place)
             self.statuses.skips.place(leaf, passing)
             return leaf
         if part.foreign is not None:
@@ -99,8 +102,13 @@ class Growth:
             self.statuses.skips.follow(node)
         if part.source.guard is not None and part.source.kind != "guard":
             self._entry_guard(part, part.source.guard, node, place)
+        self._post(part, node, place)
         self.statuses.follow(node, part.path)
         return node
+
+    def _post(self, part: Part, node: Behaviour, place: Place) -> None:
+        if part.post:
+            self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
 
     def _line(self, part: Part, place: Place, caught: bool) -> Behaviour:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE

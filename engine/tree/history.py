@@ -7,7 +7,7 @@ keep nothing that does not follow from it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from engine.tree_mark import Mark
 
@@ -32,6 +32,8 @@ class Standing:
     """The first status that a one-shot keeps: success wins over an earlier failure."""
     first: str | None = None
     """The first final status at all."""
+    assigned: dict[str, int] = field(default_factory=dict[str, int])
+    """Assignments of post-conditions since anything else happened to it, by `on_success` and so on."""
     attempt: int = 1
     rounds: int = 0
     """How often it has begun a further round in this activation."""
@@ -57,6 +59,11 @@ def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
     unread: list[Standing] = []
     for number, mark in enumerate(marks):
         standing = found.setdefault(mark.path, Standing())
+        if mark.what.startswith("assigned "):
+            when = mark.what.partition(" ")[2]
+            standing.assigned[when] = standing.assigned.get(when, 0) + 1
+            continue
+        standing.assigned.clear()
         standing.order = number
         standing.over = number if mark.what in ("success", "failure", "skipped", "invalid") else standing.over
         what, _, name = mark.what.partition(" ")

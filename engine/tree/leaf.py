@@ -121,6 +121,11 @@ class TreeLeaf(Behaviour):
         self.stale = self.plan.every_s is not None or bool(self.plan.reads)
 
     @property
+    def begun(self) -> bool:
+        """Whether it is at work and has begun."""
+        return self._activation is not None and self._activation.task is not None
+
+    @property
     def scope(self) -> Scope:
         """Where it reads and writes at present."""
         return self._place.scope

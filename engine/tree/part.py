@@ -45,6 +45,10 @@ class ForeignPlan:
     every_s: float
 
 
+Assignment = tuple[str, Template]
+"""A userdata key and the value that it is given."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Part:
     """One node of a tree: a composite or decorator as documented in `source`, or a leaf."""
@@ -58,6 +62,8 @@ class Part:
     foreign: ForeignPlan | None = None
     when: Template | None = None
     """The condition of a guard."""
+    post: Mapping[str, tuple[Assignment, ...]] = field(default_factory=dict[str, tuple[Assignment, ...]])
+    """What is assigned, by `on_success` and so on; empty where nothing ever is."""
 
     @cached_property
     def skips(self) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
+import msgspec
 from py_trees.behaviour import Behaviour as PyTreesBehaviour
 
 from engine.behaviour_catalogue import find_behaviour
@@ -12,6 +13,7 @@ from engine.document import node as nodes
 from engine.document.behavior import Behavior
 from engine.document.duration import seconds
 from engine.document.expression import Template, compile_template
+from engine.document.node_kind import Post
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.leaf import Leaf
 from engine.nearness import near_names
@@ -19,7 +21,7 @@ from engine.node import Node
 from engine.state_catalogue import Catalogue
 from engine.tree.arguments import takes_name, wrong_arguments
 from engine.tree.decorators import WHERE_NOTHING_WAKES_S
-from engine.tree.part import ForeignPlan, LeafPlan, Part
+from engine.tree.part import Assignment, ForeignPlan, LeafPlan, Part
 from engine.tree.tree import Tree
 
 PlanNode = Callable[[str, str, nodes.Node], Node]
@@ -64,6 +66,7 @@ class _Planner:
             children=() if is_leaf else self.children(inside, node),
             leaf=self._leaf(name, inside, node) if is_leaf else None,
             foreign=self._foreign(inside, node) if node.behaviour is not None else None,
+            post=self._post(inside, node.post) if node.post is not None else {},
             when=self._template(inside, "guard", node.guard.when) if node.guard is not None and not is_leaf else None,
         )
 
@@ -96,6 +99,13 @@ class _Planner:
             outputs=node.outputs,
             every_s=seconds(node.every) if node.every is not None else WHERE_NOTHING_WAKES_S,
         )
+
+    def _post(self, inside: str, post: Post) -> dict[str, tuple[Assignment, ...]]:
+        given: dict[str, dict[str, object]] = msgspec.structs.asdict(post)
+        return {
+            when: tuple((key, self._template(inside, "post", value)) for key, value in assigned.items())
+            for when, assigned in given.items()
+        }
 
     def _class(self, inside: str, name: str) -> type[PyTreesBehaviour]:
         try:

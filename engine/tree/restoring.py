@@ -45,6 +45,8 @@ def restore(root: Behaviour, growth: Growth, known: Mapping[str, Standing], bran
     # In the order in which they had begun, so that those which end together end in the same order.
     for leaf, _ in sorted(restoring.going_on, key=lambda each: each[1]):
         leaf.go_on()
+    for post in growth.posts.values():
+        post.conclude()
     return restoring.tick_due
 
 
@@ -66,6 +68,8 @@ class _Restoring:
             # It was in its first tick, and had not come to tell its status.
             self.tick_due = True
             standing = replace(standing, status="running", since_s=self.now_s, attempt=1, rounds=0)
+        if node in self.growth.posts:
+            self.growth.posts[node].made = dict(standing.assigned)
         if isinstance(node, TreeLeaf):
             return self._leaf(node, standing)
         if part.foreign is not None:

@@ -31,6 +31,7 @@ def test_every_field_has_a_type() -> None:
         "readonly parameters: Dict<Dict<unknown>>",
         "readonly parameters: Dict<unknown>",
         "readonly parameters?: Dict<unknown>",
+        "readonly post: Dict<unknown> | null",
         "readonly retry: Dict<unknown> | null",
         "readonly schema: Dict<unknown>",
         "readonly settings: Dict<unknown>",

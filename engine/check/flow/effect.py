@@ -54,6 +54,19 @@ class Effect:
         gen = self.gen | before.gen & ~self.kill
         return Effect(self.keys | before.keys, gen, self.kill, self.fresh | before.fresh & ~self.kill, self.defines)
 
+    def then(self, after: Effect) -> Effect:
+        """Return the effect of this and then of `after`, which writes the same whatever was defined."""
+        if not after.keys:
+            return self
+        lost = after.kill | after.defines
+        return Effect(
+            self.keys | after.keys,
+            self.gen & ~lost | after.gen,
+            self.kill | after.kill,
+            self.fresh & ~lost | after.fresh,
+            self.defines | after.defines,
+        )
+
     def hidden(self, own: frozenset[str], sites: Sites) -> Effect:
         """Return what of it is seen outside a scope with these keys of its own."""
         if not self.keys & own:

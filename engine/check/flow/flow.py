@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from engine.check.flow.branches import concurrency_ends, parallel_ends
 from engine.check.flow.effect import NOTHING, Effect, either, summary, together, writing
 from engine.check.flow.graph import Graph, Way, machine_graph, tree_graph
+from engine.check.flow.post import Assigned, fact_of_post
 from engine.check.flow.read import Read
 from engine.check.flow.rounds import collecting, foreach_facts
 from engine.check.flow.site import Origin, Sites
@@ -43,6 +44,10 @@ class Flow:
         self.ways: dict[str, list[Way]] = {}
         """The ways out of each node, called as its container calls them."""
         self._end = 0
+        self._posts: dict[str, Assigned] = {}
+        """What the post-conditions of each part of a tree write, by its path."""
+        self._ended: dict[str, list[Way]] = {}
+        """The ways out of parts with post-conditions, before these."""
         self._attempts: dict[str, Effect] = {}
         self._own: dict[str, frozenset[str]] = {}
         self._isolated: dict[str, bool] = {}
@@ -79,6 +84,10 @@ class Flow:
 
     def fact_at(self, read: Read) -> int | None:
         """Return what holds where a key is read; None where nobody gets to."""
+        if read.by == "post":
+            path = read.placed.path
+            before, halted = self.before.get(path), self.anywhere[path]
+            return fact_of_post(read, before, self._ended.get(path, ()), halted, self._posts[path], self.sites)
         facts = {"collect": self.behind, "shared": self.inside}.get(read.by, self.before)
         return facts.get(read.placed.path)
 
@@ -123,6 +132,8 @@ class Flow:
             self._isolated[placed.path] = around is not None and (
                 around.kind in ("concurrency", "parallel") or self._isolated[around.path]
             )
+            if placed.node.post is not None:
+                self._posts[placed.path] = Assigned(placed, self.sites)
             if placed.path in self.subject.inside:
                 own = _declared(placed)
                 self._own[placed.path] = frozenset(key for key, _ in own if key in self.sites)
@@ -149,7 +160,13 @@ class Flow:
             ends = self._leaf_ends(placed)
             writes = any(effect.keys for effect in ends.values())
             self.anywhere[placed.path] = either(effect.perhaps() for effect in ends.values()) if writes else NOTHING
-        self.ways[placed.path] = self._ways(placed, ends, leaf=not children)
+        ways = self._ways(placed, ends, leaf=not children)
+        post = self._posts.get(placed.path)
+        if post is not None:
+            self._ended[placed.path] = ways
+            ways = [Way(way.label, way.effect.then(post.at(way.label))) for way in ways]
+            self.anywhere[placed.path] = together((self.anywhere[placed.path], post.anywhere))
+        self.ways[placed.path] = ways
 
     def _leaf_ends(self, placed: Placed) -> dict[str, Effect]:
         node = placed.node
@@ -216,7 +233,8 @@ class Flow:
             return machine_graph(children, machine.initial, self.ways)
         if placed.node.concurrency is not None or placed.node.parallel is not None or placed.node.foreach is not None:
             return None
-        halted = {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
+        halted = {path: post.halted for path, post in self._posts.items()}
+        halted |= {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
         return tree_graph(placed, children, self.ways, defaultdict(lambda: NOTHING, halted))
 
     def _ways(self, placed: Placed, ends: dict[str, Effect], *, leaf: bool) -> list[Way]:

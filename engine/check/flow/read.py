@@ -12,7 +12,7 @@ from engine.document.expression import Template, split_text
 from engine.document.signature import KeySignature
 from engine.errors import ExpressionError
 
-By = Literal["input", "mapped", "expression", "collect", "shared"]
+By = Literal["input", "mapped", "expression", "collect", "shared", "post"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +21,7 @@ class Read:
 
     `input`: the state's input key of the same name. `mapped`: through `in:`. `expression`: a name
     in a `${…}`. `collect`: at the end of a round of a foreach. `shared`: by the branches of a concurrency
-    container. `keys` lead to the value in the
+    container. `post`: in a `${…}` of a post-condition. `keys` lead to the value in the
     document, from the node inward. A read that is not `required` is left out where there is no value.
     """
 
@@ -40,6 +40,9 @@ def reads(subject: Subject) -> Iterator[Read]:
         for keys, found in expressions(subject, placed):
             for name in sorted(found.names):
                 yield Read(placed=placed, key=name, by="expression", name=name, keys=keys)
+        for keys, assigned in assignments(placed).items():
+            for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
+                yield Read(placed=placed, key=name, by="post", name=name, keys=keys)
         if placed.node.foreach is not None:
             for key in placed.node.foreach.collect:
                 yield Read(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
@@ -69,6 +72,22 @@ def conditions(placed: Placed) -> dict[tuple[str, ...], Template | ExpressionErr
         key = "items" if node.foreach.items is not None else "times"
         found["foreach", key] = template(getattr(node.foreach, key))
     return found
+
+
+def assignments(placed: Placed) -> dict[tuple[str, str, str], Template | ExpressionError]:
+    """Return what post-conditions assign, compiled: by `post`, when, and the userdata key, in the order of a run."""
+    post = placed.node.post
+    sections = (
+        ()
+        if post is None
+        else (("on_success", post.on_success), ("on_failure", post.on_failure), ("on_halted", post.on_halted))
+    )
+    always = (("always", post.always),) if post is not None else ()
+    return {
+        ("post", when, key): template(value)
+        for when, assigned in (*sections, *always)
+        for key, value in assigned.items()
+    }
 
 
 def only_name(found: Template | ExpressionError) -> str | None:

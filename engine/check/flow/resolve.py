@@ -160,6 +160,8 @@ class Resolver:
             return (INTEGER,)
         if site.origin == "collect":
             return (LIST,)
+        if site.origin == "post":
+            return (ANYTHING,)
         if site.origin != "output":
             return None
         signature = self.flow.subject.signature(self.flow.subject.nodes[site.path].node)

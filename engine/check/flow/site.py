@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-Origin = Literal["parameter", "userdata", "item", "index", "output", "reference", "collect"]
+Origin = Literal["parameter", "userdata", "item", "index", "output", "reference", "collect", "post"]
 
 
 @dataclass(frozen=True, kw_only=True)

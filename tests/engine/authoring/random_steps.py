@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from hypothesis import strategies as st
 
 from engine.authoring import (
     Guard,
     Param,
+    Post,
     Retry,
     Step,
     Timeout,
@@ -72,7 +73,9 @@ _ALONE = _optional(
     on_error=OUTCOMES,
 )
 _STATUS = st.sampled_from(["success", "failure"])
-_GUARD_TO = st.sampled_from(["success", "failure", "skipped"])
+_GUARD_TO: st.SearchStrategy[Literal["success", "failure", "skipped"]] = st.sampled_from(
+    ["success", "failure", "skipped"]
+)
 _IN_TREE = _optional(
     **_COMMON,
     guard=st.builds(Guard, when=EXPRESSIONS, to=_GUARD_TO),
@@ -148,7 +151,7 @@ def _parts(draw: st.DrawFn, depth: int) -> TreePart:
         return draw(_states(_IN_TREE))
     inner = _parts(depth - 1)
     children = st.lists(inner, min_size=1, max_size=3)
-    named = draw(_PART)
+    named = {**draw(_PART), **draw(_optional(post=st.builds(Post, on_success=USERDATA, always=USERDATA)))}
     more = {**named, **draw(_optional(guard=st.builds(Guard, when=EXPRESSIONS, to=_GUARD_TO)))}
     makers: list[Any] = [
         lambda: draw(_steps(depth - 1, _IN_TREE)),

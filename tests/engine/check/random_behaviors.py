@@ -126,6 +126,9 @@ class _Maker:
         if self._draw(st.integers(0, 3)) == 0:
             to = self._draw(st.sampled_from(("success", "failure", "skipped")))
             part["guard"] = {"when": self._draw(st.sampled_from(("${1 < 2}", "${1 > 2}"))), "to": to}
+        if not self._safe and self._draw(st.integers(0, 3)) == 0:
+            when = self._draw(st.sampled_from(("on_success", "on_failure", "on_halted", "always")))
+            part["post"] = {when: {self._draw(st.sampled_from(KEYS)): self._draw(st.sampled_from(VALUES))}}
         return part
 
     def _composite(self, depth: int, levels: int) -> Plain:

@@ -232,3 +232,26 @@ def test_a_guard_of_a_part_is_compared_with_what_it_reads() -> None:
     assert said_of(f"{HEAD.replace('root:', 'userdata: {x: 1}' + chr(10) + 'root:')}{part % 'x'}") == [
         "type-mismatch root/sequence"
     ]
+
+
+def test_what_post_conditions_write_and_read_is_followed() -> None:
+    """Behind the end that they belong to, and in their order."""
+    read = "{state: flow.Log, with: {message: '${string(x)}'}}"
+    for kind, when, expected in (
+        ("sequence", "on_success", []),
+        ("sequence", "always", []),
+        ("sequence", "on_failure", ["undefined-key"]),
+        ("selector", "on_failure", []),
+        ("selector", "on_halted", ["undefined-key"]),
+    ):
+        part = f"{DECIDE[:-1]}, post: {{{when}: {{x: 1}}}}}}"
+        assert [said.split()[0] for said in said_of(f"{HEAD}{kind}: [{part}, {read}]\n")] == expected, (kind, when)
+    given = "{x: 1, y: '${x + 1}'}"
+    assert said_of(f"{HEAD}sequence: [{DECIDE[:-1]}, post: {{on_success: {given}}}}}, {read}]\n") == []
+    swapped = "{y: '${x + 1}', x: 1}"
+    assert said_of(f"{HEAD}sequence: [{DECIDE[:-1]}, post: {{on_success: {swapped}}}}}, {read}]\n") == [
+        "undefined-key root/sequence/CheckHeld"
+    ]
+    assert said_of(f"{HEAD}sequence: [{DECIDE[:-1]}, post: {{always: {{z: '${{1 +}}'}}}}}}]\n") == [
+        "bad-expression root/sequence/CheckHeld"
+    ]

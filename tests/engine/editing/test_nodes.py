@@ -389,3 +389,16 @@ def test_a_guard_that_skips_is_kept_within_a_tree_and_not_taken_into_a_machine()
         "tree:\n        {", "tree: {"
     )
     assert "may be skipped" in refusal(machine, {"edit": "ungroup", "path": "root/tree"})
+
+
+def test_post_conditions_are_set_and_left_behind_outside_of_trees() -> None:
+    post = {"on_success": {"count": "${count + 1}"}}
+    made = edited(TREE, {"edit": "set_field", "path": "root/sequence/Give_2", "field": "post", "value": post})
+    assert 'post: {on_success: {count: "${count + 1}"}}' in made
+    later: dict[str, object] = {"later": {"x": 1}}
+    refused = {"edit": "set_field", "path": "root/sequence/Give_2", "field": "post", "value": later}
+    assert "later" in refusal(TREE, refused)
+    machine = TEXT.replace("third: {state: test.Give,", "third: {state: test.Give, description: x,")
+    cut = "take:\n  state: test.Give\n  post: {always: {x: 1}}\n"
+    pasted = edited(machine, {"edit": "paste", "parent": "root", "yaml": cut})
+    assert "post" not in pasted

@@ -97,6 +97,22 @@ TREES = {
           while: {state: test.Check, name: clear, with: {script: [[1, true]]}}
           do: {sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]}
     """,
+    "post-conditions": """
+        sequence:
+          - state: test.Act
+            name: a
+            with: {script: [[1, true]]}
+            post: {on_success: {value: "${value + 1}", count: "${value}"}, always: {count: "${count + value}"}}
+          - parallel:
+              policy: one
+              children:
+                - sequence: [{state: test.Act, name: b, with: {script: [[1, true]]}}]
+                  post: {on_success: {value: "${value + 10}"}, always: {count: "${count + 100}"}}
+                - {state: test.Act, name: c, with: {script: [[9, true]]}}
+            post: {always: {count: "${count * 3}"}}
+          - {state: test.Act, name: d, with: {script: [[1, true]]}}
+        post: {on_success: {value: "${value + 10000}"}}
+    """,
     "what is skipped": """
         inverter:
           child:
@@ -183,3 +199,26 @@ def test_actions_that_had_ended_are_not_done_again(name: str) -> None:
 
 def _ends(events: Sequence[Event], path: str) -> list[Exited]:
     return [e for e in events if isinstance(e, Exited) and e.path == path and not e.preempted]
+
+
+def test_what_is_halted_assigns_once_however_the_engine_dies() -> None:
+    """From when it has begun on, through its clean-up."""
+    plan = tree_plan(
+        """
+        parallel:
+          policy: one
+          children:
+            - {state: test.Act, name: a, with: {script: [[1, true]]}}
+            - state: test.Act
+              name: b
+              with: {script: [[9, true]], cleanup_s: 1}
+              post: {on_halted: {value: "${value + 1}", count: "${count + value}"}}
+        """,
+        head="userdata: {value: 0, count: 0}",
+    )
+    whole = _run(plan, None)
+    begun = next(n for n, e in enumerate(whole.events) if isinstance(e, Entered) and e.path.endswith("/b"))
+    assert whole.result.userdata == {"value": 1, "count": 1}
+    for count in range(begun + 1, len(whole.events)):
+        rest = _run(plan, _plain(list(whole.events[:count])))
+        assert rest.result.userdata == whole.result.userdata, whole.events[count - 1]

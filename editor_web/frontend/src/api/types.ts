@@ -381,6 +381,7 @@ export interface DocumentNodeBody {
   readonly timeout: Dict<unknown> | null
   readonly retry: Dict<unknown> | null
   readonly guard: Dict<unknown> | null
+  readonly post: Dict<unknown> | null
   readonly on_error: string | null
   readonly resume: string | null
   readonly success: readonly string[]
@@ -1051,7 +1052,7 @@ export interface SetDocument {
   readonly changes: Dict<unknown>
 }
 
-/** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
+/** Set one thing of a node; null takes it away. For every node: description, timeout, retry, guard, on_error, autonomy, resume, in, out, success, every, post, notes, and what it runs (state, behavior, behaviour). For containers the keys of their kind: initial, conditions, otherwise, userdata, shared, items, times, as, index, next, collect, memory, policy, synchronise, success_count, failure_count, after, status, running, failure; and `order`, the names of all children in their new order. */
 export interface SetField {
   readonly edit: "set_field"
   readonly path: string

@@ -35,6 +35,7 @@ export function node(path: string, outcomes: readonly string[], more: Partial<Ed
     success: [],
     every: null,
     role: '',
+    post: null,
     notes: '',
     userdata: {},
     settings: {},

@@ -8,6 +8,7 @@ import { perform } from './apply'
 import { itemIcon } from './additions'
 import { openReferred } from './pageActs'
 import { ConductForm } from './ConductForm'
+import { PostForm } from './PostForm'
 import { DataForm } from './DataForm'
 import { NodeFindings } from './FixButtons'
 import { FlowSection } from './FlowSection'
@@ -103,6 +104,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
       <FlowSection node={node} />
       {node.path !== ROOT && node.kind !== 'guard' && <ConductForm node={node} parent={parent} />}
+      {parent && isTreePart(parent.kind) && <PostForm node={node} />}
       <Section title="Notes">
         <TemplateInput
           label="Description"
