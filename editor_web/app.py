@@ -53,6 +53,7 @@ from editor_web.security import Gate
 from editor_web.sessions import LoginSessions
 from editor_web.teaching.jogging import Jogger
 from editor_web.wire import AskBody, ErrorBody, QuestionBody
+from engine.editing.target_checks import TargetChecks
 from engine.errors import ControlError, FlexcellError
 from engine.resume import NeedsAnswers
 from engine.stop import StopEndpoint
@@ -101,6 +102,7 @@ def new_app(
     app.state.services = Services(
         backend=backend,
         hub=LiveHub(backend),
+        targets=TargetChecks(backend.documents.project),
         access=access,
         sessions=sessions,
         limit=limit,
@@ -204,6 +206,7 @@ async def _lifespan(app: FastAPI) -> AsyncGenerator[None]:
     try:
         yield
     finally:
+        services.targets.close()
         await services.hub.documents.close()
         services.hub.robots.close()
         services.hub.close()

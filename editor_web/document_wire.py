@@ -125,6 +125,23 @@ class TextBody(Wire):
     text: Text
 
 
+class TargetsBody(TextBody):
+    """A text whose targets are looked at; a newer one of the same page takes the place of those that still wait."""
+
+    page: Annotated[str, Field(max_length=40)]
+
+
+class TargetFindingsBody(Wire):
+    """The targets that an arm of the document's cell cannot be at.
+
+    `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise.
+    """
+
+    findings: tuple[FindingBody, ...] = ()
+    problem: str = ""
+    dropped: bool = False
+
+
 class DraftBody(TextBody):
     """A text to draw; without `check` the answer comes sooner, and without findings."""
 

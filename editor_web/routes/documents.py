@@ -7,6 +7,7 @@ from typing import Annotated
 
 import msgspec
 from fastapi import APIRouter, HTTPException, Query, Response
+from starlette.concurrency import run_in_threadpool
 
 from editor_web.document_wire import (
     ConflictBody,
@@ -23,6 +24,8 @@ from editor_web.document_wire import (
     NewIdBody,
     SaveBody,
     SavedBody,
+    TargetFindingsBody,
+    TargetsBody,
     TextBody,
     VersionBody,
     VersionTextBody,
@@ -60,6 +63,26 @@ def draft(document_id: str, body: DraftBody, services: ServicesOf) -> Response:
 def find(document_id: str, body: TextBody, services: ServicesOf) -> list[FindingBody]:
     """Check a text as if it were the document's, without drawing it."""
     return [FindingBody.model_validate(each) for each in services.documents.findings(document_id, body.text)]
+
+
+@router.post("/{document_id:path}/targets")
+async def find_targets(document_id: str, body: TargetsBody, services: ServicesOf) -> TargetFindingsBody:
+    """Put the arms of a text's cell to its targets, which takes seconds at first; nothing else waits for it."""
+    documents = services.documents
+    file = documents.file_of(document_id)
+    drawn = await run_in_threadpool(documents.draw, document_id, body.text)
+    if drawn.document is None or drawn.document.cell is None:
+        return TargetFindingsBody()
+    found = await services.targets.findings(f"{body.page} {document_id}", file, body.text)
+    if found is None:
+        return TargetFindingsBody(dropped=True)
+    return TargetFindingsBody(findings=tuple(map(FindingBody.model_validate, found.findings)), problem=found.problem)
+
+
+@router.post("/{document_id:path}/names")
+def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[str, tuple[str, ...]]:
+    """Return the names that the cell of a text offers, by kind; those of the open cell where it names none."""
+    return {str(kind): names for kind, names in services.documents.offered_to(document_id, body.text).items()}
 
 
 @router.post("/{document_id:path}/edits", response_model=EditedBody)

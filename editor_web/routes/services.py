@@ -15,6 +15,7 @@ from editor_web.cell_view import CellView
 from editor_web.live import LiveHub
 from editor_web.sessions import LoginSessions
 from engine.editing import Documents
+from engine.editing.target_checks import TargetChecks
 from engine.stop import StopEndpoint
 
 
@@ -27,6 +28,7 @@ class Services:
     access: Access
     sessions: LoginSessions
     limit: AttemptLimit
+    targets: TargetChecks
     cell_view: CellView | None
     static: Path
     port: int

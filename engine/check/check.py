@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from engine.cell_names import CellNames, cell_names
+from engine.cell_names import cell_names
+from engine.check.cell_context import CellContext, cell_context
 from engine.check.cell_use import CellUse
 from engine.check.conditions import check_conditions
 from engine.check.conduct import check_conduct
@@ -31,7 +31,6 @@ from engine.check.wiring import check_wiring
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.collection_pause import without_collection
-from engine.document.entries import load_entries
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.loader import CircularReference, Survey, survey_behavior
 from engine.document.step_meter import METER
@@ -47,7 +46,7 @@ def check_behavior(
     catalogue: Catalogue,
     entries: Entries | None = None,
     *,
-    cell: Cell | None = None,
+    cell: Cell | CellContext | None = None,
     parameters: Mapping[str, object] | None = None,
 ) -> tuple[Finding, ...]:
     """Return everything that is wrong with a behavior and those it refers to, in document order.
@@ -57,18 +56,16 @@ def check_behavior(
         catalogue: The states by name, and what the project allows; nothing is imported.
         entries: Names, by kind, of the entries that the store will have; by default those that the
             cell is seeded with. They are left unchecked where it names no cell.
-        cell: The cell that it is to run in; by default the one that it names.
+        cell: The cell that it is to run in, also as it was read before; by default the one that it names.
         parameters: What a run gives it, by which names are looked for in the cell; the rest has its defaults.
     """
-    findings: list[Finding] = []
-    around = _around(behavior, cell)
-    if isinstance(around, Finding):
-        findings.append(around)
-        around = _Around()
-    known = around.entries if entries is None else entries
+    context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
+    findings = [_invalid_cell(behavior, context.mistake)] if context.mistake is not None else []
+    seeded = context.seed.names_by_kind() if context.seed is not None and context.mistake is None else None
+    known = seeded if entries is None else entries
     subjects = new_subjects(behavior, catalogue)
     known = with_written(known, subjects) if known is not None else None
-    use = CellUse(around.names, subjects, parameters or {}) if around.names is not None else None
+    use = CellUse(context.names, subjects, parameters or {}) if context.names is not None else None
     read = {id(subject): tuple(reads(subject)) for subject in subjects}
     flows: dict[int, Flow] = {}
     passed_on = _passed_on(subjects)
@@ -112,7 +109,7 @@ def check_survey(
     catalogue: Catalogue,
     entries: Entries | None = None,
     *,
-    cell: Cell | None = None,
+    cell: Cell | CellContext | None = None,
 ) -> tuple[Finding, ...]:
     """Return the mistakes of a document as it was read, and everything that is wrong with it around them."""
     read = [invalid(error, path) for error in survey.mistakes]
@@ -178,25 +175,8 @@ def read_beside(behavior: Behavior) -> tuple[Path, ...]:
     return (behavior.cell_file, seed) if seed is not None else (behavior.cell_file,)
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Around:
-    """What is known around a behavior: the names that its cell offers, and the entries that it is seeded with."""
-
-    names: CellNames | None = None
-    entries: Entries | None = None
-
-
-def _around(behavior: Behavior, cell: Cell | None) -> _Around | Finding:
-    """Return what the cell of a behavior offers, or what is wrong with that cell."""
-    if cell is None and behavior.cell_file is None:
-        return _Around()
-    try:
-        found = cell if cell is not None else load_cell(behavior.cell_file or "")
-        seed = load_entries(found.seed_file).names_by_kind() if found.seed_file is not None else None
-        return _Around(names=cell_names(found), entries=seed)
-    except DocumentError as error:
-        position = behavior.source.position(("cell",))
-        return new_finding("invalid-cell", str(error), path="root", position=position)
+def _invalid_cell(behavior: Behavior, mistake: DocumentError) -> Finding:
+    return new_finding("invalid-cell", str(mistake), path="root", position=behavior.source.position(("cell",)))
 
 
 def _circular(circle: CircularReference) -> Finding:

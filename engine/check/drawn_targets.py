@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 from engine.arm_target import ArmTarget, DrawnCell, ToolChange
+from engine.check.cell_context import CellContext, cell_context
 from engine.check.check import MAX_CHECK_STEPS
 from engine.check.entries import entries_written
 from engine.check.finding import Finding, new_finding, place_of
@@ -17,11 +18,11 @@ from engine.check.made_state import UNKNOWN, given_values, made_state
 from engine.check.parameters import default_values
 from engine.check.subject import Catalogue, Subject, new_subjects
 from engine.document.behavior import Behavior
-from engine.document.cell import Cell, load_cell
+from engine.document.cell import Cell
 from engine.document.collection_pause import without_collection
-from engine.document.entries import EntriesDocument, NamedAngles, load_entries
+from engine.document.entries import EntriesDocument, NamedAngles
 from engine.document.step_meter import METER
-from engine.errors import CellError, DocumentError
+from engine.errors import CellError
 from engine.messages import Pose
 from engine.robot_models import robot_models
 
@@ -59,24 +60,28 @@ class _Named:
 
 
 @without_collection
-def check_targets(behavior: Behavior, catalogue: Catalogue, *, cell: Cell | None = None) -> tuple[Finding, ...]:
+def check_targets(
+    behavior: Behavior, catalogue: Catalogue, *, cell: Cell | CellContext | None = None
+) -> tuple[Finding, ...]:
     """Return the targets in a behavior, and in those it refers to, that an arm of its cell cannot be at.
 
     Args:
         behavior: The behavior as loaded.
         catalogue: The states by name.
-        cell: The cell that it is to run in; by default the one that it names. Without any, nothing is looked at.
+        cell: The cell that it is to run in, also as it was read before; by default the one that it names. Without any,
+            nothing is looked at.
     """
-    around = cell or _own_cell(behavior)
-    if around is None or (models := robot_models()) is None:
+    context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
+    if context.cell is None or (models := robot_models()) is None:
         return ()
     subjects = new_subjects(behavior, catalogue)
-    stored = _Seeded(document=_seed(around), written=frozenset(entries_written(subjects)))
+    seed = context.seed.document if context.seed is not None else None
+    stored = _Seeded(document=seed, written=frozenset(entries_written(subjects)))
     with METER.limited(MAX_CHECK_STEPS, "this check"):
         targets = list(_targets(subjects, stored))
     if not targets:
         return ()
-    drawn = models.drawn(around)
+    drawn = models.drawn(context.cell)
     try:
         found = [_finding(each, drawn) for each in targets]
     except CellError as error:
@@ -121,17 +126,3 @@ def _finding(named: _Named, drawn: DrawnCell) -> Finding | None:
         return None
     message = f"`{target.parameter}`: {fault.message}"
     return subject.finding(_CODES[fault.kind], message, named.path, "with", target.parameter, hint=fault.hint)
-
-
-def _own_cell(behavior: Behavior) -> Cell | None:
-    try:
-        return load_cell(behavior.cell_file) if behavior.cell_file is not None else None
-    except DocumentError:
-        return None  # told as `invalid-cell`
-
-
-def _seed(cell: Cell) -> EntriesDocument | None:
-    try:
-        return load_entries(cell.seed_file).document if cell.seed_file is not None else None
-    except DocumentError:
-        return None  # told of the cell

@@ -12,7 +12,9 @@ from msgspec.structs import replace
 
 from engine.cell_names import cell_names
 from engine.check import (
+    CellContext,
     Finding,
+    cell_context,
     check_behavior,
     check_cell,
     check_entries_document,
@@ -139,8 +141,9 @@ def findings_of(
         if is_python_name(str(file)):
             behavior = _made_in_python(file)
             known = _stored_names(behavior, store) if store else None
-            findings = check_behavior(behavior, catalogue, known, cell=cell)
-            return findings + _at_targets(behavior, catalogue, cell, targets)
+            context = cell_context(behavior, cell)
+            findings = check_behavior(behavior, catalogue, known, cell=context)
+            return findings + _at_targets(behavior, catalogue, context, targets)
         if file.name == PROJECT_FILE:
             load_project(file)
             return ()
@@ -160,8 +163,9 @@ def _of_behavior(
     survey = survey_behavior(file)
     behavior = survey.behavior
     known = _stored_names(behavior, store) if store and behavior is not None else None
-    findings = check_survey(survey, file, catalogue, known, cell=cell)
-    more = _at_targets(behavior, catalogue, cell, targets) if behavior is not None else ()
+    context = cell_context(behavior, cell) if behavior is not None else CellContext()
+    findings = check_survey(survey, file, catalogue, known, cell=context)
+    more = _at_targets(behavior, catalogue, context, targets) if behavior is not None else ()
     return tuple(sorted((*findings, *more), key=place_of)) if more else findings
 
 
@@ -180,10 +184,12 @@ def _stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
     return stored_names(behavior, store)
 
 
-def _at_targets(behavior: Behavior, catalogue: Catalogue, cell: Cell | None, level: TargetLevel) -> tuple[Finding, ...]:
+def _at_targets(
+    behavior: Behavior, catalogue: Catalogue, context: CellContext, level: TargetLevel
+) -> tuple[Finding, ...]:
     if level == "off":
         return ()
-    found = check_targets(behavior, catalogue, cell=cell)
+    found = check_targets(behavior, catalogue, cell=context)
     # What keeps the arms from being put anywhere stays an error.
     return tuple(replace(each, severity=level) if each.severity == "warning" else each for each in found)
 

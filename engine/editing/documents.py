@@ -15,7 +15,7 @@ from typing import cast
 
 from engine.cell_names import CellNameKind, cell_names
 from engine.check.subject import Catalogue
-from engine.document.cell import Cell
+from engine.document.cell import Cell, load_cell
 from engine.document.loader import parse_behavior
 from engine.document.yaml_source import MAX_BYTES, parse_source
 from engine.editing.apply import Edited
@@ -105,6 +105,21 @@ class Documents:
     def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
         """Return the names that the open cell offers by kind, those that the check knows; none without a cell."""
         return cell_names(self._cell).listed() if self._cell is not None else {}
+
+    def offered_to(self, document_id: str, text: str) -> dict[CellNameKind, tuple[str, ...]]:
+        """Return the names that the cell of a text offers by kind; those of the open one where it names none.
+
+        None where that cell cannot be read, of which the check tells, or is none of this project.
+        """
+        drawn = self.draw(document_id, text)
+        written = drawn.document.cell if drawn.document is not None else None
+        if written is None:
+            return self.offered()
+        try:
+            file = (self.file_of(document_id).parent / written).resolve()
+            return cell_names(load_cell(file)).listed() if file.is_relative_to(self._project) else {}
+        except (DocumentError, OSError, ValueError):
+            return {}  # the check says what is wrong with it
 
     def file_of(self, document_id: str) -> Path:
         """Return where a document is, or would be.

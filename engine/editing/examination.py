@@ -56,7 +56,7 @@ def unread(text: str, error: DocumentError, *, file: Path, knowledge: Knowledge)
 def draw(draft: Draft, *, file: Path, knowledge: Knowledge) -> Examination:
     """Draw a text as if it stood in `file`; one that leads out of the project is not looked at any further."""
     graph = document_graph(draft, knowledge)
-    out = _in_order(strays(draft, knowledge, file), graph)
+    out = in_order(strays(draft, knowledge, file), graph)
     return Examination(hash=hash_of(draft.given), graph=graph, document=info_of(draft), findings=out, checked=bool(out))
 
 
@@ -64,10 +64,11 @@ def checked(drawn: Examination, text: str, *, file: Path, knowledge: Knowledge) 
     """Return what is known of a text that was drawn, and what is wrong with it."""
     if drawn.checked:
         return drawn
-    return replace(drawn, findings=_in_order(_check(text, file, knowledge), drawn.graph), checked=True)
+    return replace(drawn, findings=in_order(_check(text, file, knowledge), drawn.graph), checked=True)
 
 
-def _in_order(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
+def in_order(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
+    """Return findings in the order of the text, each with its line and its node as far as one tells the other."""
     nodes = _by_line(graph) if found and graph is not None else []
     return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
 
@@ -82,7 +83,7 @@ def _check(text: str, file: Path, knowledge: Knowledge) -> list[FindingView]:
     survey = survey_behavior(file, text, within=knowledge.project)
     cell = survey.behavior.cell_file if survey.behavior is not None else None
     entries = knowledge.stored(cell) if cell is not None else None
-    return [_view(finding, file) for finding in check_survey(survey, file, knowledge.catalogue, entries)]
+    return [view_of(finding, file) for finding in check_survey(survey, file, knowledge.catalogue, entries)]
 
 
 def strays(draft: Draft, knowledge: Knowledge, file: Path) -> list[FindingView]:
@@ -130,7 +131,8 @@ def _invalid(error: DocumentError) -> FindingView:
     )  # fmt: skip
 
 
-def _view(finding: Finding, file: Path) -> FindingView:
+def view_of(finding: Finding, file: Path) -> FindingView:
+    """Return a finding as the editor shows it in `file`: one of another behavior, at the node that refers to that."""
     position, message, path = finding.position, finding.message, finding.path
     if position.file != str(file):
         # Of a behavior that is referred to: the node that refers to it is what can be shown here.

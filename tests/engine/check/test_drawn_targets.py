@@ -8,6 +8,7 @@ import pytest
 
 from engine.check import Finding
 from engine.cli.check import TargetLevel, findings_of
+from engine.document import yaml_source
 from engine.registry import load_states
 from engine.state_catalogue import find_state
 
@@ -183,3 +184,17 @@ def test_joints_that_the_arm_cannot_have_are_another_finding(tmp_path: Path, joi
     codes = {finding.code for finding in findings_of(file, CATALOGUE)}
     assert codes.isdisjoint({"unreachable-target", "target-in-collision"})
     assert codes
+
+
+def test_the_cell_and_its_entries_are_read_once_for_all_checks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names and targets are looked for in the same documents, whatever is saved meanwhile."""
+    looked_at: list[str] = []
+    load_text = yaml_source.load_text
+
+    def noted(path: Path) -> bytes:
+        looked_at.append(path.name)
+        return load_text(path)
+
+    monkeypatch.setattr(yaml_source, "load_text", noted)
+    assert found(tmp_path, f"motion.MovePose robot: left, target: {{xyz: [1.6, 0, 0.3], {DOWN}}}")
+    assert sorted(name for name in looked_at if name != "main.yaml") == ["cell.yaml", "entries.yaml"]

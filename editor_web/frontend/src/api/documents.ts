@@ -11,6 +11,7 @@ import type {
   FindingBody,
   NewDocumentBody,
   SavedBody,
+  TargetFindingsBody,
 } from './types'
 
 function at(id: string, rest = ''): string {
@@ -24,6 +25,8 @@ export const documents = {
   make: (body: NewDocumentBody) => post<DocumentBody>('/documents', body),
   draft: (id: string, text: string) => post<DraftedBody>(at(id, '/draft'), { text, check: false }),
   findings: (id: string, text: string) => post<readonly FindingBody[]>(at(id, '/findings'), { text }),
+  targets: (id: string, text: string, page: string) => post<TargetFindingsBody>(at(id, '/targets'), { text, page }),
+  names: (id: string, text: string) => post<CatalogueBody['names']>(at(id, '/names'), { text }),
   edit: (id: string, text: string, edits: readonly Edit[]) => post<EditedBody>(at(id, '/edits'), { text, edits, check: false }),
   copy: (id: string, text: string, paths: readonly string[]) => post<CopiedBody>(at(id, '/copy'), { text, paths }),
   save: (id: string, text: string, baseHash: string) => sent<SavedBody>('PUT', at(id), { text, base_hash: baseHash }),

@@ -1190,6 +1190,19 @@ export interface TagsBody {
   readonly revision: number
 }
 
+/** The targets that an arm of the document's cell cannot be at. `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise. */
+export interface TargetFindingsBody {
+  readonly findings: readonly FindingBody[]
+  readonly problem: string
+  readonly dropped: boolean
+}
+
+/** A text whose targets are looked at; a newer one of the same page takes the place of those that still wait. */
+export interface TargetsBody {
+  readonly text: string
+  readonly page: string
+}
+
 /** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
 export interface TaughtStepBody {
   readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"

@@ -12,6 +12,9 @@ export interface Draft {
   /** Of an earlier text until `isChecked`. */
   readonly findings: readonly FindingBody[]
   readonly isChecked: boolean
+  /** Targets that an arm cannot be at; of an earlier text until `areTargetsKnown`. */
+  readonly targets: readonly FindingBody[]
+  readonly areTargetsKnown: boolean
   /** True while the text cannot be read, so that `root` belongs to an earlier one. */
   readonly isStale: boolean
   /** What stands beside the nodes: name, parameters, outcomes; undefined until the text could be read once. */

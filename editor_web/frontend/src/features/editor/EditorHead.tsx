@@ -10,6 +10,7 @@ import {
 } from '@tabler/icons-react'
 import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon } from '../../components/StatusIcon'
+import { problemsOf } from '../../document/editing/findings'
 import { canRedo, canUndo } from '../../document/editing/history'
 import { redo, undo } from './apply'
 import { FileMenu } from './FileMenu'
@@ -109,8 +110,8 @@ export function EditorHead({ mayEdit, onRun }: { mayEdit: boolean; onRun: () => 
 }
 
 function ProblemCount() {
-  const errors = useEditor((s) => draftOf(s).findings.filter((finding) => finding.severity === 'error').length)
-  const warnings = useEditor((s) => draftOf(s).findings.length) - errors
+  const errors = useEditor((s) => problemsOf(draftOf(s)).filter((finding) => finding.severity === 'error').length)
+  const warnings = useEditor((s) => problemsOf(draftOf(s)).length) - errors
   const words =
     errors + warnings === 0
       ? 'No problems'

@@ -2,6 +2,7 @@
 import { IconBulb } from '@tabler/icons-react'
 import type { FixBody } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { problemsOf } from '../../document/editing/findings'
 import { fixesOf, makeFix, useFreshFixes } from './fixes'
 import { draftOf, useEditor } from './store'
 
@@ -27,7 +28,7 @@ export function Words({ text }: { text: string }) {
 }
 
 export function NodeFindings({ path }: { path: string }) {
-  const findings = useEditor((s) => draftOf(s).findings)
+  const findings = useEditor((s) => problemsOf(draftOf(s)))
   const own = findings.filter((finding) => finding.path === path)
   const fixes = useFreshFixes(own.length > 0)
   if (own.length === 0) return null

@@ -1,5 +1,6 @@
 /** The form of what is chosen: the node, the behavior itself, and the problems of both. */
 import { Tabs } from '@mantine/core'
+import { problemsOf } from '../../document/editing/findings'
 import { ArrowForm } from './ArrowForm'
 import { DocumentForm } from './DocumentForm'
 import { NodeForm } from './NodeForm'
@@ -8,7 +9,7 @@ import { chosenOf, draftOf, scopeOf, setEditor, useEditor, type SideTab } from '
 
 export function Inspector() {
   const tab = useEditor((s) => s.tab)
-  const problems = useEditor((s) => draftOf(s).findings.length)
+  const problems = useEditor((s) => problemsOf(draftOf(s)).length)
   const arrow = useEditor((s) => s.arrow)
   const several = useEditor((s) => s.selection.length)
   const chosen = useEditor(chosenOf)

@@ -59,7 +59,7 @@ function ParameterRow({ node, field, entries }: { node: EditNode; field: EditFie
   const hintId = useId()
   const limits = limitsText(field)
   const set = (next: unknown) => setParameter(node, field.name, next)
-  const names = useEditor((s) => s.catalogue?.names ?? NO_NAMES)
+  const names = useEditor((s) => s.names ?? s.catalogue?.names ?? NO_NAMES)
   const isFree = asTemplate || isTemplate(value)
   return (
     <div className={`edit-field${problem ? ' has-problem' : ''}`}>

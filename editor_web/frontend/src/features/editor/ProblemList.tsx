@@ -2,13 +2,46 @@
 import { IconCircleCheck } from '@tabler/icons-react'
 import { Empty } from '../../components/Empty'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
+import { problemsOf } from '../../document/editing/findings'
 import { FixButtons, Words } from './FixButtons'
 import { fixesOf, useFreshFixes } from './fixes'
 import { goTo } from './problems'
 import { draftOf, useEditor } from './store'
+import { setTargetLevel, useTargets, type TargetLevel } from './targets'
 
 export function ProblemList() {
-  const findings = useEditor((s) => draftOf(s).findings)
+  return (
+    <>
+      <Problems />
+      <TargetChoice />
+    </>
+  )
+}
+
+/** What targets count as that an arm cannot be at, and why they are not known. */
+function TargetChoice() {
+  const { level, problem } = useTargets()
+  return (
+    <div className="target-choice">
+      <label>
+        <span>Targets out of reach or in collision</span>
+        <select
+          className="plain-input"
+          value={level}
+          onChange={(event) => setTargetLevel(event.currentTarget.value as TargetLevel)}
+        >
+          <option value="warning">are warnings</option>
+          <option value="error">are errors</option>
+          <option value="off">are not looked for</option>
+        </select>
+      </label>
+      {problem && <p className="quiet">{problem}</p>}
+    </div>
+  )
+}
+
+function Problems() {
+  const findings = useEditor((s) => problemsOf(draftOf(s)))
   const fixes = useFreshFixes()
   if (findings.length === 0) {
     return (

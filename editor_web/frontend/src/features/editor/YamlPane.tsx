@@ -26,6 +26,7 @@ import {
 import { tags } from '@lezer/highlight'
 import { useEffect, useRef } from 'react'
 import type { FindingBody, FixesBody } from '../../api/types'
+import { problemsOf } from '../../document/editing/findings'
 import { changeBetween } from '../../document/editing/textChange'
 import { nodeAtLine } from '../../document/editing/places'
 import { typed } from './apply'
@@ -144,7 +145,7 @@ export function YamlPane() {
   const host = useRef<HTMLDivElement>(null)
   const view = useRef<EditorView>(null)
   const text = useEditor((s) => draftOf(s).text)
-  const findings = useEditor((s) => draftOf(s).findings)
+  const findings = useEditor((s) => problemsOf(draftOf(s)))
   const fixes = useFreshFixes()
   const chosen = useEditor(chosenOf)
   const place = useEditor((s) => s.place)

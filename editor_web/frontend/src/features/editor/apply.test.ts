@@ -35,7 +35,7 @@ function slowServer(): { readonly sent: string[]; readonly release: () => void }
 
 beforeEach(() => {
   vi.mocked(documents.findings).mockResolvedValue([])
-  const draft = { text: 'a', root: node('root', []), findings: [], isChecked: true, isStale: false, document: undefined }
+  const draft = { text: 'a', root: node('root', []), findings: [], isChecked: true, targets: [], areTargetsKnown: true, isStale: false, document: undefined }
   useEditor.setState({ ...blank('x.yaml'), phase: 'ready', history: newHistory(draft) }, true)
 })
 

@@ -3,12 +3,15 @@ import { wordsOf, ServerError } from '../../api/client'
 import { documents } from '../../api/documents'
 import type { EditedBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
+import { sameFindings } from '../../document/editing/findings'
 import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
+import { lookForNames } from './cellNames'
 import { findingsOf } from './checking'
 import { keepDraft } from './kept'
 import { withReferences } from './references'
 import { draftOf, editor, refused, rootOf, setEditor } from './store'
+import { lookForTargets } from './targets'
 
 const TYPING_PAUSE_MS = 250
 
@@ -92,16 +95,13 @@ export function draftFrom(answer: Read, text: string, before: Draft | undefined)
   return {
     text,
     root: answer.graph ?? before?.root,
-    findings: answer.checked ? sameFindings(before, answer.findings) : (before?.findings ?? []),
+    findings: answer.checked ? sameFindings(before?.findings, answer.findings) : (before?.findings ?? []),
     isChecked: answer.checked,
+    targets: before?.targets ?? [],
+    areTargetsKnown: false,
     isStale,
     document: (isStale ? before?.document : answer.document) ?? undefined,
   }
-}
-
-/** Those of before where they say the same, so that nothing is drawn again for them. */
-function sameFindings(before: Draft | undefined, findings: Draft['findings']): Draft['findings'] {
-  return before && JSON.stringify(before.findings) === JSON.stringify(findings) ? before.findings : findings
 }
 
 let looking: Promise<void> | undefined
@@ -123,13 +123,15 @@ async function look(): Promise<void> {
       const findings = await findingsOf(id, text)
       const now = draftOf(editor())
       if (editor().id === id && now.text === text) {
-        const known = { ...now, findings: sameFindings(now, findings), isChecked: true }
+        const known = { ...now, findings: sameFindings(now.findings, findings), isChecked: true }
         setEditor({ history: replaced(editor().history, known) })
       }
     }
   } finally {
     // At once, not a turn later: a text that comes in between would wait for a look that is over.
     looking = undefined
+    lookForTargets()
+    void lookForNames()
   }
 }
 
@@ -157,7 +159,7 @@ function forgetTheGone(): void {
 export function typed(text: string): void {
   const before = draftOf(editor())
   if (text === before.text) return
-  setEditor({ history: pushed(editor().history, 'Type', { ...before, text, isChecked: false }, 'typing') })
+  setEditor({ history: pushed(editor().history, 'Type', { ...before, text, isChecked: false, areTargetsKnown: false }, 'typing') })
   keepDraft()
   clearTimeout(due)
   due = setTimeout(() => void readAnew(), TYPING_PAUSE_MS)
@@ -195,6 +197,6 @@ function go(step: (history: History) => History): void {
 /** Put a whole text in place of the present one, as one step that can be undone. */
 export function takeText(label: string, text: string): Promise<void> {
   const before = draftOf(editor())
-  setEditor({ history: pushed(settled(editor().history), label, { ...before, text, isChecked: false }) })
+  setEditor({ history: pushed(settled(editor().history), label, { ...before, text, isChecked: false, areTargetsKnown: false }) })
   return readAnew()
 }

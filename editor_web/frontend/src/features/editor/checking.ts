@@ -5,7 +5,8 @@ import type { FindingBody } from '../../api/types'
 
 let role: Promise<string> | undefined
 
-export async function findingsOf(id: string, text: string): Promise<readonly FindingBody[]> {
+/** Whether the server is asked about texts: those who may look only may not. */
+export async function mayAsk(): Promise<boolean> {
   role ??= api.session().then(
     (session) => session.role,
     () => {
@@ -13,5 +14,9 @@ export async function findingsOf(id: string, text: string): Promise<readonly Fin
       return ''
     },
   )
-  return (await role) === 'viewer' ? (await documents.openChecked(id)).findings : documents.findings(id, text)
+  return (await role) !== 'viewer'
+}
+
+export async function findingsOf(id: string, text: string): Promise<readonly FindingBody[]> {
+  return (await mayAsk()) ? documents.findings(id, text) : (await documents.openChecked(id)).findings
 }

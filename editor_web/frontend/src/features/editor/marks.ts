@@ -1,6 +1,7 @@
 /** What the check says of each node and arrow, to be shown there. */
 import { useMemo } from 'react'
 import type { FindingBody } from '../../api/types'
+import { problemsOf } from '../../document/editing/findings'
 import { pathsTo } from '../../document/editing/model'
 import { draftOf, useEditor } from './store'
 
@@ -14,7 +15,7 @@ const NONE: readonly FindingBody[] = []
 /** The findings at a node; with `inside`, also those of the nodes in it. */
 export function useMark(path: string, inside: boolean): Mark | undefined {
   const own = useEditor((s) => {
-    const { at, around } = placedOf(draftOf(s).findings)
+    const { at, around } = placedOf(problemsOf(draftOf(s)))
     return (inside ? around : at).get(path)
   })
   return useMemo(() => {
@@ -54,7 +55,7 @@ export function findingsOfWay(findings: readonly FindingBody[], path: string, ou
 }
 
 export function useWayFindings(path: string, outcome: string): readonly FindingBody[] {
-  const findings = useEditor((s) => placedOf(draftOf(s).findings).at.get(path))
+  const findings = useEditor((s) => placedOf(problemsOf(draftOf(s))).at.get(path))
   return useMemo(() => {
     const own = findings ? findingsOfWay(findings, path, outcome) : NONE
     return own.length > 0 ? own : NONE

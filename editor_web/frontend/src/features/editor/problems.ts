@@ -1,5 +1,6 @@
 /** Going to a problem: its node on the canvas, its line in the text. */
 import type { FindingBody } from '../../api/types'
+import { problemsOf } from '../../document/editing/findings'
 import { allNodes } from '../../document/editing/model'
 import { nearestPath } from './marks'
 import { reveal } from './session'
@@ -16,7 +17,7 @@ export function goTo(finding: FindingBody): void {
 
 /** The next one in the order of the text, again from the first after the last. */
 export function goToProblem(): void {
-  const { findings } = draftOf(editor())
+  const findings = problemsOf(draftOf(editor()))
   const next = findings[(last + 1) % Math.max(1, findings.length)]
   if (!next) {
     told('No problems')

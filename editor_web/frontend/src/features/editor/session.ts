@@ -34,7 +34,7 @@ export async function openDocument(id: string, node: string): Promise<void> {
 async function takeUp(text: string, base: string, baseText: string): Promise<void> {
   const { history, base: disk } = editor()
   setEditor({
-    history: pushed(history, 'Draft of an earlier visit', { ...draftOf(editor()), text, isChecked: false }),
+    history: pushed(history, 'Draft of an earlier visit', { ...draftOf(editor()), text, isChecked: false, areTargetsKnown: false }),
     base: { text: baseText, hash: base },
     isRestored: true,
     isOutdated: base !== disk.hash,

@@ -40,6 +40,8 @@ export interface EditorState {
   readonly base: { readonly text: string; readonly hash: string }
   readonly history: History
   readonly catalogue: CatalogueBody | undefined
+  /** Of the document's own cell by kind; undefined where it names none or they are not known yet. */
+  readonly names: CatalogueBody['names'] | undefined
   /** The container whose inside fills the canvas. */
   readonly scope: string
   /** Paths of the chosen nodes, the one chosen last at the end. */
@@ -68,7 +70,16 @@ export interface EditorState {
   readonly isOutdated: boolean
 }
 
-const NOTHING: Draft = { text: '', root: undefined, findings: [], isChecked: true, isStale: false, document: undefined }
+const NOTHING: Draft = {
+  text: '',
+  root: undefined,
+  findings: [],
+  isChecked: true,
+  targets: [],
+  areTargetsKnown: true,
+  isStale: false,
+  document: undefined,
+}
 
 export function blank(id: string): EditorState {
   return {
@@ -78,6 +89,7 @@ export function blank(id: string): EditorState {
     base: { text: '', hash: '' },
     history: newHistory(NOTHING),
     catalogue: undefined,
+    names: undefined,
     scope: ROOT,
     selection: [],
     arrow: undefined,

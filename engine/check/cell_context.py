@@ -1,0 +1,37 @@
+"""The cell that a behavior is checked in, read once for all checks that look at it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from engine.cell_names import CellNames, cell_names
+from engine.document.behavior import Behavior
+from engine.document.cell import Cell, load_cell
+from engine.document.entries import Entries, load_entries
+from engine.errors import DocumentError
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellContext:
+    """A cell, the names that it offers, and the entries that its store is seeded with; each None where it is not known.
+
+    `mistake` says why something of a cell that was given is not known.
+    """
+
+    cell: Cell | None = None
+    names: CellNames | None = None
+    seed: Entries | None = None
+    mistake: DocumentError | None = None
+
+
+def cell_context(behavior: Behavior, cell: Cell | None = None) -> CellContext:
+    """Read the cell in which a behavior is to run: the one given, else the one that it names."""
+    if cell is None and behavior.cell_file is None:
+        return CellContext()
+    seed: Entries | None = None
+    try:
+        cell = cell if cell is not None else load_cell(behavior.cell_file or "")
+        seed = load_entries(cell.seed_file) if cell.seed_file is not None else None
+        return CellContext(cell=cell, names=cell_names(cell), seed=seed)
+    except DocumentError as error:
+        return CellContext(cell=cell, seed=seed, mistake=error)

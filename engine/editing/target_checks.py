@@ -1,0 +1,122 @@
+"""Targets of texts under edit, looked at in a process of its own: the server and its loop go on meanwhile."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+import subprocess
+from pathlib import Path
+
+import msgspec
+
+from engine.child_process import start_child
+from engine.editing.target_messages import TargetFindings, TargetRequest
+from engine.errors import RobotError
+
+START = "from engine.editing.target_process import main; main()"
+LIMIT_S = 60.0
+"""What an answer may take, with all that a first one loads and compiles on a busy machine."""
+_WHAT = "the process that looks at targets"
+_LONGEST_LINE = 8_000_000
+_log = logging.getLogger("flexcell.documents")
+
+
+class TargetChecks:
+    """Puts arms to targets, one text after the other; belongs to one event loop. `close` ends the process.
+
+    The process starts with the first text that names a cell. One that does not answer in time, or dies, is ended, and
+    the next text has a new one.
+
+    Args:
+        project: Folder that texts may not lead out of.
+        limit_s: What an answer may take.
+        start: The Python code of the process.
+    """
+
+    def __init__(self, project: Path, *, limit_s: float = LIMIT_S, start: str = START) -> None:
+        self._project = project.resolve()
+        self.limit_s = limit_s
+        self._start = start
+        self._newest: dict[str, int] = {}
+        self._turn = asyncio.Lock()
+        self._numbers = 0
+        self._process: subprocess.Popen[bytes] | None = None
+        self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
+
+    @property
+    def pid(self) -> int:
+        """The process id, 0 while there is none."""
+        return self._process.pid if self._process is not None else 0
+
+    async def findings(self, asker: str, file: Path, text: str) -> TargetFindings | None:
+        """Return the targets in a text that an arm of its cell cannot be at.
+
+        None where the same asker has asked for a newer text before this one had its turn.
+
+        Args:
+            asker: Who asks: a page and its document.
+            file: Where the text would stand.
+            text: A behavior document.
+        """
+        self._numbers += 1
+        number = self._newest[asker] = self._numbers
+        try:
+            async with self._turn:
+                return await self._asked(file, text) if self._newest[asker] == number else None
+        finally:
+            if self._newest.get(asker) == number:
+                del self._newest[asker]
+
+    def close(self) -> None:
+        """End the process."""
+        streams, self._streams = self._streams, None
+        if streams is not None:
+            streams[1].close()
+        process, self._process = self._process, None
+        if process is not None:
+            # It holds nothing that could be lost.
+            process.kill()
+            process.wait()
+
+    async def _asked(self, file: Path, text: str) -> TargetFindings:
+        request = TargetRequest(project=str(self._project), file=str(file), text=text)
+        try:
+            async with asyncio.timeout(self.limit_s):
+                return await self._answer(request)
+        except TimeoutError:
+            self.close()
+            return self._unknown(f"no answer within {self.limit_s:g} s")
+        except (OSError, RobotError, ValueError, msgspec.DecodeError) as error:
+            self.close()
+            return self._unknown(str(error) or type(error).__name__)
+        except asyncio.CancelledError:
+            # Its answer would be taken for that to the next text.
+            self.close()
+            raise
+
+    async def _answer(self, request: TargetRequest) -> TargetFindings:
+        reader, writer = await self._running()
+        writer.write(msgspec.json.encode(request) + b"\n")
+        await writer.drain()
+        line = await reader.readline()
+        if not line:
+            raise RobotError(f"{_WHAT} has ended")
+        return msgspec.json.decode(line, type=TargetFindings)
+
+    async def _running(self) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        if self._streams is None:
+            ours, theirs = socket.socketpair()
+            try:
+                self._process = start_child(self._start, (theirs.fileno(),), what=_WHAT)
+                self._streams = await asyncio.open_connection(sock=ours, limit=_LONGEST_LINE)
+            except BaseException:
+                ours.close()
+                raise
+            finally:
+                theirs.close()
+        return self._streams
+
+    def _unknown(self, reason: str) -> TargetFindings:
+        _log.warning("the targets of a document are not known: %s", reason)
+        return TargetFindings(problem=f"the targets are not known: {reason}")

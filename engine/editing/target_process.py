@@ -1,0 +1,63 @@
+"""The process that puts arms to the targets of texts under edit, where the robots' libraries hold up nobody."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from pathlib import Path
+
+import msgspec
+
+from engine.check import check_targets
+from engine.child_process import end_with_parent
+from engine.document.loader import survey_behavior
+from engine.editing.draft import Draft
+from engine.editing.examination import draw, in_order, view_of
+from engine.editing.knowledge import Knowledge
+from engine.editing.target_messages import TargetFindings, TargetRequest
+from engine.errors import DocumentError, FlexcellError
+from engine.plan import Catalogue
+from engine.registry import load_states
+
+_NICER_BY = 10
+
+
+def main() -> None:
+    """Answer on the socket whose descriptor is the first argument until the other end closes it."""
+    connection = socket.socket(fileno=int(sys.argv[1]))
+    end_with_parent(connection)
+    # Arms that move, and the answer to the next edit, go first.
+    os.nice(_NICER_BY)
+    catalogues: dict[str, Catalogue] = {}
+    with connection.makefile("rb") as requests:
+        for line in requests:
+            request = msgspec.json.decode(line, type=TargetRequest)
+            connection.sendall(msgspec.json.encode(_answered(request, catalogues)) + b"\n")
+
+
+def _answered(request: TargetRequest, catalogues: dict[str, Catalogue]) -> TargetFindings:
+    project = Path(request.project)
+    try:
+        if request.project not in catalogues:
+            catalogues[request.project] = load_states(project)
+        return target_findings(request.text, Path(request.file), project, catalogues[request.project])
+    except FlexcellError as error:
+        return TargetFindings(problem=str(error))
+
+
+def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) -> TargetFindings:
+    """Return the targets in a text, as if it stood in `file`, that an arm of its own cell cannot be at.
+
+    A text that cannot be read, or leads out of the project, has none: the check says so.
+    """
+    knowledge = Knowledge(catalogue, file.parent, project)
+    try:
+        drawn = draw(Draft(text, file=str(file)), file=file, knowledge=knowledge)
+    except DocumentError:
+        return TargetFindings()
+    behavior = survey_behavior(file, text, within=project).behavior if not drawn.findings else None
+    if behavior is None:
+        return TargetFindings()
+    found = [view_of(each, file) for each in check_targets(behavior, catalogue) if each.severity == "warning"]
+    return TargetFindings(findings=in_order(found, drawn.graph))
