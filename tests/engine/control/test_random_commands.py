@@ -41,6 +41,7 @@ from tests.engine.fake_states import Give
 
 TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
 MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
+COMPOSITES = ("sequence", "selector", "parallel")
 CLEANUP_S = 0.375
 BEGUN, DONE = "cleaning up", "cleaned up"
 Node = dict[str, Any]
@@ -142,7 +143,9 @@ TREES = st.recursive(
         | st.lists(inner, min_size=1, max_size=2).map(partial(_machine, kind="priority"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
         | inner.map(_foreach)
-        | st.builds(_tree, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["sequence", "selector", "parallel"]))
+        | st.builds(
+            _tree, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["sequence", "selector", "parallel"])
+        )
         | st.builds(_measured, inner, st.sampled_from([0.25, 1.0, 2.5]), st.integers(0, 2))
     ),
     max_leaves=6,
