@@ -89,6 +89,14 @@ class Growth:
         self.statuses.follow(node, part.path)
         return node
 
+    def take_apart(self) -> None:
+        """Let go of everything once the tree has ended: nodes that know each other would wait for the collector."""
+        for node in self.parts:
+            node.parent = None
+            if node not in self.foreign:
+                node.children = []
+        self.parts.clear()
+
     def _line(self, part: Part, place: Place, caught: bool) -> Behaviour:
         children = [self.grow(child, place, caught=caught) for child in part.children]
         group = part.source.sequence or part.source.selector
