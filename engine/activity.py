@@ -24,11 +24,15 @@ class Activity:
         """Start a task that carries the node at `path`, or with `body` only what is inside it, which begins at once."""
         key = f"{path}/" if body else path
         task = asyncio.create_task(work, name=path)
-        self._branches[key] = task
-        task.add_done_callback(lambda done: self._forget(key, done))
+        self.enter(key, task)
+        task.add_done_callback(lambda done: self.leave(key, done))
         if body:
             step_now(task)
         return task
+
+    def enter(self, path: str, task: asyncio.Task[Any]) -> None:
+        """Take note that a task carries the node at `path`."""
+        self._branches[path] = task
 
     def task_of(self, path: str) -> asyncio.Task[Any] | None:
         """Return the task in which the node at `path` is performed: that of its innermost branch."""
@@ -49,6 +53,7 @@ class Activity:
         task = self.task_of(path)
         return task.get_name() if task is not None else ""
 
-    def _forget(self, key: str, task: asyncio.Task[Any]) -> None:
-        if self._branches.get(key) is task:
-            del self._branches[key]
+    def leave(self, path: str, task: asyncio.Task[Any]) -> None:
+        """Take note that it does no more, unless another does by now."""
+        if self._branches.get(path) is task:
+            del self._branches[path]

@@ -97,14 +97,15 @@ class RunningContext(msgspec.Struct, eq=False):
         await execution.suspensions.until_free(self.path)
         self._calls += 1
         call = f"{self.path}#{self._visit}.c{self._calls}"
-        self._record_called(call, request, f"{to}/{request.skill_name()}")
-        await execution.commit()
-        try:
-            answer = await self._answer(request, to)
-        except FlexcellError as error:
-            self._record_answered(call, None, cause_of(error))
-            raise
-        self._record_answered(call, answer, None)
+        with execution.open_calls.of(self.path):
+            self._record_called(call, request, f"{to}/{request.skill_name()}")
+            await execution.commit()
+            try:
+                answer = await self._answer(request, to)
+            except FlexcellError as error:
+                self._record_answered(call, None, cause_of(error))
+                raise
+            self._record_answered(call, answer, None)
         self._stir()
         return answer
 

@@ -18,6 +18,7 @@ from engine.document.step_meter import METER
 from engine.errors import StateError
 from engine.event import Abandoned, UserdataAppended, UserdataWritten
 from engine.observed_answers import ObservedAnswers
+from engine.open_calls import OpenCalls
 from engine.point import Point
 from engine.recorder import Recorder
 from engine.settle import Settlement
@@ -55,6 +56,7 @@ class Execution:
     """How long a node may take to confirm that it stopped before the run goes on without it."""
     waits: Waits = field(default_factory=Waits)
     settlement: Settlement = field(default_factory=Settlement)
+    open_calls: OpenCalls = field(default_factory=OpenCalls)
     observed: ObservedAnswers = field(default_factory=ObservedAnswers)
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, Point] = field(default_factory=dict[str, Point])

@@ -110,6 +110,14 @@ class Growth:
         if part.post:
             self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
 
+    def take_apart(self) -> None:
+        """Let go of everything once the tree has ended: nodes that know each other would wait for the collector."""
+        for node in self.parts:
+            node.parent = None
+            if node not in self.foreign:
+                node.children = []
+        self.parts.clear()
+
     def _line(self, part: Part, place: Place, caught: bool) -> Behaviour:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
         children = [self.grow(child, place, caught=caught, passing=passing) for child in part.children]

@@ -12,11 +12,12 @@ import asyncio
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from engine.event import Answered, Called, Event
+import msgspec
+
+from engine.carrier import Carrier
 from engine.execution import Execution
 from engine.node import overdue
 from engine.node_exit import Left
-from engine.node_path import inside
 from engine.preemption import preempt
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
@@ -25,7 +26,7 @@ CHECK_S = 1.0
 """How long a tick waits for a check that has asked a service, before the check counts as RUNNING."""
 
 
-class Activation:
+class Activation(msgspec.Struct, eq=False):
     """One activation of a leaf, from the tick that asks for it to the tick that reads how it ended.
 
     Args:
@@ -33,16 +34,16 @@ class Activation:
         place: Where it reads and writes.
         rank: Its place in the document.
         caught: Whether a decorator around it takes its errors.
+        task: What it is carried by; None before it begins, and where it has ended at once.
+        left_at_once: How it ended then.
     """
 
-    __slots__ = ("caught", "place", "plan", "rank", "task")
-
-    def __init__(self, plan: LeafPlan, place: Place, *, rank: int, caught: bool) -> None:
-        self.plan = plan
-        self.place = place
-        self.rank = rank
-        self.caught = caught
-        self.task: asyncio.Task[Left] | None = None
+    plan: LeafPlan
+    place: Place
+    rank: int
+    caught: bool
+    task: asyncio.Task[Left] | None = None
+    left_at_once: Left | None = None
 
     @property
     def path(self) -> str:
@@ -56,12 +57,19 @@ class Activation:
         Raises:
             FlexcellError: it ended with this error.
         """
-        return self.task.result() if self.task is not None and self.ended else None
+        if self.task is None:
+            return self.left_at_once
+        return self.task.result() if self.task.done() else None
+
+    @property
+    def begun(self) -> bool:
+        """Whether it was entered, or is about to be."""
+        return self.task is not None or self.left_at_once is not None
 
     @property
     def ended(self) -> bool:
         """Whether it has ended, be it with an error."""
-        return self.task is not None and self.task.done()
+        return self.task.done() if self.task is not None else self.left_at_once is not None
 
     @property
     def error(self) -> BaseException | None:
@@ -89,8 +97,7 @@ class Leaves:
         self._halted: list[Activation] = []
         self._unread: set[Activation] = set()
         self._probed: Activation | None = None
-        self._calls = 0
-        self._answered: asyncio.Future[None] | None = None
+        self._carrier = Carrier[Left](execution.activity, execution.loop)
         self.begun: list[str] = []
         """Paths of the leaves begun since `begun` was last cleared."""
 
@@ -114,9 +121,10 @@ class Leaves:
         Raises:
             FlexcellError: it ended with this error.
         """
-        if not activation.ended:
-            return None
-        self._running.discard(activation)
+        if activation.task is not None:
+            if not activation.task.done():
+                return None
+            self._running.discard(activation)
         self._unread.discard(activation)
         return activation.left
 
@@ -125,8 +133,9 @@ class Leaves:
 
         How it ended no longer matters, unless with an error that nothing in the tree takes.
         """
-        if activation in self._asked:
-            self._asked.remove(activation)
+        if not activation.begun:
+            if activation in self._asked:
+                self._asked.remove(activation)
             return
         self._running.discard(activation)
         self._unread.discard(activation)
@@ -154,6 +163,8 @@ class Leaves:
 
     async def begin(self) -> None:
         """Carry out the tick: stop what it halted, then begin what it asked for."""
+        # Between ticks nothing stands by that would count among what waits.
+        self._carrier.close()
         await self.confirm()
         asked, self._asked = self._asked, []
         for activation in asked:
@@ -164,25 +175,36 @@ class Leaves:
         for activation in tuple(self._asked):
             if not activation.plan.check:
                 continue
-            await self.probe(activation)
+            self._asked.remove(activation)
+            if not self.ends_at_once(activation):
+                await self.settled(activation)
             if activation.ended:
                 self._unread.add(activation)
         await self.begin()
 
-    async def probe(self, activation: Activation) -> None:
-        """Begin a check at once and return when it has ended, or waits for something."""
-        self._asked.remove(activation)
-        self._probed, self._calls = activation, 0
+    def ends_at_once(self, activation: Activation) -> bool:
+        """Begin a check on the spot and tell whether that was all; nearly all end so."""
+        node = activation.plan.node
+        self.begun.append(node.path)
+        ended = self._carrier.run(node.path, node.perform(activation.place.scope, self._execution))
+        if isinstance(ended, Left):
+            activation.left_at_once = ended
+            return True
+        self._follow(activation, ended)
+        return False
+
+    async def settled(self, activation: Activation) -> None:
+        """Return when a check that goes on has ended, or waits for something but the answer of a service."""
+        execution, path, task = self._execution, activation.path, activation.task
+        assert task is not None, "it has begun"
+        self._probed = activation
+        waited_s = 0.0
         try:
-            task = self._start(activation)
-            # Most checks end in the first turn of the loop, which costs far less than settling.
-            await asyncio.sleep(0)
-            waited_s = 0.0
             while not task.done():
-                await self._execution.settlement.settled(self._path)
-                if self._execution.suspensions.held(activation.path):
-                    await self._execution.suspensions.until_free(activation.path)
-                elif task.done() or self._calls == 0 or waited_s >= CHECK_S:
+                await execution.settlement.settled(self._path)
+                if execution.suspensions.held(path):
+                    await execution.suspensions.until_free(path)
+                elif task.done() or not execution.open_calls.any_inside(path) or waited_s >= CHECK_S:
                     break
                 else:
                     waited_s += await self._answer(task, CHECK_S - waited_s)
@@ -195,6 +217,7 @@ class Leaves:
         Raises:
             NotStopped: a clean-up did not end in time.
         """
+        self._carrier.close()
         self._asked.clear()
         self._halted += self._running
         self._running.clear()
@@ -202,22 +225,15 @@ class Leaves:
         halted = self._take_halted()
         await preempt([each.task for each in halted if each.task is not None], overdue(self._execution, self._path))
 
-    def hear(self, event: Event) -> None:
-        """Take an event of the run: the tick waits while a check asks a service."""
-        if self._probed is None or not isinstance(event, Called | Answered):
-            return
-        if inside(self._probed.path, event.path):
-            self._calls += 1 if isinstance(event, Called) else -1
-            if self._answered is not None and not self._answered.done():
-                self._answered.set_result(None)
-
-    def _start(self, activation: Activation) -> asyncio.Task[Left]:
+    def _start(self, activation: Activation) -> None:
         work = activation.plan.node.perform(activation.place.scope, self._execution)
-        task = activation.task = self._execution.activity.branch(activation.path, work)
-        self._running.add(activation)
+        self._follow(activation, self._execution.activity.branch(activation.path, work))
         self.begun.append(activation.path)
+
+    def _follow(self, activation: Activation, task: asyncio.Task[Left]) -> None:
+        activation.task = task
+        self._running.add(activation)
         task.add_done_callback(partial(self._end, activation))
-        return task
 
     def _end(self, activation: Activation, _: asyncio.Task[Left]) -> None:
         if activation in self._running and activation is not self._probed:
@@ -232,9 +248,6 @@ class Leaves:
         """Wait until the check has an answer or has ended; return how long that took."""
         clock = self._execution.clock
         since_s = clock.now_s()
-        self._answered = asyncio.get_running_loop().create_future()
-        try:
-            await asyncio.wait({task, self._answered}, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            self._answered = None
+        with self._execution.open_calls.changed() as changed:
+            await asyncio.wait({task, changed}, timeout=timeout_s, return_when=asyncio.FIRST_COMPLETED)
         return clock.now_s() - since_s

@@ -11,6 +11,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from engine.cause import cause_of, describe
+from engine.clock import turn
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
@@ -34,6 +35,8 @@ from engine.tree.restoring import Branches, restore
 from engine.userdata import Scope
 
 _FINAL = (Status.SUCCESS, Status.FAILURE)
+_FAIRNESS = 256
+"""Checks in a row that end at once after which everybody else has a turn."""
 _REMEMBERED = 32
 """How many names are kept to name an endless loop."""
 
@@ -62,6 +65,7 @@ class TreeRunner:
     ) -> None:
         self.ticks = 0
         """How often the tree was ticked."""
+        self._checks = 0
         self._path = path
         self._execution = execution
         self._news = asyncio.Event()
@@ -88,10 +92,13 @@ class TreeRunner:
             CancelledError: the tree was preempted; all clean-up is done.
         """
         recorder, hear = self._execution.recorder, self._hear
-        recorder.watch(hear)
         ready: list[Foreign] = []
         try:
-            return await self._run(self._grow(ready))
+            root = self._grow(ready)
+            if self._growth.reactive or self._watched:
+                # Events that nobody hears are not even made.
+                recorder.watch(hear)
+            return await self._run(root)
         finally:
             recorder.unwatch(hear)
             self._alarms.close()
@@ -100,6 +107,7 @@ class TreeRunner:
                 await self._leaves.stop()
             finally:
                 self._shut_down(ready)
+                self._growth.take_apart()
 
     def _grow(self, ready: list[Foreign]) -> Behaviour:
         with self._blackboard:
@@ -155,14 +163,14 @@ class TreeRunner:
         self._news.clear()
         for guard in self._growth.guards:
             guard.said = None
-        steps = root.tick()
-        while (step := self._advance(steps)) is not None:
-            if self._execution.steps > MAX_STEPS:
-                await self._execution.give_way()
-            if step is self._growth.turn:
+        execution, at_turn, note = self._execution, self._growth.turn, self._growth.statuses.note
+        for step in self._steps(root):
+            if execution.steps > MAX_STEPS:
+                await execution.give_way()
+            if step is at_turn:
                 await self._take_turn()
             else:
-                self._growth.statuses.note(step)
+                note(step)
         self._leaves.forget(seen)
         await self._leaves.begin()
         self._alarms.begin()
@@ -181,15 +189,30 @@ class TreeRunner:
     def _short(self, path: str) -> str:
         return path.removeprefix(f"{self._path}/")
 
-    def _advance(self, steps: Iterator[Behaviour]) -> Behaviour | None:
-        with self._execution.counted(), self._blackboard:
-            return next(steps, None)
+    def _steps(self, root: Behaviour) -> Iterator[Behaviour]:
+        steps = root.tick()
+        # Nothing else in a tree evaluates anything, or runs code of others.
+        return self._watched_over(steps) if self._growth.guards or self._growth.foreign else steps
+
+    def _watched_over(self, steps: Iterator[Behaviour]) -> Iterator[Behaviour]:
+        while True:
+            with self._execution.counted(), self._blackboard:
+                step = next(steps, None)
+            if step is None:
+                return
+            yield step
 
     async def _take_turn(self) -> None:
         check, self._growth.turn.check = self._growth.turn.check, None
-        await self._leaves.confirm()
-        if check is not None:
-            await self._leaves.probe(check)
+        if self._leaves.halting:
+            await self._leaves.confirm()
+        if check is None:
+            return
+        self._checks += 1
+        if self._checks % _FAIRNESS == 0:
+            await turn()
+        if not self._leaves.ends_at_once(check):
+            await self._leaves.settled(check)
 
     def _raise_error(self, ended: frozenset[Activation]) -> None:
         """Raise the first error, in document order, that no decorator takes: it ends the tree at once."""
@@ -226,7 +249,6 @@ class TreeRunner:
             return True  # the tick will meet the error where a decorator may take it
 
     def _hear(self, event: Event) -> None:
-        self._leaves.hear(event)
         self._reactive.hear(event)
         if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)
