@@ -155,3 +155,25 @@ def test_a_tree_and_a_concurrency_begin_from_nothing_too(browser: Browser, shop:
         page.keyboard.press("Escape")
         page.get_by_role("button", name="Add a rule").click()
         expect(page.locator(".rules-card")).to_contain_text("finishedlog = done and log_2 = done")
+
+
+def test_a_branching_is_built_by_keyboard_in_its_roles(browser: Browser, shop: Workshop) -> None:
+    """What is added takes the next role, which its card shows."""
+    with opened_page(browser, shop.running, "/", size=LAPTOP) as page:
+        page.get_by_role("button", name="New", exact=True).click()
+        page.get_by_label("Name", exact=True).fill("choice")
+        page.get_by_label("Begins as").select_option("sequence")
+        page.get_by_role("button", name="Make it").click()
+        expect(card(page, "root/sequence")).to_be_visible()
+        inside = "root/sequence/if_then_else"
+        for typed, path in (
+            ("if, then", inside),
+            ("flow.wait", f"{inside}/wait"),
+            ("flow.log", f"{inside}/log"),
+            ("flow.log", f"{inside}/log_2"),
+        ):
+            page.keyboard.press("a")
+            page.keyboard.type(typed)
+            page.keyboard.press("Enter")
+            expect(card(page, path)).to_be_focused()
+        expect(card(page, f"{inside}/log_2").locator(".card-role")).to_have_text("else")
