@@ -23,6 +23,7 @@ from engine.authoring import (
     to_yaml,
 )
 from engine.document import Behavior
+from engine.document.node import shared_keys
 from tests.engine.reference.act import Act
 
 KEYS = st.sampled_from(["n", "n", "m", "n", "m", "xs"])
@@ -121,6 +122,7 @@ def _concurrencies(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
         states=states,
         conditions=rules,
         otherwise=draw(st.sampled_from(["x", "y", "y", None])),
+        shared=draw(st.sampled_from([None, None, ["n"], ["n", "m"], ["xs"]])),
         userdata=draw(USERDATA),
         **keys,
     )
@@ -168,6 +170,11 @@ class Case:
 
     def __init__(self, behavior: Behavior) -> None:
         self.behavior = behavior
+
+    @property
+    def shares(self) -> bool:
+        """Whether branches see one another write somewhere in it."""
+        return any(shared_keys(node) for behavior in _all(self.behavior) for _, node in behavior.nodes())
 
     def __repr__(self) -> str:
         return "\n".join(to_yaml(behavior) for behavior in _all(self.behavior))

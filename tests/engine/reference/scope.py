@@ -14,11 +14,12 @@ class Failed(Exception):
 
 @dataclass
 class Scope:
-    """Values of a container; `walled` keeps the writes of a branch inside."""
+    """Values of a container; `walled` keeps the writes of a branch inside, but for keys that are shared."""
 
     values: dict[str, object]
     outer: Scope | None = None
     walled: bool = False
+    shared: frozenset[str] = frozenset()
 
     def read(self, key: str) -> object:
         if key in self.values:
@@ -31,10 +32,15 @@ class Scope:
         return key in self.values or (self.outer is not None and self.outer.has(key))
 
     def write(self, key: str, value: object) -> None:
+        made_in = self
         scope: Scope | None = self
-        while scope is not None and key not in scope.values and not scope.walled:
+        while scope is not None and key not in scope.values:
+            if scope.walled and key not in scope.shared:
+                break
+            # A shared key that is new is made outside of the branches.
+            made_in = scope.outer if scope.walled and made_in is self and scope.outer is not None else made_in
             scope = scope.outer
-        (scope or self).values[key] = value
+        (scope or made_in).values[key] = value
 
     def evaluate(self, template: object) -> object:
         compiled = compile_template(template)

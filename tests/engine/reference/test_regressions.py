@@ -56,6 +56,44 @@ concurrency:
     q: {state: test.Act}
   conditions: [{x: {p: a, q: a}}]
 """
+SHARED = """
+concurrency:
+  shared: [n]
+  states:
+    p:
+      machine:
+        initial: s
+        states:
+          s: {state: test.Act, with: {after_s: 1.0, add: 1}, in: {seen: n}, out: {sum: n}, transitions: {a: t}}
+          t: {state: test.Act, with: {after_s: 2.0, add: 1}, in: {seen: n}, out: {sum: n}, transitions: {a: x}}
+    q:
+      machine:
+        initial: s
+        states:
+          s: {state: test.Act, with: {after_s: 2.0}, transitions: {a: t}}
+          t: {state: test.Act, guard: {when: "${n == 1}", to: y}, with: {add: 5}, in: {seen: n}, out: {sum: m},
+              transitions: {a: x}}
+  conditions: [{x: {p: x, q: x}}]
+  otherwise: y
+"""
+AT_ONE_INSTANT = """
+concurrency:
+  shared: [n]
+  states:
+    p:
+      machine:
+        initial: s
+        states:
+          s: {state: test.Act, with: {after_s: 1.0}, transitions: {a: t}}
+          t: {state: test.Act, with: {add: 1}, in: {seen: n}, out: {sum: n}, transitions: {a: x}}
+    q:
+      machine:
+        initial: s
+        states:
+          s: {state: test.Act, with: {after_s: 1.0}, transitions: {a: t}}
+          t: {state: test.Act, with: {add: 1}, in: {seen: n}, out: {sum: m}, transitions: {a: x}}
+  conditions: [{x: {p: x, q: x}}]
+"""
 
 
 def _behavior(root: str) -> Behavior:
@@ -90,3 +128,21 @@ def test_branches_are_entered_in_document_order() -> None:
     """Also the one that has a timeout; the order decides who is given a resource that two branches want."""
     events = run_to_end(_behavior(TWO_BRANCHES), 10.0).events
     assert [event.path for event in events if isinstance(event, Entered)] == ["root", "root/p", "root/q"]
+
+
+@pytest.mark.parametrize(
+    ("root", "userdata"),
+    [
+        pytest.param(SHARED, {"n": 2, "m": 6}, id="of another instant"),
+        pytest.param(AT_ONE_INSTANT, {"n": 1, "m": 2}, id="of one instant, in document order"),
+    ],
+)
+def test_branches_see_each_other_write_shared_keys_at_once(root: str, userdata: dict[str, object]) -> None:
+    """While they run, and before they are merged: what one reads is what the other has just written."""
+    head = HEAD.replace("root:", "userdata: {n: 0, m: 0}\nroot:")
+    behavior = parse_behavior(head + indent(root, "  "), file="t.yaml")
+    reference = Interpreter(behavior)
+    status, outcome, found = reference.run(10.0)
+    result = run_to_end(behavior, 10.0).result
+    assert (status, outcome) == (result.status, result.outcome) == ("finished", "x")
+    assert found == dict(result.userdata) == userdata
