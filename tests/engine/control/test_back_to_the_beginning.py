@@ -125,7 +125,7 @@ LEAVES = st.builds(_leaf, st.sampled_from(KEYS), TIMES, TIMES)
 TREES = st.recursive(
     LEAVES,
     lambda inner: (
-        st.builds(_machine, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["machine", "priority"]))
+        st.builds(_machine, st.lists(inner, min_size=1, max_size=3), st.just("machine"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
         | st.lists(LEAVES, min_size=1, max_size=3).map(_tree)
         | inner.map(_foreach)

@@ -1188,6 +1188,11 @@ export interface TagsBody {
   readonly revision: number
 }
 
+/** A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted. */
+export interface TakeFileBody {
+  readonly preempt: boolean
+}
+
 /** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
 export interface TaughtStepBody {
   readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
