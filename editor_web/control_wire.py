@@ -96,6 +96,12 @@ class BreakpointsBody(Wire):
     breakpoints: tuple[BreakpointBody, ...]
 
 
+class TakeFileBody(Wire):
+    """A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted."""
+
+    preempt: bool = False
+
+
 class ChangeBody(Wire):
     """What a hot change did, a line for each difference."""
 

@@ -67,8 +67,10 @@ class Operation(Protocol):
         """
         ...
 
-    async def change(self, run_id: str) -> ChangeReport:
+    async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
         """Let the behavior as its file is now take the place of the one that a paused run executes.
+
+        With `preempt`, what is active and cannot go on as it is is preempted.
 
         Raises:
             ControlError: the run cannot go on in the new version; it goes on as it is.

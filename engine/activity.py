@@ -45,8 +45,9 @@ class Activity:
 
     def is_preempted(self, path: str) -> bool:
         """Tell whether the task in which the node at `path` is performed has been asked to end."""
-        task = self.task_of(path)
-        return task is not None and is_preempted(task)
+        # A state with a time-out is performed in one task, and runs in that of what is inside it.
+        tasks = (self._branches.get(f"{path}/"), self.task_of(path))
+        return any(task is not None and is_preempted(task) for task in tasks)
 
     def branch_of(self, path: str) -> str:
         """Return the path of that branch, empty for the whole run."""

@@ -52,10 +52,6 @@ class Concurrency:
             if c.asks_only_for(lambda name, due: due in self.children[name].work.nominal)
         )
 
-    @cached_property
-    def _rank(self) -> dict[str, int]:
-        return {name: rank for rank, name in enumerate(self.children)}
-
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
         """The values its scope begins with."""
         return self.userdata
@@ -74,39 +70,33 @@ class Concurrency:
         point = entry.point
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
         written: Mapping[str, Mapping[str, object]] = point.branches if point is not None else {}
-        branches = {
-            name: branch_scope(path, name, inner, written.get(name, {}), shared=self.shared) for name in self.children
-        }
-        tasks = {
-            name: execution.activity.branch(child.path, child.perform(branches[name], execution))
-            for name, child in self.children.items()
-        }
+        branches = _Branches(path, inner, execution, written)
+        execution.branching[path] = branches
+        branches.start(self)
         try:
-            outcome = await self._decide(path, tasks, execution)
+            outcome = await self._decide(path, branches, execution)
         finally:
-            await preempt(tasks.values(), overdue(execution, path))
-        _raise_late_failure(tasks)
-        for name in self.children:
-            merge(branches[name], inner, execution)
+            execution.branching.pop(path, None)
+            await preempt(branches.tasks.values(), overdue(execution, path))
+        _raise_late_failure(branches.tasks)
+        branches.merge_all()
         return outcome
 
-    async def _decide(self, path: str, tasks: Mapping[str, asyncio.Task[Left]], execution: Execution) -> Outcome:
-        finished: dict[str, Left] = {}
-        ended = asyncio.Event()
-        arrived: list[str] = []
-        for name, task in tasks.items():
-            task.add_done_callback(partial(_arrive, arrived, name, ended))
-        while len(finished) < len(tasks):
-            await ended.wait()
+    async def _decide(self, path: str, branches: _Branches, execution: Execution) -> Outcome:
+        latest = self
+        while True:
+            await branches.arrival.wait()
             await execution.settlement.settled(path)
-            ended.clear()
-            for name in sorted(arrived, key=self._rank.__getitem__):
-                finished[name] = _as_outcome(tasks[name].result())
-            arrived.clear()
-            for condition in execution.latest(f"{path}/", self).conditions:
+            branches.arrival.clear()
+            latest = execution.latest(f"{path}/", latest)
+            if branches.are_others(latest):
+                await branches.follow(latest)
+            finished = branches.finished(latest)
+            for condition in latest.conditions:
                 if condition.holds(has_ended(finished)):
-                    return self.ended(condition, finished)
-        return self._uncovered(path, finished)
+                    return latest.ended(condition, finished)
+            if len(finished) == len(branches.tasks):
+                return latest._uncovered(path, finished)
 
     def ended(self, condition: Condition, finished: Mapping[str, Left]) -> ContainerOutcome:
         """Return its outcome by a condition that holds, with the children that this asked for as the reason."""
@@ -139,14 +129,81 @@ class Concurrency:
         )
 
 
+class _Branches:
+    """The branches of one activation of a concurrency container: their tasks and scopes, and who has ended."""
+
+    def __init__(
+        self, path: str, inner: Scope, execution: Execution, written: Mapping[str, Mapping[str, object]]
+    ) -> None:
+        self.tasks: dict[str, asyncio.Task[Left]] = {}
+        self.arrival = asyncio.Event()
+        self._path = path
+        self._inner = inner
+        self._execution = execution
+        self._written = written
+        self._scopes: dict[str, Scope] = {}
+        self._arrived: list[str] = []
+        self._finished: dict[str, Left] = {}
+
+    def wake(self) -> None:
+        """Have the container look again."""
+        self.arrival.set()
+
+    def start(self, container: Concurrency) -> None:
+        """Start the children that have not been started."""
+        fresh = {name: child for name, child in container.children.items() if name not in self.tasks}
+        for name in fresh:
+            self._scopes[name] = branch_scope(
+                self._path, name, self._inner, self._written.get(name, {}), shared=container.shared
+            )
+        for name, child in fresh.items():
+            work = child.perform(self._scopes[name], self._execution)
+            self.tasks[name] = self._execution.activity.branch(child.path, work)
+        for name in fresh:
+            self.tasks[name].add_done_callback(partial(self._arrive, name))
+
+    def are_others(self, container: Concurrency) -> bool:
+        """Tell whether a hot change has given the container other branches."""
+        return self.tasks.keys() != container.children.keys()
+
+    async def follow(self, container: Concurrency) -> None:
+        """Preempt the branches that are gone, whose writes are merged, and start those that are new."""
+        gone = [name for name in self.tasks if name not in container.children]
+        await preempt([self.tasks[name] for name in gone], overdue(self._execution, self._path))
+        for name in gone:
+            self._execution.suspensions.has_cleaned_up(f"{self._path}/{name}")
+            task = self.tasks.pop(name)
+            _raise_late_failure({name: task})
+            self._finished.pop(name, None)
+            self._scopes.pop(name)
+        self.start(container)
+
+    def finished(self, container: Concurrency) -> Mapping[str, Left]:
+        """Return how those have ended that have, in the order in which they did."""
+        arrived = [name for name in self._arrived if name in self.tasks]
+        self._arrived.clear()
+        rank = list(container.children).index
+        for name in sorted(arrived, key=rank):
+            self._finished[name] = _as_outcome(self.tasks[name].result())
+        return self._finished
+
+    def merge(self, name: str) -> None:
+        """Write what a branch has written where the keys live around it."""
+        merge(self._scopes[name], self._inner, self._execution)
+
+    def merge_all(self) -> None:
+        """Do so for all, in order of their beginnings."""
+        for name in self._scopes:
+            self.merge(name)
+
+    def _arrive(self, name: str, _: asyncio.Task[Left]) -> None:
+        self._arrived.append(name)
+        self.arrival.set()
+
+
 def has_ended(finished: Mapping[str, Left]) -> Callable[[str, str], bool]:
     """Return what a condition asks: whether a child has finished with an outcome."""
     return lambda name, due: name in finished and finished[name].outcome == due
-
-
-def _arrive(arrived: list[str], name: str, ended: asyncio.Event, _: asyncio.Task[Left]) -> None:
-    arrived.append(name)
-    ended.set()
 
 
 def _as_outcome(left: Left) -> Left:

@@ -228,11 +228,23 @@ class OperatorChanged(Event, frozen=True, kw_only=True, tag="operator"):
     status: str
 
 
-class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed"):
-    """A new version of the document took the place of the running one; `report` has a line for each change."""
+class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed", omit_defaults=True):
+    """A new version of the document took the place of the running one; `report` has a line for each change.
+
+    `restarted` are the active nodes that are preempted and entered anew, `removed` the branches of active concurrency
+    containers that are gone; `preempt` says that the operator wanted that. `replaced` are the nodes of the old version
+    that are of another class or kind now. `documents` are the texts of the version,
+    where they can be kept, and `behavior` is the name of the behavior among them.
+    """
 
     document: str
     report: tuple[str, ...]
+    preempt: bool = False
+    restarted: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
+    replaced: tuple[str, ...] = ()
+    behavior: str = ""
+    documents: dict[str, str] = {}
 
 
 class UndoBegan(Event, frozen=True, kw_only=True, tag="undo_began"):

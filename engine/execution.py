@@ -6,7 +6,7 @@ import asyncio
 import random
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from engine.activity import Activity
 from engine.bus import SkillBus
@@ -29,6 +29,18 @@ from engine.userdata_value import plain_value
 from engine.waits import Waits
 
 N = TypeVar("N")
+
+
+class Branching(Protocol):
+    """A container with branches, at a hot change."""
+
+    def merge(self, name: str) -> None:
+        """Write what a branch has written where the keys live around it."""
+        ...
+
+    def wake(self) -> None:
+        """Look at `Execution.replaced` again."""
+        ...
 
 
 @dataclass(kw_only=True)
@@ -73,6 +85,8 @@ class Execution:
     """
     replaced: dict[str, object] = field(default_factory=dict[str, object])
     """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
+    branching: dict[str, Branching] = field(default_factory=dict[str, "Branching"])
+    """The active containers whose branches a hot change may add and remove, by their paths."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
     """Tasks that did not end when told to; nobody waits for them any more."""
 

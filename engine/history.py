@@ -121,7 +121,7 @@ class History:
             case SteppedBack():
                 self._step_back(event)
             case BehaviorChanged():
-                self.document = event.document
+                self._change(event)
             case RunEnded():
                 self.ended = True
             case _:
@@ -343,14 +343,26 @@ class History:
             container.round += 1
             self._begin_round(event.path, work, container.inputs, container.round)
 
+    def _change(self, event: BehaviorChanged) -> None:
+        self.document = event.document
+        for path in event.removed:
+            # What it had written was merged just before.
+            self._scopes.pop(f"{path}*", None)
+        for path in (*event.restarted, *event.removed):
+            self._drop(path)
+
+    def _drop(self, path: str) -> None:
+        """Know nothing of a node any more but how often it was entered: it has not begun."""
+        self._forget_inside(path)
+        for table in (self._open, self._left, self._pending):
+            table.pop(path, None)
+
     def _step_back(self, event: SteppedBack) -> None:
         self.undoing = ""
         if event.cause is not None:
             return
         for path in (event.path, event.source):
-            self._forget_inside(path)
-            for table in (self._open, self._left, self._pending):
-                table.pop(path, None)
+            self._drop(path)
         for each in event.values:
             values = self._scopes.setdefault(each.scope, {})
             if each.defined:

@@ -1,19 +1,22 @@
 """Replacing the behavior of a run while it is paused: what changes, and why it may be impossible.
 
 Running states keep the parameters they were entered with; transitions, conditions and autonomy are
-those of the new version at once, everything else when a node is entered again.
+those of the new version at once, everything else when a node is entered again. An active concurrency container gets
+its new branches at once and loses those that are gone. Where the operator says so, active nodes that cannot go on as
+they are, or that were given other parameters or keys, are preempted and entered anew.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 from engine.concurrency import Concurrency
 from engine.leaf import Leaf
 from engine.machine import Machine
 from engine.nearness import near_names
 from engine.node import Node
+from engine.node_path import inside
 from engine.plan import Plan
 from engine.priority import Priority
 
@@ -24,10 +27,33 @@ class ChangeReport:
 
     changes: tuple[str, ...]
     refusals: tuple[str, ...]
+    restarted: tuple[str, ...] = ()
+    """The active nodes that are preempted and entered anew."""
+    removed: tuple[str, ...] = ()
+    """The branches of active concurrency containers that are gone."""
+    replaced: tuple[str, ...] = ()
+    """The nodes that are of another class or kind now."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeptVersion:
+    """The texts of a version, for whoever replays the run, and the name of the behavior among them; empty for none."""
+
+    behavior: str = ""
+    documents: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+NOT_KEPT = KeptVersion()
 
 
 def plan_change(
-    old: Plan, new: Plan, *, active: Mapping[str, Node], waiting: Mapping[str, str], still: bool
+    old: Plan,
+    new: Plan,
+    *,
+    active: Mapping[str, Node],
+    waiting: Mapping[str, str],
+    still: bool,
+    preempt: bool = False,
 ) -> ChangeReport:
     """Compare two versions of a behavior for a run that is in the middle of the old one.
 
@@ -37,11 +63,60 @@ def plan_change(
         active: The nodes that were entered and not left, by path.
         waiting: The nodes at the gate with the outcome they wait with, empty before their entry.
         still: Whether the run is paused or locked.
+        preempt: Whether what is active and cannot go on as it is may be preempted: a node is entered anew, a branch
+            that is gone ends.
     """
-    refusals = list(_refusals(old, new, active, waiting))
+    removed = tuple(_removed(old, new, active))
+    staying = {path: node for path, node in active.items() if not _in_any(removed, path)}
+    restarted: tuple[str, ...] = ()
+    if preempt:
+        restarted = tuple(_outermost(path for path in staying if _is_other(path, old, new)))
+        staying = {path: node for path, node in staying.items() if not _in_any(restarted, path)}
+    left = {path: outcome for path, outcome in waiting.items() if not _in_any((*removed, *restarted), path)}
+    refusals = list(_refusals(old, new, staying, left))
+    if not preempt:
+        under_way = [path for path in removed if any(inside(path, each) for each in (*active, *waiting))]
+        refusals += [f"{path} is under way and not in the new version" for path in under_way]
     if not still:
         refusals.insert(0, "the run is neither paused nor locked")
-    return ChangeReport(changes=tuple(_changes(old, new, active)), refusals=tuple(refusals))
+    changes = (
+        *_changes(old, new, {path: node for path, node in active.items() if path not in restarted}),
+        *(f"{path} is preempted and entered anew" for path in restarted),
+    )
+    return ChangeReport(
+        changes=changes, refusals=tuple(refusals), restarted=restarted, removed=removed, replaced=_replaced(old, new)
+    )
+
+
+def _replaced(old: Plan, new: Plan) -> tuple[str, ...]:
+    return tuple(
+        path for path, node in old.nodes.items() if path in new.nodes and any(_refuses(path, node, new.nodes[path]))
+    )
+
+
+def _removed(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
+    """Go through the branches of active concurrency containers that the new version does not have."""
+    for path in active:
+        before, after = old.nodes[path].work, new.nodes.get(path)
+        if isinstance(before, Concurrency) and after is not None and isinstance(after.work, Concurrency):
+            yield from (child.path for name, child in before.children.items() if name not in after.work.children)
+
+
+def _is_other(path: str, old: Plan, new: Plan) -> bool:
+    """Tell whether an active node has to be entered anew to be what the new version says."""
+    before, after = old.nodes[path], new.nodes.get(path)
+    if after is None:
+        return False
+    return any(_refuses(path, before, after)) or _wiring(before) != _wiring(after)
+
+
+def _outermost(paths: Iterable[str]) -> Iterator[str]:
+    found = tuple(paths)
+    yield from (path for path in found if not any(other != path and inside(other, path) for other in found))
+
+
+def _in_any(outer: Iterable[str], path: str) -> bool:
+    return any(inside(each, path) for each in outer)
 
 
 def definitions(plan: Plan) -> Iterator[tuple[str, object]]:
@@ -57,8 +132,9 @@ def _refusals(old: Plan, new: Plan, active: Mapping[str, Node], waiting: Mapping
         present = new.nodes.get(path)
         if present is None:
             yield f"{path} is active and not in the new version ({near_names(path, new.nodes)})"
-            continue
-        yield from _refuses(path, old.nodes[path], present)
+        elif path in active:
+            # What only waits has not begun, or has ended: it may be anything else.
+            yield from _refuses(path, old.nodes[path], present)
     for path, outcome in waiting.items():
         yield from _leads_nowhere(new, path, outcome)
     for name, parameter in new.parameters.items():
@@ -72,8 +148,6 @@ def _refuses(path: str, before: Node, after: Node) -> Iterator[str]:
         return
     if isinstance(before.work, Leaf) and isinstance(after.work, Leaf) and before.work.state is not after.work.state:
         yield f"{path} is active as {before.work.signature.name}, now it is {after.work.signature.name}"
-    if isinstance(before.work, Concurrency) and list(before.work.children) != list(after.work.children):
-        yield f"{path} is active and has other branches now"
     if before.work.kind == "tree" and _shape(before) != _shape(after):
         yield f"{path} is active and its tree has another shape now"
 
@@ -100,6 +174,10 @@ def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
             yield f"{path} has other transitions"
         if _parameters(before) != _parameters(after):
             yield f"{path} has other parameters{_when(path, active)}"
+        if isinstance(before.work, Leaf) and isinstance(after.work, Leaf) and before.work.state != after.work.state:
+            yield f"{path} is {after.work.signature.name} now"
+        if _parameters(before) == _parameters(after) and _wiring(before) != _wiring(after):
+            yield f"{path} reads or writes other keys{_when(path, active)}"
         if _conditions(before) != _conditions(after):
             yield f"{path} has other conditions"
         if _shared(before) != _shared(after):
@@ -109,6 +187,13 @@ def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
     for key in new.userdata:
         if key not in old.userdata:
             yield f"the userdata key {key} is new"
+
+
+def _wiring(node: Node) -> object:
+    """Return what a state is given and where it writes."""
+    if not isinstance(node.work, Leaf):
+        return None
+    return node.work.parameters.value, node.work.inputs, node.work.outputs
 
 
 def _parameters(node: Node) -> object:

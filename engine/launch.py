@@ -273,7 +273,7 @@ def _autonomy(found: RecordedRun) -> AutonomyLevel:
 
 def _changes(found: RecordedRun, plan: Plan, catalogue: Catalogue, until_seq: int | None) -> tuple[str, ...]:
     """Return what has changed; refused by the same rules as a change of a paused run."""
-    recorded = found.behavior()
+    recorded = found.behavior_now()
     if recorded is None or recorded.meaning != found.document:
         # It was changed while it ran: that version is not kept, so only what is active can be compared.
         read_history(plan, found.id, found.events, until_seq=until_seq).checkpoint()
@@ -287,8 +287,10 @@ def _changes(found: RecordedRun, plan: Plan, catalogue: Catalogue, until_seq: in
         waiting=_waiting(history),
         still=True,
     )
-    if report.refusals:
-        raise ControlError("; ".join(report.refusals), where=found.id, hint="resume it with the old version")
+    gone = [f"{path} is not in the new version, and its container is active" for path in report.removed]
+    if report.refusals or gone:
+        refusals = "; ".join((*report.refusals, *gone))
+        raise ControlError(refusals, where=found.id, hint="resume it with the old version")
     return report.changes
 
 

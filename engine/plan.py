@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from engine import concurrency, machine
@@ -42,6 +42,8 @@ class Plan:
     parameters: Mapping[str, Parameter]
     userdata: Mapping[str, object]
     substitutes: Substitutes | None = None
+    source: document.Behavior | None = field(default=None, repr=False, compare=False)
+    """The behavior that it was made of; None for one inside another."""
 
     @cached_property
     def nodes(self) -> Mapping[str, Node]:
@@ -104,7 +106,7 @@ def new_plan(behavior: document.Behavior, catalogue: Catalogue) -> Plan:
     plan = _new_plan(behavior, catalogue, path="root", substitutes=behavior.substitutes)
     if behavior.substitutes is not None:
         require_used(behavior.substitutes, plan.nodes)
-    return plan
+    return replace(plan, source=behavior)
 
 
 def _new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str, substitutes: Substitutes | None) -> Plan:

@@ -10,6 +10,7 @@ from engine.document import Behavior
 from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, FlexcellError, JournalError
 from engine.event import AnyEvent, BehaviorChanged, Event, RunStarted
+from engine.hot_change import KeptVersion
 from engine.journal import RunOrigin, RunRecord, WorldState, journal_path, open_snapshot
 from engine.recording import Documents, collect_documents, recorded_behavior, recorded_substitutes
 from engine.resume import effective
@@ -63,6 +64,17 @@ class RecordedRun:
         """
         return recorded_behavior(self._documents) if self.origin.documents else None
 
+    def behavior_now(self) -> Behavior | None:
+        """Return the behavior as the run executed it last, after hot changes; None where the journal does not hold it.
+
+        Raises:
+            FlexcellError: the stored documents are damaged.
+        """
+        changes = [event for event in self.events if isinstance(event, BehaviorChanged)]
+        if not changes:
+            return self.behavior()
+        return changed_behavior(changes[-1])
+
     @property
     def substitutes(self) -> Substitutes | None:
         """What stood in for nodes of its behavior; None for nothing.
@@ -95,6 +107,24 @@ def read_run(place: Path | str, run_id: str) -> RecordedRun:
             )
         events, world = tuple(journal.events(run_id)), journal.world(run_id)
     return RecordedRun(place=path, record=record, origin=origin, events=events, world=world)
+
+
+def changed_behavior(event: BehaviorChanged) -> Behavior | None:
+    """Return the version that took over in a hot change; None where its documents were not kept.
+
+    Raises:
+        FlexcellError: they are damaged.
+    """
+    if not event.documents:
+        return None
+    texts = {name: text.encode() for name, text in event.documents.items()}
+    return recorded_behavior(Documents(behavior=event.behavior, texts=texts))
+
+
+def kept_version(behavior: Behavior | None) -> KeptVersion:
+    """Return what a hot change to this version leaves in the journal; nothing where its documents cannot be kept."""
+    name, texts = kept_documents(behavior) if behavior is not None else ("", {})
+    return KeptVersion(behavior=name, documents=texts)
 
 
 def kept_documents(behavior: Behavior) -> tuple[str, dict[str, str]]:

@@ -11,15 +11,15 @@ import msgspec
 
 from engine.bus import SkillBus
 from engine.cause import cause_of, describe, under
+from engine.changing import Changing
 from engine.checkpoint import Checkpoint
 from engine.control import Control, Gate
 from engine.diagnosis import explain
-from engine.errors import ControlError, FlexcellError, JournalError, NotStopped
+from engine.errors import FlexcellError, JournalError, NotStopped
 from engine.event import Cause, RunEnded
 from engine.execution import Execution
-from engine.hot_change import ChangeReport, definitions, plan_change
+from engine.hot_change import NOT_KEPT, ChangeReport, KeptVersion
 from engine.journal import NullRunJournal, RunJournal
-from engine.node import Node
 from engine.node_exit import Left
 from engine.plan import Plan
 from engine.preemption import preempt_for_good
@@ -196,29 +196,31 @@ class Run:
     @property
     def active_states(self) -> tuple[str, ...]:
         """The paths of the states that were entered and not left, in order of entry."""
-        return tuple(path for path in self._execution.activity.nodes if not self.plan.nodes[path].work.children)
+        nodes = self.plan.nodes
+        # A branch that a hot change has removed is in no plan any more while it cleans up.
+        active = self._execution.activity.nodes
+        return tuple(path for path in active if path not in nodes or not nodes[path].work.children)
 
-    def change(self, plan: Plan) -> ChangeReport:
+    def change(self, plan: Plan, *, preempt: bool = False, kept: KeptVersion = NOT_KEPT) -> ChangeReport:
         """Let a new version of the behavior take the place of the running one, which must be paused or locked.
+
+        Args:
+            plan: The new version.
+            preempt: Whether active nodes that cannot go on as they are, or that have other parameters or keys, are
+                preempted and entered anew, and branches that are gone but under way preempted.
+            kept: The texts of the version, without which the run cannot be replayed.
 
         Raises:
             ControlError: the run cannot go on in the new version; it goes on as it is.
         """
-        gate = self._execution.gate
-        active = {path: self.plan.nodes[path] for path in self._execution.activity.nodes}
-        waiting = {each.path: each.outcome for each in gate.waiting.values()}
-        report = plan_change(
-            self.plan, plan, active=active, waiting=waiting, still=gate.paused or _locked(active, waiting, gate.locks)
-        )
-        if report.refusals:
-            raise ControlError("; ".join(report.refusals), hint="the run goes on with the old version")
-        kept = {name: value for name, value in self.parameters.items() if name in plan.parameters}
-        for key, value in plan.checked_parameters(kept).items():
+        known = {name: value for name, value in self.parameters.items() if name in plan.parameters}
+        required = [name for name, each in plan.parameters.items() if each.required and name not in known]
+        checked = plan.checked_parameters(known) if not required else {}
+        changing = Changing(execution=self._execution, control=self._control, log=self._log)
+        report = changing.change(self.plan, plan, preempt=preempt, kept=kept)
+        for key, value in checked.items():
             self._parameters.write(key, value)
-        self._execution.replaced = dict(definitions(plan))
         self.plan = plan
-        self._log.changed(plan.document_hash, report.changes)
-        gate.arm()
         return report
 
     async def step_back(self, path: str = "") -> tuple[str, ...]:
@@ -409,9 +411,3 @@ def _unrecorded(error: JournalError, end: RunEnded) -> Cause:
     by_itself = end.outcome or end.status
     why = f" ({describe(end.cause)})" if end.cause is not None else ""
     return msgspec.structs.replace(lost, message=f"{lost.message}; the run itself had ended: {by_itself}{why}")
-
-
-def _locked(active: Mapping[str, Node], waiting: Mapping[str, str], locks: set[str]) -> bool:
-    """Tell whether every active state waits behind a lock, its own or one around it."""
-    leaves = [path for path, node in active.items() if not node.work.children]
-    return not leaves and any(path in locks for path in waiting)

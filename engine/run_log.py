@@ -16,6 +16,7 @@ from engine.event import (
     StopRequested,
     UserdataWritten,
 )
+from engine.hot_change import ChangeReport, KeptVersion
 from engine.plan import Plan
 from engine.recorder import Recorder
 
@@ -64,9 +65,19 @@ class RunLog:
                 cause=checkpoint.points[path].cause,
             )
 
-    def changed(self, document: str, report: tuple[str, ...]) -> None:
+    def changed(self, document: str, report: ChangeReport, *, preempt: bool, kept: KeptVersion) -> None:
         """A new version of the behavior took over."""
-        self._recorder.emit(BehaviorChanged, document=document, report=report)
+        self._recorder.emit(
+            BehaviorChanged,
+            document=document,
+            report=report.changes,
+            preempt=preempt,
+            restarted=report.restarted,
+            removed=report.removed,
+            replaced=report.replaced,
+            behavior=kept.behavior,
+            documents=dict(kept.documents),
+        )
 
     def stop_requested(self, reason: str) -> None:
         """Somebody wants it to stop."""

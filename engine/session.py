@@ -38,7 +38,7 @@ from engine.launch import (
 from engine.library import BehaviorView, Library
 from engine.nearness import near_names
 from engine.plan import Catalogue, Plan, new_plan
-from engine.recorded_run import read_run
+from engine.recorded_run import kept_version, read_run
 from engine.session_entries import StoredEntries
 from engine.session_operators import Attachment, Operators
 from engine.session_recordings import SessionRecordings, Start
@@ -257,8 +257,8 @@ class Session:
         """
         return self._operators.attach(run_id, self.control(run_id))
 
-    async def change(self, run_id: str) -> ChangeReport:
-        """Let the behavior as its file is now take the place of the one that a paused run executes.
+    async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
+        """Let the behavior as its file is now take the place of the one that a paused run executes; see `Run.change`.
 
         Raises:
             ControlError: the run cannot go on in the new version; it goes on as it is.
@@ -266,9 +266,10 @@ class Session:
         """
         self.control(run_id)
         started = self._known(run_id)
-        _, plan = await asyncio.to_thread(self._planned, started.behavior_id, started.run.plan.substitutes)
+        behavior, plan = await asyncio.to_thread(self._planned, started.behavior_id, started.run.plan.substitutes)
+        kept = await asyncio.to_thread(kept_version, behavior)
         self.control(run_id)
-        return started.run.change(plan)
+        return started.run.change(plan, preempt=preempt, kept=kept)
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
         """Take back what a paused run has begun last; see `engine.run.Run.step_back`.

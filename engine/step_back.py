@@ -95,6 +95,8 @@ def undoable(plan: Plan, activation: LeafActivation) -> Leaf | None:
     node = plan.nodes.get(activation.path)
     if node is None:
         raise _refused(activation, "it is not in the behavior any more")
+    if activation.replaced:
+        raise _refused(activation, "the behavior was changed since, and it was another state then")
     leaf = node.work
     if not isinstance(leaf, Leaf) or leaf.state.observes or leaf.state.undo is nothing_to_undo:
         return None
@@ -138,9 +140,9 @@ def _chosen(plan: Plan, trail: Trail, standing: Standing, path: str) -> tuple[st
 
 def _cursors(plan: Plan, standing: Standing, path: str) -> Iterator[str]:
     """Go through the innermost nodes at which the branches stand; a tree is one of them, whatever is in it."""
-    leaves = [each for each in standing.active if not plan.nodes[each].work.children]
-    for each in dict.fromkeys((*standing.waiting, *leaves)):
-        if not path or inside(path, each):
+    known = [each for each in (*standing.waiting, *standing.active) if each in plan.nodes]
+    for each in dict.fromkeys(known):
+        if (each in standing.waiting or not plan.nodes[each].work.children) and (not path or inside(path, each)):
             yield each
 
 

@@ -12,6 +12,7 @@ import msgspec
 
 from engine.event import (
     Answered,
+    BehaviorChanged,
     Called,
     Entered,
     Event,
@@ -44,6 +45,8 @@ class LeafActivation:
     outcome: str = ""
     requests: dict[str, RequestRecord] = field(default_factory=dict[str, RequestRecord])
     """By the name of the goal or call."""
+    replaced: bool = False
+    """Whether a hot change has put another class in the place of its own since."""
     written: dict[str, object] = field(default_factory=dict[str, object])
     """What it wrote last, by the key of its container."""
 
@@ -116,6 +119,9 @@ class Trail:
                 self._undoing.discard(event.path)
                 if event.cause is None and not event.preempted:
                     self._done.pop((event.path, event.undoes), None)
+            case BehaviorChanged():
+                for activation in self._done.values():
+                    activation.replaced = activation.replaced or activation.path in event.replaced
             case SteppedBack() if event.cause is None:
                 self._step_back(event)
             case _:

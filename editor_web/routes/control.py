@@ -19,6 +19,7 @@ from editor_web.control_wire import (
     ResumeBody,
     StepBackBody,
     StepBody,
+    TakeFileBody,
 )
 from editor_web.routes.breakpoints import made_breakpoints
 from editor_web.routes.services import ServicesOf
@@ -137,10 +138,10 @@ async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlB
 
 
 @router.post("/{run_id}/control/change")
-async def change(run_id: str, control: ControlOf, services: ServicesOf) -> ChangeBody:
+async def change(run_id: str, control: ControlOf, services: ServicesOf, body: TakeFileBody | None = None) -> ChangeBody:
     """Let the behavior as its file is now take the place of the one that a paused run executes."""
     del control
-    return ChangeBody.model_validate(await services.backend.change(run_id))
+    return ChangeBody.model_validate(await services.backend.change(run_id, preempt=body is not None and body.preempt))
 
 
 @interrupted_router.get("")

@@ -18,6 +18,7 @@ from engine.errors import ControlError, FlexcellError
 from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded, SteppedBack
 from engine.nearness import near_names
 from engine.plan import Plan
+from engine.recorded_run import kept_version
 from engine.run import Run
 from engine.supervision import Supervision
 
@@ -98,9 +99,10 @@ class OperatorConsole:
         except FlexcellError as error:
             self.say(str(error))
 
-    def reload(self) -> None:
+    def reload(self, *, preempt: bool) -> None:
         """Let the behavior as its file is now take the place of the running one."""
-        report = self.run.change(self._reload())
+        plan = self._reload()
+        report = self.run.change(plan, preempt=preempt, kept=kept_version(plan.source))
         for change in report.changes or ("the file means the same as before",):
             self.say(f"changed: {change}")
 
@@ -296,8 +298,9 @@ def _written(each: Breakpoint) -> str:
 
 
 def _reload(console: OperatorConsole, words: Sequence[str]) -> None:
-    _none(words)
-    console.reload()
+    if words not in ([], ["preempt"]):
+        raise _Misspoken(f"{' '.join(words)!r} is not understood")
+    console.reload(preempt=bool(words))
 
 
 def _where(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -350,7 +353,7 @@ COMMANDS: Mapping[str, _Command] = {
     "repeat": _Command("repeat PATH", "run a node again", _repeat),
     "answer": _Command("answer [PATH]", "agree to a requested outcome", _answer),
     "autonomy": _Command("autonomy off|low|high|full", "what passes without being asked", _autonomy),
-    "reload": _Command("reload", "go on with the file as it is now", _reload),
+    "reload": _Command("reload [preempt]", "go on with the file as it is now", _reload),
     "where": _Command("where", "where the run is", _where),
     "wait": _Command("wait", "take no further line until it rests or asks", _wait),
     "detach": _Command("detach", "leave it to itself", _detach),

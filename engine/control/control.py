@@ -211,6 +211,10 @@ class Control:
         self._record("repeat", path)
         self._order(path, Order(outcome=None))
 
+    def restart(self, path: str) -> None:
+        """Have an active node preempted and entered anew, as a hot change wants it; that change is the command."""
+        self._order(path, Order(outcome=None))
+
     def answer(self, path: str) -> None:
         """Let the outcome pass that a node has requested.
 

@@ -27,6 +27,7 @@ from engine.run import Run, RunResult
 _PATIENCE_S = 10.0
 """How long after its last recorded event a run on the virtual clock may go on before it counts as stuck."""
 _REAL_PATIENCE_S = 3600.0
+NO_VERSIONS: Mapping[int, Plan] = {}
 _BEFORE = (RunStarted, StopRequested, Commanded, OperatorChanged, PauseConfirmed, Logged)
 """What can be in a story before its first node."""
 
@@ -39,11 +40,18 @@ class Attempt:
         plan: The behavior to run.
         story: The events to come again.
         turns: By how many turns of the loop answers come later within their instant, by place.
+        versions: What took over in hot changes, by the number of the event.
     """
 
     def __init__(
-        self, recording: Recording, plan: Plan, story: Sequence[RecordedEvent], turns: Mapping[int, int]
+        self,
+        recording: Recording,
+        plan: Plan,
+        story: Sequence[RecordedEvent],
+        turns: Mapping[int, int],
+        versions: Mapping[int, Plan] = NO_VERSIONS,
     ) -> None:
+        self._versions = versions
         self._recording = recording
         self._plan = plan
         self._story = story
@@ -129,7 +137,7 @@ class Attempt:
         self._commanding = True
         while self._commands:
             try:
-                intervene(self._run, self._commands.popleft())
+                intervene(self._run, self._commands.popleft(), self._versions)
             except ControlError:
                 # The run is not where it was when this was commanded; that the command is missing is the difference.
                 continue

@@ -9,7 +9,9 @@ import msgspec
 
 from engine.control import Breakpoint, Control
 from engine.errors import FlexcellError, RecordingError
-from engine.event import Cause, Commanded, OperatorChanged, StopRequested
+from engine.event import BehaviorChanged, Cause, Commanded, OperatorChanged, StopRequested
+from engine.hot_change import KeptVersion
+from engine.plan import Plan
 from engine.replay.failure import error_of
 from engine.replay.story import Command, Intervention
 from engine.run import Run
@@ -44,9 +46,18 @@ def require_known(event: Command) -> None:
         raise RecordingError(f"event {event.seq}: the command `{event.command}` cannot be replayed")
 
 
-def intervene(run: Run, each: Intervention) -> None:
-    """Do it again; raises ControlError where the run does not allow it now."""
+def intervene(run: Run, each: Intervention, versions: Mapping[int, Plan]) -> None:
+    """Do it again; raises ControlError where the run does not allow it now.
+
+    Args:
+        run: The replayed run.
+        each: What was done to the recorded one.
+        versions: What took over in its hot changes, by the number of the event.
+    """
     match each.event:
+        case BehaviorChanged() as event:
+            kept = KeptVersion(behavior=event.behavior, documents=event.documents)
+            run.change(versions[event.seq], preempt=event.preempt, kept=kept)
         case StopRequested() as event:
             if each.failure is not None:
                 run.fail(_error(event, each.failure))

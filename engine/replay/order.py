@@ -12,6 +12,7 @@ from itertools import product
 
 from engine.event import (
     Answered,
+    BehaviorChanged,
     Commanded,
     GoalFinished,
     GoalHeld,
@@ -24,7 +25,17 @@ from engine.recording import RecordedEvent
 from engine.replay.attempt import Attempt
 from engine.replay.timetable import NOT_LATE
 
-_ANSWERS = (Answered, GoalFinished, GoalHeld, GoalResumed, Received, StopRequested, Commanded, OperatorChanged)
+_ANSWERS = (
+    Answered,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    Received,
+    StopRequested,
+    Commanded,
+    OperatorChanged,
+    BehaviorChanged,
+)
 _MOST_TURNS = 4
 _MOST_ANSWERS = 8
 _TOGETHER = 3

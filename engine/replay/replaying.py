@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
 from engine.document import Behavior
-from engine.event import Event
-from engine.plan import Catalogue, new_plan
-from engine.recording import Recording, recorded_behavior, recorded_substitutes
+from engine.errors import RecordingError
+from engine.event import BehaviorChanged, Event
+from engine.plan import Catalogue, Plan, new_plan
+from engine.recorded_run import changed_behavior
+from engine.recording import RecordedEvent, Recording, recorded_behavior, recorded_substitutes
 from engine.replay.attempt import Attempt
 from engine.replay.difference import Difference
 from engine.replay.loop import ReplayLoop
@@ -47,9 +49,12 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
     started_s = perf_counter()
     story = story_of(recording)
     plan = new_plan(_executed(recording, behavior), catalogue)
+    versions = dict(_versions(story, plan, catalogue))
+    if behavior is not None and versions:
+        raise RecordingError("a run whose behavior was changed is replayed with its own versions only")
 
     def attempt(turns: Mapping[int, int]) -> Attempt:
-        again = Attempt(recording, plan, story, turns)
+        again = Attempt(recording, plan, story, turns, versions)
         ReplayLoop().run_main(again.run())
         return again
 
@@ -63,6 +68,13 @@ def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | N
         compared=again.met,
         duration_s=perf_counter() - started_s,
     )
+
+
+def _versions(story: Sequence[RecordedEvent], plan: Plan, catalogue: Catalogue) -> Iterator[tuple[int, Plan]]:
+    """Go through what took over in hot changes, by the number of the event; the same stands in for its nodes."""
+    for each in story:
+        if isinstance(each.event, BehaviorChanged) and (changed := changed_behavior(each.event)) is not None:
+            yield each.event.seq, new_plan(changed.with_substitutes(plan.substitutes), catalogue)
 
 
 def _executed(recording: Recording, changed: Behavior | None) -> Behavior:

@@ -28,7 +28,7 @@ from engine.supervision import Supervision
 _UNAPPLIED = re.compile(r" was never applied: ")
 _SLACK_S = 1e-3
 
-Command = StopRequested | Commanded | OperatorChanged
+Command = StopRequested | Commanded | OperatorChanged | BehaviorChanged
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def interventions(story: Sequence[RecordedEvent], supervision: Supervision) -> I
         event = each.event
         if isinstance(event, OperatorChanged):
             lost_s = each.at_s if event.status == "lost" else None
-        if not isinstance(event, (StopRequested, Commanded, OperatorChanged)):
+        if not isinstance(event, (StopRequested, Commanded, OperatorChanged, BehaviorChanged)):
             continue
         if place == 1 and supervision.start_paused:
             continue
@@ -103,8 +103,8 @@ def _require_replayable(event: AnyEvent, recording: Recording) -> None:
     match event:
         case RunResumed() | Commanded(command="start_from"):
             why = "this run did not go on from its start"
-        case BehaviorChanged():
-            why = "the behavior of this run was changed while it went on"
+        case BehaviorChanged(documents=documents) if not documents:
+            why = "the behavior of this run was changed while it went on, and the new version was not kept"
         case _:
             return
     raise RecordingError(

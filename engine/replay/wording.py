@@ -11,6 +11,7 @@ import msgspec
 
 from engine.event import (
     Answered,
+    BehaviorChanged,
     Called,
     Commanded,
     Diverted,
@@ -89,6 +90,8 @@ def plain_event(event: Event) -> dict[str, Any]:
     del plain["seq"], plain["time_s"]
     if isinstance(event, RunStarted):
         del plain["document"], plain["clock"]
+    if isinstance(event, BehaviorChanged):
+        del plain["document"]
     if isinstance(event, Logged):
         plain["message"] = _without_places(event.message)
     if "cause" in plain:

@@ -32,17 +32,18 @@ class GripperFeedback(Message, frozen=True, kw_only=True):
     width_m: float
 
 
-class GraspResult(Message, frozen=True, kw_only=True, omit_defaults=True):
+class GraspResult(Message, frozen=True, kw_only=True):
     """What the fingers hold, judged from pad contact and from where they stopped.
 
-    `reason` says in words why nothing is held; it is empty when `held`. `start` is how the gripper was before.
+    `reason` says in words why nothing is held; it is empty when `held`. `start` is how the gripper was before,
+    where that is known.
     """
 
     held: bool
     width_m: float
     force_n: float
     reason: str = ""
-    start: GripperAction | None = None
+    start: GripperAction | msgspec.UnsetType = msgspec.UNSET
 
 
 class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):

@@ -85,5 +85,6 @@ class PostConditions:
     def _assign(self, when: str) -> None:
         for key, value in islice(self._part.post[when], self.made.pop(when, 0), None):
             scope, position = self._place.scope, self._part.position
-            given = value.evaluate({name: scope.read(name, reader=position) for name in value.names})
+            with self._execution.counted():
+                given = value.evaluate({name: scope.read(name, reader=position) for name in value.names})
             self._execution.write(self._part.path, scope, key, given, post=when)

@@ -6,15 +6,19 @@ from typing import Any
 
 from engine.errors import StateError
 from engine.skill import Action
-from engine.skills.gripper import GraspResult, GripperGrasp, GripperMove
+from engine.skills.gripper import GraspResult, GripperAction, GripperGrasp, GripperMove
 from engine.state import ActivationRecord, Context
 from states.began import ended_goals
 
 
 def unknown_before(done: ActivationRecord, goal: type[Action[GraspResult, Any]]) -> str:
     """Return why a gripper cannot be brought back to how it was before an activation; empty where it can."""
-    unknown = any(result is None or result.start is None for _, result in ended_goals(done, goal))
+    unknown = any(_start(result) is None for _, result in ended_goals(done, goal))
     return "it is not known how the gripper was before" if unknown else ""
+
+
+def _start(result: GraspResult | None) -> GripperAction | None:
+    return result.start if result is not None and isinstance(result.start, GripperAction) else None
 
 
 async def restore(
@@ -31,7 +35,7 @@ async def restore(
         StateError: the fingers did not get there, or hold nothing where they held something.
     """
     for _, result in ended_goals(done, goal):
-        start = result.start if result is not None else None
+        start = _start(result)
         if start is None:
             raise StateError(unknown_before(done, goal), where=ctx.path)
         if start.held:

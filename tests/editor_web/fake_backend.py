@@ -188,7 +188,7 @@ class FakeBackend:
     def operate(self, run_id: str) -> Attached:
         raise ControlError("this fake has no control", where=run_id)
 
-    async def change(self, run_id: str) -> ChangeReport:
+    async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
         raise ControlError("this fake has no control", where=run_id)
 
     async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:

@@ -58,7 +58,16 @@ def commands_of(shop: Workshop, run: str) -> list[str]:
 def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Workshop) -> None:
     """Also to those who press it."""
     with at_shift(browser, shop) as page:
-        for name in ("Pause", "Step into", "Step over", "Step out", "Step back", "Operate", "Take file"):
+        for name in (
+            "Pause",
+            "Step into",
+            "Step over",
+            "Step out",
+            "Step back",
+            "Operate",
+            "Take file",
+            "Take file and restart",
+        ):
             expect(command(page, name)).to_be_disabled()
             expect(command(page, name)).to_have_attribute("title", "Not possible: no run is under way")
         expect(page.get_by_label("Autonomy", exact=True)).to_be_disabled()
@@ -180,6 +189,29 @@ def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: 
         )
         command(page, "Take file").click()
         expect(page.get_by_role("alert")).to_contain_text("Take the file as it is now was refused")
+
+
+def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Browser, shop: Workshop) -> None:
+    """The plain one says what stands against it; the report of the other one names what was entered anew."""
+    slow = SHIFT.replace("default: 0.0", "default: 100.0")
+    file = shop.project / SHIFT_ID
+    file.write_text(slow, encoding="utf-8")
+    shop.start()
+    with at_shift(browser, shop, quiet=False) as page:
+        expect(node(page, "root/first")).to_have_attribute("data-status", "active")
+        command(page, "Pause").click()
+        expect(standing(page)).to_have_text("Paused, everything rests")
+        other = "{state: flow.Wait, with: {duration_s: 0}, transitions: {done: set}}"
+        given = '{state: test.Give, with: {after_s: "${dwell}"}, transitions: {a: set, b: bad, c: bad}}'
+        assert given in slow
+        file.write_text(slow.replace(given, other), encoding="utf-8")
+        command(page, "Take file").click()
+        expect(page.get_by_role("alert")).to_contain_text("root/first is active as test.Give, now it is flow.Wait")
+        command(page, "Take file and restart").click()
+        expect(page.get_by_role("dialog")).to_contain_text("root/first is preempted and entered anew")
+        page.get_by_role("button", name="Understood").click()
+        command(page, "Resume").click()
+        expect(node(page, "root/rest")).to_have_attribute("data-status", "active")
 
 
 def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop: Workshop) -> None:

@@ -15,7 +15,7 @@ import pytest
 from editor_web.access import VIEWER, load_access
 from editor_web.server import dashboard
 from engine.cell import OpenCell
-from engine.event import Event, GateReached, OperatorChanged, SteppedBack
+from engine.event import Entered, Event, GateReached, OperatorChanged, SteppedBack
 from engine.journal import Journal
 from engine.registry import load_states
 from engine.session import Session
@@ -223,6 +223,24 @@ async def test_the_file_as_it_is_now_takes_over(project: Path, loopback: str) ->
         await there.session.wait(run)
         again = await there.served.http.post(f"/api/v1/runs/{run}/control/change")
         assert again.status_code == 409
+
+
+async def test_what_runs_is_given_up_for_the_file_only_where_that_is_said(project: Path, loopback: str) -> None:
+    async with site(project, loopback) as there:
+        answer = await there.served.http.post("/api/v1/runs", json={"behavior": "behaviors/asks.yaml"})
+        run = answer.json()["run"]
+        await there.told(run, Entered, 2)
+        await there.command(run, "pause")
+        other = ASKS.replace("flow.Wait, with: {duration_s: 3000}", "flow.Log, with: {message: hi}")
+        (project / "behaviors" / "asks.yaml").write_text(other, encoding="utf-8")
+        refused = await there.command(run, "change")
+        assert refused.status_code == 409
+        assert "root/only is active as flow.Wait, now it is flow.Log" in refused.json()["message"]
+        assert "`preempt`" in refused.json()["hint"]
+        taken = await there.command(run, "change", preempt=True)
+        assert taken.json()["changes"][-1] == "root/only is preempted and entered anew"
+        await there.command(run, "resume")
+        assert (await there.session.wait(run)).outcome == "good"
 
 
 async def test_a_page_operates_a_run_until_it_says_so_or_is_gone(project: Path, loopback: str) -> None:

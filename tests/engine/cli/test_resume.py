@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import Called, GateReached, RunResumed
+from engine.event import BehaviorChanged, Called, Entered, GateReached, RunResumed
 from engine.journal import list_runs
 from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.cli.process import JOURNAL, entered, events_in, run_id_in, runs_in, started, until
@@ -170,6 +170,28 @@ def test_a_run_that_was_changed_while_it_ran_is_resumed_in_that_version(tmp_path
         process.stdin.write("reload\nresume\n")
         process.stdin.flush()
         until(process, tmp_path, entered("root/last"))
+    said = flexcell("resume", run_id_in(tmp_path), "--clock", "virtual", "--json", cwd=tmp_path)
+    assert (said.code, json.loads(said.out)["outcome"]) == (0, "finished")
+
+
+def test_a_run_whose_running_state_was_given_up_for_another_class_is_resumed_with_that(tmp_path: Path) -> None:
+    """The engine is killed in the state that was entered anew; without the word nothing is given up."""
+    text = TWO.replace("RESUME", "rerun")
+    file = written(tmp_path, text)
+    with started("run", file, "-q", "--operator", cwd=tmp_path) as process:
+        assert process.stdin is not None
+        until(process, tmp_path, entered("root/second"))
+        written(tmp_path, text.replace("with: {duration_s: 3000}", "with: {duration_s: 2999}"))
+        process.stdin.write("pause\nwait\nreload preempt\nresume\n")
+        process.stdin.flush()
+        until(
+            process,
+            tmp_path,
+            lambda events: sum(isinstance(e, Entered) and e.path == "root/second" for e in events) > 1,
+        )
+    changes = [event for event in events_in(tmp_path) if isinstance(event, BehaviorChanged)]
+    assert [event.restarted for event in changes] == [("root/second",)]
+    assert "2999" in "".join(changes[0].documents.values())
     said = flexcell("resume", run_id_in(tmp_path), "--clock", "virtual", "--json", cwd=tmp_path)
     assert (said.code, json.loads(said.out)["outcome"]) == (0, "finished")
 

@@ -24,6 +24,8 @@ from tests.engine.run_document import Told
 Node = dict[str, Any]
 KEYS = ("x", "y")
 BEGINNING = "the run stands at its beginning"
+BESIDE = "beside it has begun"
+"""What is said of the other branches where a loop in one of them is in a later round."""
 ROUNDS = "rounds that are over are not taken back one by one"
 
 
@@ -125,7 +127,7 @@ LEAVES = st.builds(_leaf, st.sampled_from(KEYS), TIMES, TIMES)
 TREES = st.recursive(
     LEAVES,
     lambda inner: (
-        st.builds(_machine, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["machine", "priority"]))
+        st.builds(_machine, st.lists(inner, min_size=1, max_size=3), st.just("machine"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
         | st.lists(LEAVES, min_size=1, max_size=3).map(_tree)
         | inner.map(_foreach)
@@ -143,7 +145,7 @@ def _document(children: list[Node]) -> str:
 
 
 def _kind(message: str) -> str:
-    return next((kind for kind in (BEGINNING, ROUNDS) if kind in message), message)
+    return next((kind for kind in (BEGINNING, BESIDE, ROUNDS) if kind in message), message)
 
 
 class BackAgain:
@@ -185,12 +187,12 @@ def test_going_back_to_the_beginning_leaves_nothing_and_going_on_does_the_same(
     told = again.run(text, {**acts, 600.0: again.look, 601.0: resume})
     if due.result.duration_s <= paused_s:
         return
-    assert {_kind(message) for message in again.refusals} <= {BEGINNING, ROUNDS}
+    assert {_kind(message) for message in again.refusals} <= {BEGINNING, BESIDE, ROUNDS}
     assert told.result.status == due.result.status == "finished"
     assert told.result.userdata == due.result.userdata
     assert again.table is not None
     assert plain.table is not None
     assert +again.table.tokens == +plain.table.tokens
     assert all(event.cause is None for event in told.events if isinstance(event, SteppedBack))
-    if ROUNDS not in map(_kind, again.refusals):
+    if set(map(_kind, again.refusals)) <= {BEGINNING}:
         assert again.left == [Counter()]

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import pytest
 
+from engine.event import Logged
 from engine.run import Run
 from engine.state import Context, Outcome, State
 from tests.engine.control.operate import Act, operate, pause, resume
@@ -201,3 +202,13 @@ class Patient(State, frozen=True, kw_only=True):
 def test_a_stop_at_the_instant_of_a_time_out_inside_a_state_is_heard() -> None:
     told = operate(one(Patient), {1.0: stop}, states={"test.Patient": Patient})
     assert (told.result.status, told.result.duration_s) == ("stopped", 1.0)
+
+
+@pytest.mark.parametrize("order", [stop, force("root/one"), repeat("root/one")], ids=["stop", "force", "repeat"])
+def test_an_order_lets_a_clean_up_for_a_time_out_end_that_a_pause_holds(order: Act) -> None:
+    """The state runs in a task inside that of its time-out, which cleans up already."""
+    text = ONE.replace("cleanup_s: 2}", "cleanup_s: 2}, timeout: {after: 1, to: two}")
+    told = operate(text, {2.0: pause, 3.0: order, 30.0: resume, 40.0: stop})
+    first = next(event for event in told.events if isinstance(event, Logged) and event.message == "cleaned up")
+    assert first.time_s == pytest.approx(4.0)
+    assert told.result.abandoned == ()

@@ -7,12 +7,14 @@ import json
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
+import msgspec
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from engine.control import Breakpoint
+from engine.document import parse_behavior
 from engine.errors import ControlError
 from engine.event import (
     Commanded,
@@ -31,13 +33,14 @@ from engine.event import (
     UndoBegan,
     UndoEnded,
 )
+from engine.plan import Plan, new_plan
 from engine.run import Run
 from engine.state import ActivationRecord, Context, Outcome, State
 from engine.supervision import Supervision
 from tests.engine.at_once import at_once
 from tests.engine.control.operate import Act, operate
 from tests.engine.control.turntable import Turn, TurnTable, Turntable
-from tests.engine.fake_states import Give
+from tests.engine.fake_states import CATALOGUE, Give
 
 TIMES = st.sampled_from([0.0, 0.25, 0.5, 1.0, 1.5])
 MOMENTS = st.integers(0, 28).map(lambda n: n / 8)
@@ -159,6 +162,12 @@ class GiveBack(Give, frozen=True, kw_only=True):
         ctx.log("nothing to undo")
 
 
+STATES: dict[str, type[State]] = {
+    "test.Tidy": Tidy,
+    "test.Lift": Lift,
+    "test.Give": GiveBack,
+    "test.TurnTable": TurnTable,
+}
 Order = Callable[[Run, float], object]
 ORDERS: list[Order] = [
     lambda run, at: run.control.pause(),
@@ -179,6 +188,9 @@ ORDERS: list[Order] = [
     lambda run, at: run.control.set_breakpoints([Breakpoint(path="*", when="after")]),
     lambda run, at: run.control.set_breakpoints([]),
     lambda run, at: run.stop("chance"),
+    lambda run, at: run.change(_revised(run, at), preempt=True),
+    lambda run, at: (run.control.pause(), run.change(_revised(run, at), preempt=True)),
+    lambda run, at: (run.control.pause(), run.change(_revised(run, at))),
     lambda run, at: at_once(run.step_back()),
     lambda run, at: at_once(run.step_back(_some(run, at))),
     lambda run, at: (run.control.pause(), at_once(run.step_back())),
@@ -190,6 +202,37 @@ def _some(run: Run, at_s: float) -> str:
     view = run.control.view()
     paths = [*view.active, *(each.path for each in view.waiting)] or list(run.paths())
     return paths[int(at_s * 8) % len(paths)]
+
+
+def _revised(run: Run, at_s: float) -> Plan:
+    """Return the behavior with other classes, and with a branch more or less in each concurrency container."""
+    behavior = run.plan.source
+    assert behavior is not None
+    document = msgspec.json.decode(msgspec.json.encode(behavior.document))
+    _revise(document["root"], more=int(at_s * 8) % 2 == 0)
+    return new_plan(parse_behavior(json.dumps(document), file="test.yaml"), {**CATALOGUE, **STATES})
+
+
+REVISED = {"test.Tidy": "test.Give", "test.Lift": "test.TurnTable"}
+
+
+def _revise(node: Any, *, more: bool) -> None:
+    if isinstance(node, list):
+        for each in cast("list[Any]", node):
+            _revise(each, more=more)
+    if not isinstance(node, dict):
+        return
+    inner = cast("Node", node)
+    if isinstance(inner.get("state"), str):
+        inner["state"] = REVISED.get(inner["state"], inner["state"])
+    if "concurrency" in inner:
+        states = inner["concurrency"]["states"]
+        # The conditions ask for the first only.
+        first = dict([*states.items()][:1])
+        inner["concurrency"]["states"] = {**states, "fresh": _leaf(0.25, "a")} if more else first
+    for key, each in inner.items():
+        if key not in ("with", "fresh"):
+            _revise(each, more=more)
 
 
 def _act(order: Order, at_s: float) -> Act:
@@ -238,7 +281,7 @@ def test_any_commands_at_any_instants(root: Node, orders: list[tuple[float, int]
         acts,
         supervision=at,
         prepare=Turntable,
-        states={"test.Tidy": Tidy, "test.Lift": Lift, "test.Give": GiveBack},
+        states=STATES,
     )
     assert told.result.status in {"finished", "stopped", "errored"}
     entered = Counter((e.path, e.visit) for e in told.events if isinstance(e, Entered))

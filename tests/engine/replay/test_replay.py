@@ -6,14 +6,17 @@ import asyncio
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from engine.bus import SkillBus
 from engine.clock import NothingCanWake, run_virtual
 from engine.document.faults import parse_faults
 from engine.errors import DocumentError, RecordingError
-from engine.event import Called, FaultInjected, Logged, Received, RunEnded, RunResumed, SteppedBack
+from engine.event import BehaviorChanged, Called, FaultInjected, Logged, Received, RunEnded, RunResumed, SteppedBack
 from engine.faults import FaultPort
+from engine.hot_change import KeptVersion
+from engine.plan import new_plan
 from engine.recording import RecordedEvent, load_recording
 from engine.replay import ReplayReport, replay
 from engine.replay.attempt import Attempt
@@ -379,3 +382,32 @@ def test_a_run_that_was_stepped_back_does_it_again_with_what_its_undoing_asked_f
     report = replay(recording, CATALOGUE)
     assert report.difference is None, report.difference.explained()
     assert report.compared == len(recording.events)
+
+
+def test_a_run_whose_behavior_was_changed_is_replayed_with_both_versions(tmp_path: Path) -> None:
+    new = behavior_of(TEXT.replace("for_s: 1", "for_s: 2"))
+    kept = KeptVersion(behavior="test.yaml", documents={"test.yaml": msgspec.json.encode(new.document).decode()})
+    acts: dict[float, Act] = {
+        0.5: lambda run: run.control.pause(),
+        1.0: lambda run: run.change(new_plan(new, CATALOGUE), preempt=True, kept=kept),
+        2.0: lambda run: run.control.resume(),
+    }
+    recording = recorded(TEXT, tmp_path / "r.mcap", acts=acts)
+    (change,) = [each.event for each in recording.events if isinstance(each.event, BehaviorChanged)]
+    assert change.restarted == ("root/work",)
+    report = replay(recording, CATALOGUE)
+    assert report.difference is None, report.difference.explained()
+    assert report.compared == len(recording.events)
+    with pytest.raises(RecordingError, match="with its own versions only"):
+        replay(recording, CATALOGUE, behavior=new)
+
+
+def test_a_change_whose_version_was_not_kept_cannot_be_replayed(tmp_path: Path) -> None:
+    new = new_plan(behavior_of(TEXT.replace("for_s: 1", "for_s: 2")), CATALOGUE)
+    acts: dict[float, Act] = {
+        0.5: lambda run: run.control.pause(),
+        1.0: lambda run: run.change(new),
+        2.0: lambda run: run.control.resume(),
+    }
+    with pytest.raises(RecordingError, match="the new version was not kept"):
+        replay(recorded(TEXT, tmp_path / "r.mcap", acts=acts), CATALOGUE)

@@ -25,7 +25,8 @@ GRASP = Grasp(gripper="left", width_m=0.03, speed_m_s=0.02)
 
 def done(goal: type[Action[Any, Any]], start: GripperAction | None) -> ActivationRecord:
     """Return an activation that has sent one goal to a gripper that was so before."""
-    result = msgspec.to_builtins(GraspResult(held=False, width_m=0.05, force_n=0.0, start=start))
+    known = start if start is not None else msgspec.UNSET
+    result = msgspec.to_builtins(GraspResult(held=False, width_m=0.05, force_n=0.0, start=known))
     sent = RequestRecord(address=f"left/gripper/{goal.skill_name()}", request={}, status="succeeded", result=result)
     return ActivationRecord(inputs={}, outcome="held", outputs={}, requests=(sent,))
 

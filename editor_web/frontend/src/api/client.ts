@@ -13,6 +13,7 @@ import type {
   StartBody,
   StartedBody,
   StepBody,
+  TakeFileBody,
 } from './types'
 
 /** The server refused; `where` names the parameter or place it is about. */
@@ -116,7 +117,7 @@ export const api = {
   answer: (run: string, path: string) => command(run, 'answer', { path }),
   autonomy: (run: string, level: string) => command(run, 'autonomy', { level }),
   breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),
-  change: (run: string) => post<ChangeBody>(`/runs/${encodeURIComponent(run)}/control/change`, {}),
+  change: (run: string, body: TakeFileBody) => post<ChangeBody>(`/runs/${encodeURIComponent(run)}/control/change`, body),
   keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
   keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
     sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),

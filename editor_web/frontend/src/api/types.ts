@@ -1190,6 +1190,11 @@ export interface TagsBody {
   readonly revision: number
 }
 
+/** A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted. */
+export interface TakeFileBody {
+  readonly preempt: boolean
+}
+
 /** The targets that an arm of the document's cell cannot be at. `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise. */
 export interface TargetFindingsBody {
   readonly findings: readonly FindingBody[]

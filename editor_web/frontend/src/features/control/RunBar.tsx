@@ -8,6 +8,7 @@ import {
   IconKeyboard,
   IconPlayerPause,
   IconPlayerPlay,
+  IconRefreshAlert,
   IconRefreshDot,
 } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
@@ -84,7 +85,13 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
           {...bar('change', 'Take file')}
           hint="Go on with the behavior as its file is now, and see what that changes"
           icon={<IconRefreshDot size={16} aria-hidden />}
-          onPress={commands.change}
+          onPress={() => commands.change(false)}
+        />
+        <CommandButton
+          {...bar('change', 'Take file and restart')}
+          hint="As Take file; states that run and have changed are preempted and entered anew, branches that are gone are preempted"
+          icon={<IconRefreshAlert size={16} aria-hidden />}
+          onPress={() => commands.change(true)}
         />
         {onSheet && <CommandButton label="Keys" hint="All keyboard shortcuts" icon={<IconKeyboard size={16} aria-hidden />} shortcut="?" tone="quiet" isCompact onPress={onSheet} />}
       </div>

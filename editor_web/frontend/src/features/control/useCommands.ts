@@ -18,7 +18,8 @@ export interface Commands {
   readonly stop: () => void
   readonly setAutonomy: (level: Level) => Promise<boolean>
   readonly toggleOperating: () => void
-  readonly change: () => void
+  /** Take the file as it is now; with `preempt` what is active and has changed is preempted. */
+  readonly change: (preempt: boolean) => void
   readonly lock: (path: string, reason: string) => Promise<unknown>
   readonly unlock: (path: string) => Promise<unknown>
   readonly force: (path: string, outcome: string) => Promise<unknown>
@@ -68,7 +69,8 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
         if (why) refuse(of('Operate'), why)
         else operate(useLive.getState().operated === id ? '' : id)
       },
-      change: () => attempt('change', 'Take the file as it is now', async () => setReport((await api.change(id)).changes)),
+      change: (preempt) =>
+        attempt('change', 'Take the file as it is now', async () => setReport((await api.change(id, { preempt })).changes)),
       lock: (path, reason) => sendOf('Lock', () => api.lock(id, path, reason)),
       unlock: (path) => sendOf('Unlock', () => api.unlock(id, path)),
       force: (path, outcome) => sendOf(`Force ${outcome}`, () => api.force(id, path, outcome)),
