@@ -83,7 +83,7 @@ class Undoing:
         except (JournalError, asyncio.CancelledError):
             raise
         except FlexcellError as error:
-            if being_cancelled():
+            if being_cancelled(self.execution.loop):
                 # A clean-up that failed: whoever stops the run waits for it all the same.
                 raise asyncio.CancelledError from error
             self._failed(cause_of(error))
@@ -110,9 +110,9 @@ class Undoing:
         preempted, cause = True, None
         try:
             await leaf.undo(activation, visit, execution)
-            preempted = being_cancelled()
+            preempted = being_cancelled(execution.loop)
         except FlexcellError as error:
-            preempted, cause = being_cancelled(), cause_of(error)
+            preempted, cause = being_cancelled(execution.loop), cause_of(error)
             raise
         finally:
             execution.activity.nodes.pop(path, None)

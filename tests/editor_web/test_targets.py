@@ -37,7 +37,7 @@ async def test_a_text_without_a_cell_starts_no_process(tmp_path: Path, serve: Se
 async def test_names_are_those_of_the_cell_that_the_text_names(tmp_path: Path, serve: Serve) -> None:
     """Without one those of the open cell, which is none here; a cell that cannot be read offers none."""
     written(tmp_path)
-    names = {}
+    names: dict[str, list[str] | None] = {}
     async with serve(FakeBackend(documents=Documents(tmp_path, load_states()))) as served:
         for cell in ("cell: bench.yaml\n", "", "cell: missing.yaml\n", "cell: ../../elsewhere.yaml\n"):
             text = REACH.replace("cell: bench.yaml\n", cell)

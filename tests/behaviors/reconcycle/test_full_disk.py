@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,6 +32,10 @@ class FullDisk:
 
     def append(self, event: Event) -> None:
         """Take it."""
+
+    async def events(self) -> Sequence[Event]:
+        """Have nothing to tell."""
+        return ()
 
     async def keep_up(self) -> None:
         """Nothing waits."""
