@@ -16,7 +16,7 @@ from engine.event import Cause
 from engine.execution import Execution
 from engine.node import Node, overdue
 from engine.node_exit import ContainerOutcome, Left
-from engine.preemption import preempt
+from engine.preemption import failure_of, preempt
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -74,13 +74,21 @@ class Concurrency:
         execution.branching[path] = branches
         branches.start(self)
         try:
-            outcome = await self._decide(path, branches, execution)
-        finally:
-            execution.branching.pop(path, None)
-            await preempt(branches.tasks.values(), overdue(execution, path))
+            outcome = await self._decided(path, branches, execution)
+        except asyncio.CancelledError:
+            _raise_late_failure(branches.tasks)
+            raise
         _raise_late_failure(branches.tasks)
         branches.merge_all()
         return outcome
+
+    async def _decided(self, path: str, branches: _Branches, execution: Execution) -> Outcome:
+        """Return what was decided, once all branches have ended."""
+        try:
+            return await self._decide(path, branches, execution)
+        finally:
+            execution.branching.pop(path, None)
+            await preempt(branches.tasks.values(), overdue(execution, path))
 
     async def _decide(self, path: str, branches: _Branches, execution: Execution) -> Outcome:
         latest = self
@@ -212,10 +220,9 @@ def _as_outcome(left: Left) -> Left:
 
 
 def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
-    """A child whose clean-up failed is an error, though another had decided the outcome."""
-    for task in tasks.values():
-        if not task.cancelled() and (error := task.exception()) is not None:
-            raise error
+    """A child whose clean-up failed is an error, whatever had preempted it."""
+    if (error := failure_of(tasks.values())) is not None:
+        raise error
 
 
 def branch_scope(

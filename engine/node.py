@@ -23,7 +23,7 @@ from engine.measure import Guard, Retry, Timeout
 from engine.node_events import record_diverted, record_entry, record_exit
 from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
-from engine.preemption import Overdue, being_cancelled, goes_on, preempt
+from engine.preemption import Overdue, being_cancelled, failure_of, goes_on, preempt
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -269,18 +269,24 @@ class Node:
                 # What ends at this very instant is in time; everything inside decides before we do.
                 await execution.settlement.settled(self.path, around=True)
         except asyncio.CancelledError:
-            await preempt((body,), overdue(execution, self.path))
+            await self._preempt(body, execution)
             raise
         finally:
             execution.suspensions.drop(timer)
         if body.done():
             return body.result()
-        await preempt((body,), overdue(execution, self.path))
-        if not body.cancelled() and (error := body.exception()) is not None:
-            raise error
+        await self._preempt(body, execution)
         cause = Cause(message=f"no outcome within {timeout.after_s:g} s", where=self.path, kind="Timeout")
         record_diverted(execution, self.path, "timeout", timeout.target, cause)
         return Left("", timeout.target, cause)
+
+    async def _preempt(self, body: asyncio.Task[Left], execution: Execution) -> None:
+        """Preempt what has a timeout; raises the error of its clean-up, and CancelledError if cancelled itself."""
+        try:
+            await preempt((body,), overdue(execution, self.path))
+        finally:
+            if body.done() and (failed := failure_of((body,))) is not None:
+                raise failed from None
 
     async def _retried(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         retry = self.retry

@@ -94,7 +94,7 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
     """Cancel the unfinished tasks once, in the order given, and wait for all of them to end.
 
     Args:
-        tasks: The tasks; their exceptions count as seen, whoever asked for the stop reads them.
+        tasks: The tasks; their exceptions count as seen, whoever asked for the stop reads them with `failure_of`.
         overdue: Told the name and the seconds waited of each task that takes its time.
 
     Raises:
@@ -134,3 +134,8 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
         )
     if cancelled is not None:
         raise cancelled
+
+
+def failure_of(tasks: Iterable[asyncio.Task[Any]]) -> BaseException | None:
+    """Return the error of the first of these tasks, all ended, that has one: a clean-up that failed."""
+    return next((error for task in tasks if not task.cancelled() and (error := task.exception()) is not None), None)

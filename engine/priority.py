@@ -61,7 +61,10 @@ class Priority:
         """
         reason = f"priority of {path}"
         await execution.suspensions.until_free(path)
-        execution.suspensions.hold(reason, lambda other: not inside(path, other) and not inside(other, path))
+        execution.suspensions.hold(
+            reason,
+            lambda other: not (inside(path, other) or inside(other, path) or execution.gate.undoes(other)),
+        )
         execution.gate.arm()
         try:
             return await self.machine.run(entry, path, visit, scope, execution)

@@ -120,6 +120,10 @@ class Gate:
         self.undoing = (path, gives_up)
         self.step(Step(mode="back", branch=path, origin=path))
 
+    def undoes(self, path: str) -> bool:
+        """Tell whether what is at a path is being undone; no priority of another branch holds that."""
+        return bool(self.undoing) and inside(self.undoing[0], path)
+
     def end_undo(self) -> None:
         """Hold everything again, whatever was ordered meanwhile."""
         self.undoing = ()

@@ -18,7 +18,7 @@ from engine.carrier import Carrier
 from engine.execution import Execution
 from engine.node import overdue
 from engine.node_exit import Left
-from engine.preemption import preempt
+from engine.preemption import failure_of, preempt
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
 
@@ -211,8 +211,8 @@ class Leaves:
         finally:
             self._probed = None
 
-    async def stop(self) -> None:
-        """Stop everything and return when all clean-up is done; errors of clean-ups are not raised.
+    async def stop(self) -> BaseException | None:
+        """Stop everything and return, once all clean-up is done, the error of the first clean-up that failed.
 
         Raises:
             NotStopped: a clean-up did not end in time.
@@ -222,8 +222,9 @@ class Leaves:
         self._halted += self._running
         self._running.clear()
         self._unread.clear()
-        halted = self._take_halted()
-        await preempt([each.task for each in halted if each.task is not None], overdue(self._execution, self._path))
+        tasks = [each.task for each in self._take_halted() if each.task is not None]
+        await preempt(tasks, overdue(self._execution, self._path))
+        return failure_of(tasks)
 
     def _start(self, activation: Activation) -> None:
         work = activation.plan.node.perform(activation.place.scope, self._execution)

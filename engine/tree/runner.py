@@ -99,6 +99,10 @@ class TreeRunner:
                 # Events that nobody hears are not even made.
                 recorder.watch(hear)
             return await self._run(root)
+        except asyncio.CancelledError:
+            if (failed := await self._leaves.stop()) is not None:
+                raise failed from None
+            raise
         finally:
             recorder.unwatch(hear)
             self._alarms.close()

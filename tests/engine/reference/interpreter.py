@@ -79,8 +79,8 @@ class Interpreter:
         if not end.preempted:
             return end
         if min(task.asked) != depth:
-            # Something around it asks too. What failed in its clean-up is not told any further.
-            return End(end.at_s, preempted=True)
+            # Something around it asks too.
+            return End(end.at_s, preempted=True, failed=end.failed)
         task.asked.clear()
         return End(end.at_s, failed=True) if end.failed else End(end.at_s, str(node.timeout.to), straight=True)
 
@@ -170,9 +170,10 @@ class Interpreter:
                 yield Children(path, tuple(tasks.values()), all_of_them=True)
             except Preempted:
                 decided = End(self._now_s, preempted=True)
+        failed = decided.failed or any(task.end.failed for task in tasks.values() if task.end is not None)
         if decided.preempted or own.asked:
-            return End(self._now_s, preempted=True)
-        if decided.failed or any(task.end.failed for task in tasks.values() if task.end is not None):
+            return End(self._now_s, preempted=True, failed=failed)
+        if failed:
             return End(self._now_s, failed=True)
         for branch in scopes.values():
             for key, value in branch.values.items():
