@@ -78,13 +78,13 @@ def open_sqlite(path: Path, *, schema: Schema, busy_timeout_s: float) -> Bounded
     if str(path) != ":memory:":
         make_private_folder(path.parent)
         new_private_file(path)
+        require_whole_log(path)
     connection = sqlite3.connect(
         path, timeout=busy_timeout_s, isolation_level=None, check_same_thread=False, factory=BoundedConnection
     )
     try:
         _distrust(connection, path)
         schema.verify(connection)
-        require_whole_log(path)
         connection.execute("PRAGMA journal_mode=WAL")
         connection.execute("PRAGMA synchronous=FULL")
         schema.upgrade(connection)
@@ -108,7 +108,6 @@ def read_sqlite(path: Path, *, schema: Schema, busy_timeout_s: float = 5.0) -> B
     try:
         _distrust(connection, path)
         schema.verify(connection)
-        require_whole_log(path)
     except sqlite3.Error:
         connection.close()
         raise

@@ -1,6 +1,9 @@
 """Finds damage in the write-ahead log of an SQLite file, which SQLite itself takes for the end of the log.
 
-Sources: sections "WAL-Mode File Format" and "WAL-Index File Format", and "The Database File Format", of SQLite 3.
+Only the log itself is opened. SQLite locks the file and its index by POSIX locks, which a process loses as soon as it
+closes either of them, whoever has opened it.
+
+Sources: section "WAL-Mode File Format" of the documentation of SQLite 3, and "How To Corrupt An SQLite Database File".
 """
 
 from __future__ import annotations
@@ -15,92 +18,75 @@ from engine.sqlite_schema import DamagedFile
 _LOG_HEADER_BYTES = 32
 _SUMMED = 24
 """Bytes of the header of the log that its checksum is of."""
+_FRAME_SUMMED = 8
+"""Bytes of the header of a frame that its checksum is of, with those of its page."""
 _BIG_ENDIAN = 0x377F0683
 """Magic number of a log whose checksums are of big-endian numbers; the other one is smaller by 1."""
-_FRAME_HEADER = struct.Struct(">4xI8s8x")
-"""Of a frame: pages of the file after its commit, 0 within a transaction; salt."""
-_INDEX_HEADER_BYTES = 48
-_INDEX = struct.Struct("=16xI12x8s")
-"""Of the index, in the byte order of the machine: frames in use; salt."""
-_PAGE_SIZE_AT = 16
-_LARGEST_PAGE = 65536
+_FRAME_HEADER = struct.Struct(">4xI8s8s")
+"""Of a frame: pages of the file after its commit, 0 within a transaction; salt; checksum."""
+_PAGE_BYTES = 4096
+"""Size of a page of our files, where the header of the log does not say it."""
 _DURABLE_COMMITS = 2
 """Commits behind damage from which on one of them was durable: each is synced before the next one begins."""
 
+Sums = tuple[int, int]
 
-class _Index(NamedTuple):
-    """What SQLite reads of a log; the header as a whole changes whenever somebody writes."""
 
-    header: bytes
-    frames: int
-    salt: bytes
+class _Loss(NamedTuple):
+    """At which byte the log can no longer be read, and how many commits stand behind that."""
+
+    end: int
+    commits: int
 
 
 def require_whole_log(path: Path) -> None:
     """Refuse a database whose log goes on behind what SQLite reads of it: durable commits would be lost unnoticed.
 
-    Due once a connection to `path` has read something, which makes the index of the log anew after a crash. Damage in
-    the newest commit looks like a write that a power failure has cut, and is left out as SQLite does it.
+    Due before it is opened: the first connection that writes drops what it does not read when it is closed.
+    Damage in the newest commit looks like a write that a power failure has cut, and is left out as SQLite does it.
+    Takes some 80 µs of CPU a page of the log.
 
     Raises:
         DamagedFile: it says where.
     """
     log_path = path.with_name(f"{path.name}-wal")
     with suppress(FileNotFoundError), log_path.open("rb") as log:
-        index = _index(path)
-        if index is None:
-            return
-        frame_bytes = _FRAME_HEADER.size + _page_bytes(path)
-        end = _LOG_HEADER_BYTES + index.frames * frame_bytes
-        lost = _commits_behind(log, end, index.salt if _has_sound_header(log) else _salt_of_first(log), frame_bytes)
-        # While somebody writes, frames may stand behind those of the index.
-        if lost >= _DURABLE_COMMITS and _index(path) == index:
-            raise DamagedFile(f"{log_path.name} is damaged near byte {end}: {lost} commits behind it cannot be read")
+        loss = _loss(log)
+        # What another process writes at this moment may look so for an instant.
+        if loss.commits >= _DURABLE_COMMITS and _loss(log) == loss:
+            raise DamagedFile(
+                f"{log_path.name} is damaged near byte {loss.end}: {loss.commits} commits behind it cannot be read"
+            )
 
 
-def _index(path: Path) -> _Index | None:
-    with suppress(FileNotFoundError), path.with_name(f"{path.name}-shm").open("rb") as file:
-        header = file.read(_INDEX_HEADER_BYTES)
-        if len(header) == _INDEX_HEADER_BYTES:
-            return _Index(header, *_INDEX.unpack_from(header))
-    return None
-
-
-def _page_bytes(path: Path) -> int:
-    with path.open("rb") as file:
-        file.seek(_PAGE_SIZE_AT)
-        size = int.from_bytes(file.read(2), "big")
-    return _LARGEST_PAGE if size <= 1 else size
-
-
-def _has_sound_header(log: BinaryIO) -> bool:
+def _loss(log: BinaryIO) -> _Loss:
     log.seek(0)
     header = log.read(_LOG_HEADER_BYTES)
-    if len(header) < _LOG_HEADER_BYTES:
-        return False
     order = ">" if int.from_bytes(header[:4], "big") == _BIG_ENDIAN else "<"
-    first = second = 0
-    for one, other in struct.iter_unpack(f"{order}II", header[:_SUMMED]):
+    sums = _added((0, 0), header[:_SUMMED], order)
+    is_sound = len(header) == _LOG_HEADER_BYTES and struct.pack(">II", *sums) == header[_SUMMED:]
+    salt = header[16:24] if is_sound else b""
+    page_bytes = int.from_bytes(header[8:12], "big") if is_sound else _PAGE_BYTES
+    end, commits = _LOG_HEADER_BYTES, 0
+    while len(frame := log.read(_FRAME_HEADER.size + page_bytes)) == _FRAME_HEADER.size + page_bytes:
+        pages_after_commit, its_salt, its_sums = _FRAME_HEADER.unpack_from(frame)
+        # The frames of a log whose header is damaged say by themselves what belongs together.
+        salt = salt or its_salt
+        if is_sound:
+            sums = _added(_added(sums, frame[:_FRAME_SUMMED], order), frame[_FRAME_HEADER.size :], order)
+            is_sound = its_salt == salt and struct.pack(">II", *sums) == its_sums
+        if is_sound:
+            end += len(frame)
+        elif pages_after_commit and its_salt == salt:
+            commits += 1
+    return _Loss(end, commits)
+
+
+def _added(sums: Sums, data: bytes, order: str) -> Sums:
+    """Return the checksum of what `sums` is of and of `data` behind it."""
+    first, second = sums
+    numbers = iter(struct.unpack(f"{order}{len(data) // 4}I", data[: len(data) // 4 * 4]))
+    for one, other in zip(numbers, numbers, strict=False):
         first = (first + one + second) & 0xFFFFFFFF
         second = (second + other + first) & 0xFFFFFFFF
-    return struct.pack(">II", first, second) == header[_SUMMED:]
-
-
-def _salt_of_first(log: BinaryIO) -> bytes:
-    """Return the salt that the frames of a log have whose own header is damaged."""
-    log.seek(_LOG_HEADER_BYTES)
-    header = log.read(_FRAME_HEADER.size)
-    return _FRAME_HEADER.unpack(header)[1] if len(header) == _FRAME_HEADER.size else b""
-
-
-def _commits_behind(log: BinaryIO, end: int, salt: bytes, frame_bytes: int) -> int:
-    """Count the frames behind byte `end` that end a transaction of this log."""
-    count = 0
-    while True:
-        log.seek(end)
-        header = log.read(_FRAME_HEADER.size)
-        if len(header) < _FRAME_HEADER.size:
-            return count
-        pages_after_commit, its_salt = _FRAME_HEADER.unpack(header)
-        count += bool(pages_after_commit) and its_salt == salt
-        end += frame_bytes
+    return first, second
