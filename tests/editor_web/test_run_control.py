@@ -66,7 +66,7 @@ def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Worksh
             "Step back",
             "Operate",
             "Take file",
-            "Take file and restart",
+            "Take file and preempt",
         ):
             expect(command(page, name)).to_be_disabled()
             expect(command(page, name)).to_have_attribute("title", "Not possible: no run is under way")
@@ -207,7 +207,7 @@ def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Brow
         file.write_text(slow.replace(given, other), encoding="utf-8")
         command(page, "Take file").click()
         expect(page.get_by_role("alert")).to_contain_text("root/first is active as test.Give, now it is flow.Wait")
-        command(page, "Take file and restart").click()
+        command(page, "Take file and preempt").click()
         expect(page.get_by_role("dialog")).to_contain_text("root/first is preempted and entered anew")
         page.get_by_role("button", name="Understood").click()
         command(page, "Resume").click()

@@ -40,7 +40,7 @@ class HandWay:
 
     def at(self, time_s: float) -> HandState:
         """Return the state after a time; at and after the end it rests at the goal."""
-        if time_s >= self.duration_s:
+        if time_s >= self.duration_s or self.duration_s < _SMALL_S:
             return HandState(xyz=self.goal, velocity=np.zeros(3))
         share = max(time_s, 0.0) / self.duration_s
         return HandState(xyz=self._place(share), velocity=self._velocity(share))

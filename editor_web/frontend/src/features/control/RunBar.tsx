@@ -88,7 +88,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
           onPress={() => commands.change(false)}
         />
         <CommandButton
-          {...bar('change', 'Take file and restart')}
+          {...bar('change', 'Take file and preempt')}
           hint="As Take file; states that run and have changed are preempted and entered anew, branches that are gone are preempted"
           icon={<IconRefreshAlert size={16} aria-hidden />}
           onPress={() => commands.change(true)}
