@@ -131,7 +131,11 @@ class _Restoring:
         ended = [branch for branch in node.branches if branch.status in _FINAL]
         unread = [branch for branch in ended if self._order(branch) > standing.over]
         if node.condition.status not in _FINAL or self._order(node.condition) < standing.over:
-            return unread if isinstance(node, WhileDoElse) else []
+            if not isinstance(node, WhileDoElse):
+                return []
+            # What ended before the condition was asked has had its tick; another would ask once more.
+            asked = max(self._order(node.condition), self._last(node.condition))
+            return [branch for branch in unread if self._order(branch) > asked]
         asked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
         at_work = [branch for branch in node.branches if branch.status is Status.RUNNING]
         if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or asked_last)):

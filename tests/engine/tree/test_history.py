@@ -182,3 +182,19 @@ def test_a_tree_with_guards_goes_on_as_if_it_had_not_been_cut(specimen: Guarded,
     moments = [at * 0.25 + 0.125 for at in range(24) if at * 0.25 + 0.125 < whole.result.duration_s]
     assume(whole.result.status != "errored" and moments)
     _goes_on(json.dumps(specimen.document()), data.draw(st.sampled_from(moments)))
+
+
+@pytest.mark.parametrize("at_s", [2.625, 3.125, 4.125])
+def test_a_branch_that_ended_before_a_condition_of_its_own_parts_was_asked_asks_it_no_more(at_s: float) -> None:
+    """The condition is a `while_do_else` too, which another tick would begin to ask from its own condition."""
+    _goes_on(
+        """
+        while_do_else:
+          while:
+            while_do_else:
+              while: {state: test.Act, with: {script: [[0.5, true]]}}
+              do: {state: test.Act, with: {script: [[1.0, true]]}}
+          do: {state: test.Act, with: {script: [[0.5, false]]}}
+        """,
+        at_s,
+    )
