@@ -82,7 +82,7 @@ class _Restoring:
         running = node.status is Status.RUNNING
         if isinstance(node, Parallel) and running:
             node.restore(self.branches)
-        wakes = [self.part(child) for child in node.children]
+        wakes = [self._inside(node, child) for child in node.children]
         awake = any(wakes)
         if isinstance(node, Decorator):
             awake = self._decorator(node, standing) or awake
@@ -98,6 +98,19 @@ class _Restoring:
             # A tick was under way, or had just ended, when it was cut: it is done again.
             self.tick_due = self.tick_due or bool(unread) or not awake
         return awake
+
+    def _inside(self, node: Behaviour, child: Behaviour) -> bool:
+        """Restore a child; what ended in a branch before the condition was asked is read with that, without a tick."""
+        due = self.tick_due
+        wakes = self.part(child)
+        if isinstance(node, WhileDoElse) and child in node.branches and node.condition.status is Status.RUNNING:
+            asked_since = max(self._order(child), self._last(child)) < self._asked(node)
+            self.tick_due = due if asked_since else self.tick_due
+        return wakes
+
+    def _asked(self, node: WhileDoElse) -> int:
+        """Return which of the marks was the last one of its condition, and of what is in that."""
+        return max(self._order(node.condition), self._last(node.condition))
 
     def _unread(self, node: Behaviour, standing: Standing) -> list[Behaviour]:
         """Return the children whose end a RUNNING part had not come to read."""
@@ -133,9 +146,8 @@ class _Restoring:
         if node.condition.status not in _FINAL or self._order(node.condition) < standing.over:
             if not isinstance(node, WhileDoElse):
                 return []
-            # What ended before the condition was asked has had its tick; another would ask once more.
-            asked = max(self._order(node.condition), self._last(node.condition))
-            return [branch for branch in unread if self._order(branch) > asked]
+            # For what ended before, a tick would ask the condition once more.
+            return [branch for branch in unread if self._order(branch) > self._asked(node)]
         asked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
         at_work = [branch for branch in node.branches if branch.status is Status.RUNNING]
         if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or asked_last)):
