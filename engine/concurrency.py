@@ -16,7 +16,7 @@ from engine.event import Cause
 from engine.execution import Execution
 from engine.node import Node, overdue
 from engine.node_exit import ContainerOutcome, Left
-from engine.preemption import failure_of, preempt
+from engine.preemption import preempt, raise_failure
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -76,9 +76,9 @@ class Concurrency:
         try:
             outcome = await self._decided(path, branches, execution)
         except asyncio.CancelledError:
-            _raise_late_failure(branches.tasks)
+            raise_failure(branches.tasks.values())
             raise
-        _raise_late_failure(branches.tasks)
+        raise_failure(branches.tasks.values())
         branches.merge_all()
         return outcome
 
@@ -181,7 +181,7 @@ class _Branches:
         for name in gone:
             self._execution.suspensions.has_cleaned_up(f"{self._path}/{name}")
             task = self.tasks.pop(name)
-            _raise_late_failure({name: task})
+            raise_failure((task,))
             self._finished.pop(name, None)
             self._scopes.pop(name)
         self.start(container)
@@ -217,12 +217,6 @@ def has_ended(finished: Mapping[str, Left]) -> Callable[[str, str], bool]:
 def _as_outcome(left: Left) -> Left:
     """Give a child that was left by timeout or on_error the outcome named there."""
     return left if left.target is None else Left(left.target, None, left.cause, left.reason)
-
-
-def _raise_late_failure(tasks: Mapping[str, asyncio.Task[Left]]) -> None:
-    """A child whose clean-up failed is an error, whatever had preempted it."""
-    if (error := failure_of(tasks.values())) is not None:
-        raise error
 
 
 def branch_scope(

@@ -23,7 +23,7 @@ from engine.measure import Guard, Retry, Timeout
 from engine.node_events import record_diverted, record_entry, record_exit
 from engine.node_exit import Left, guard_closed, left_with
 from engine.point import Point
-from engine.preemption import Overdue, being_cancelled, failure_of, goes_on, preempt
+from engine.preemption import Overdue, being_cancelled, goes_on, preempt, raise_failure
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -285,8 +285,8 @@ class Node:
         try:
             await preempt((body,), overdue(execution, self.path))
         finally:
-            if body.done() and (failed := failure_of((body,))) is not None:
-                raise failed from None
+            if body.done():
+                raise_failure((body,))
 
     async def _retried(self, scope: Scope, execution: Execution, point: Point | None) -> Left:
         retry = self.retry

@@ -26,11 +26,13 @@ class OpenCalls:
             yield
         finally:
             self._open[path] -= 1
+            if not self._open[path]:
+                del self._open[path]
             self._tell()
 
     def any_inside(self, path: str) -> bool:
         """Tell whether the node at `path`, or one in it, waits for an answer."""
-        return any(count and inside(path, each) for each, count in self._open.items())
+        return any(inside(path, each) for each in self._open)
 
     @contextmanager
     def changed(self) -> Generator[asyncio.Future[None]]:

@@ -94,7 +94,7 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
     """Cancel the unfinished tasks once, in the order given, and wait for all of them to end.
 
     Args:
-        tasks: The tasks; their exceptions count as seen, whoever asked for the stop reads them with `failure_of`.
+        tasks: The tasks; their exceptions count as seen, whoever asked for the stop raises them with `raise_failure`.
         overdue: Told the name and the seconds waited of each task that takes its time.
 
     Raises:
@@ -136,6 +136,8 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
         raise cancelled
 
 
-def failure_of(tasks: Iterable[asyncio.Task[Any]]) -> BaseException | None:
-    """Return the error of the first of these tasks, all ended, that has one: a clean-up that failed."""
-    return next((error for task in tasks if not task.cancelled() and (error := task.exception()) is not None), None)
+def raise_failure(tasks: Iterable[asyncio.Task[Any]]) -> None:
+    """Raise the error, with its own cause, of the first of these tasks, all ended, that has one."""
+    for task in tasks:
+        if not task.cancelled() and (error := task.exception()) is not None:
+            raise error from error.__cause__

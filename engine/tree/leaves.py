@@ -9,7 +9,7 @@ at once; what was halted before it in the tick has confirmed by then.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 import msgspec
@@ -18,7 +18,7 @@ from engine.carrier import Carrier
 from engine.execution import Execution
 from engine.node import overdue
 from engine.node_exit import Left
-from engine.preemption import failure_of, preempt
+from engine.preemption import preempt
 from engine.tree.part import LeafPlan
 from engine.tree.place import Place
 
@@ -211,8 +211,8 @@ class Leaves:
         finally:
             self._probed = None
 
-    async def stop(self) -> BaseException | None:
-        """Stop everything and return, once all clean-up is done, the error of the first clean-up that failed.
+    async def stop(self) -> Sequence[asyncio.Task[Left]]:
+        """Stop everything and return what was stopped, once all clean-up is done; errors of clean-ups are not raised.
 
         Raises:
             NotStopped: a clean-up did not end in time.
@@ -224,7 +224,7 @@ class Leaves:
         self._unread.clear()
         tasks = [each.task for each in self._take_halted() if each.task is not None]
         await preempt(tasks, overdue(self._execution, self._path))
-        return failure_of(tasks)
+        return tasks
 
     def _start(self, activation: Activation) -> None:
         work = activation.plan.node.perform(activation.place.scope, self._execution)

@@ -18,6 +18,7 @@ from engine.errors import FlexcellError, StateError
 from engine.event import Event, UserdataAppended, UserdataWritten
 from engine.execution import Execution
 from engine.node_path import inside
+from engine.preemption import raise_failure
 from engine.state import Outcome
 from engine.tree.alarms import Alarms
 from engine.tree.blackboard import OwnBlackboard
@@ -100,8 +101,7 @@ class TreeRunner:
                 recorder.watch(hear)
             return await self._run(root)
         except asyncio.CancelledError:
-            if (failed := await self._leaves.stop()) is not None:
-                raise failed from None
+            raise_failure(await self._leaves.stop())
             raise
         finally:
             recorder.unwatch(hear)

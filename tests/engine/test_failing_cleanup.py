@@ -43,3 +43,4 @@ def test_a_clean_up_that_fails_ends_the_run(between: str) -> None:
     assert told.result.status == "errored"
     assert told.result.cause is not None
     assert "test.Messy raised ZeroDivisionError: in the clean-up" in told.result.cause.message
+    assert "fake_states.py" in told.result.cause.chain()[-1].where

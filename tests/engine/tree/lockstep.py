@@ -11,6 +11,7 @@ from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 
+from tests.engine.tree.course import Course
 from tests.engine.tree.specimen import EVERY_S, Leaf, Specimen
 
 REMAPS = {
@@ -109,16 +110,6 @@ class Branching(composites.Composite):
             self.stop(status)
         self.status = status
         yield self
-
-
-@dataclass(frozen=True)
-class Course:
-    """What came of it: the final status, None when it did not end, and what was begun."""
-
-    status: str | None
-    ended_s: float
-    begun: tuple[tuple[float, str], ...]
-    endless: bool = False
 
 
 def run_lockstep(specimen: Specimen, *, until_s: float, instant_limit: int) -> Course:

@@ -8,7 +8,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from tests.engine.tree.lockstep import Course
+from tests.engine.tree.course import Course
 from tests.engine.tree.specimen import SLOTS, Leaf
 
 IDLE, RUNNING, SUCCESS, FAILURE, SKIPPED = "idle", "running", "success", "failure", "skipped"

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, settings
 
 from engine.errors import DocumentError
-from engine.event import Entered
-from tests.engine.tree.lockstep import Course
+from tests.engine.tree.course import engine_course
 from tests.engine.tree.run_tree import run_tree, tree_plan
 from tests.engine.tree.skipping import Guarded, guarded_trees, run_guarded
 
@@ -22,27 +21,12 @@ def _act(name: str, *script: tuple[float, bool], more: str = "") -> str:
     return f"{{state: test.Act, name: {name}, with: {{script: {json.dumps(script)}}}{more}}}"
 
 
-def _run(specimen: Guarded) -> Course:
-    told = run_tree(json.dumps(specimen.document()), stop_at_s=UNTIL_S + 0.1, instant_limit=LIMIT)
-    begun = tuple(
-        (event.time_s, event.path.removeprefix("root/"))
-        for event in told.events
-        if isinstance(event, Entered) and event.kind == "state" and event.time_s < UNTIL_S
-    )
-    result = told.result
-    if result.status == "finished" and result.duration_s < UNTIL_S:
-        return Course(result.outcome, result.duration_s, begun)
-    endless = result.status == "errored" and "without waiting" in told.why[0]
-    assert endless or result.status in ("finished", "stopped"), told.why
-    return Course(None, result.duration_s if endless else UNTIL_S, begun, endless=endless)
-
-
 @given(specimen=guarded_trees)
 @settings(max_examples=150, deadline=None)
 def test_a_random_tree_with_guards_goes_the_way_of_the_reference(specimen: Guarded) -> None:
     """Through every composite, as BehaviorTree.CPP has SKIPPED."""
     expected = run_guarded(specimen, until_s=UNTIL_S, instant_limit=LIMIT)
-    assert _run(specimen) == expected
+    assert engine_course(specimen.document(), until_s=UNTIL_S, instant_limit=LIMIT) == expected
 
 
 SKIP = ", guard: {when: '${false}', to: skipped}"
