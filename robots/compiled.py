@@ -11,8 +11,32 @@ from typing import Any, TypeVar
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
+
+
+def _load_numba() -> Any:
+    """Return numba, loaded without scipy's linear algebra: a third of what it takes to load a compiled function.
+
+    numba asks for it before the first function, to know whether `np.correlate` and `np.convolve` may use BLAS.
+    Functions with `@`, `np.dot` or `np.linalg` load it when they are compiled, as ever.
+    """
+    numba: Any = import_module("numba")
+    algebra: Any = import_module("numba.np.linalg")
+    with import_module("numba.core.compiler_lock").global_compiler_lock:
+        ensure_blas = algebra.ensure_blas
+        algebra.ensure_blas = _refuse_blas
+        try:
+            import_module("numba.np.arraymath").ensure_blas = ensure_blas
+        finally:
+            algebra.ensure_blas = ensure_blas
+    return numba
+
+
+def _refuse_blas() -> None:
+    raise ImportError("not needed yet")
+
+
 # numba ships no usable types for its decorators; the decorator below gives back the plain function's type.
-_numba: Any = import_module("numba")
+_numba: Any = _load_numba()
 
 
 def compiled(*signatures: str) -> Callable[[_F], _F]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,9 @@ from robots.planning.kernels import Counts, Scratch, is_edge_free, new_scratch, 
 from robots.planning.leaf_kernels import joint_frames, length, nearest, random_number
 from robots.planning.problem import FREE, TILT, Problem
 from robots.port import Array
+
+# `solve` is done by it; the first search would load it in the middle of its work.
+import_module("scipy.linalg.cython_lapack")
 
 
 @compiled()

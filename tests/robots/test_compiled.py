@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from types import FunctionType
 
+import numpy as np
 import pytest
 
 from robots.compiled import compiled
+from robots.port import Array
 
 
 def double(value: float) -> float:
@@ -26,3 +28,13 @@ def test_another_failure_to_compile_is_not_hidden() -> None:
     """Such as a signature of two numbers for a function of one."""
     with pytest.raises(TypeError, match="Signature mismatch"):
         compiled("f8(f8, f8)")(double)
+
+
+def test_linear_algebra_is_compiled_as_ever() -> None:
+    """numba asks for scipy's when a function is compiled that needs it."""
+
+    def solved(matrix: Array, right: Array) -> float:
+        return float(np.linalg.solve(matrix @ matrix, right)[0] + np.dot(right, right))
+
+    homeless = FunctionType(solved.__code__.replace(co_filename="<nowhere>"), {"np": np, "float": float})
+    assert compiled()(homeless)(np.diag([2.0, 4.0]), np.array([8.0, 0.0])) == 2.0 + 64.0
