@@ -7,7 +7,6 @@ that build specifications, and nowhere else.
 from __future__ import annotations
 
 import hashlib
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,9 @@ from numpy.typing import NDArray
 
 from robots.model.rigid import cross
 from robots.port import Array
+from robots.sim.mujoco_library import load_mujoco
 
-mujoco: Any = import_module("mujoco")
+mujoco: Any = load_mujoco()
 
 
 class Physics:
