@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
-
 def _load_numba() -> Any:
     """Return numba, loaded without scipy's linear algebra: a third of what it takes to load a compiled function.
 

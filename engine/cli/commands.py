@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -30,6 +30,13 @@ _PLACES = {
     "schema": "engine.cli.schema:schema",
 }
 """Where the function of a command, or the application of a group of them, is."""
+
+
+def preload(names: Iterable[str]) -> None:
+    """Load the commands of these names; what is none is left for the command line to refuse."""
+    for name in names:
+        if name in _PLACES:
+            _loaded(name)
 
 
 class Commands(TyperGroup):

@@ -22,6 +22,7 @@ from engine.cli.operator_console import OperatorConsole
 from engine.cli.progress import Progress
 from engine.clock import NothingCanWake, VirtualLoop, run_virtual
 from engine.document.cell import Cell
+from engine.document.collection_pause import collection_paused
 from engine.document.faults import Faults
 from engine.errors import FlexcellError
 from engine.event import Event
@@ -128,6 +129,8 @@ async def _execute(order: Order) -> Ended:
     log: list[Event] = []
     over = asyncio.Event()
     with ExitStack() as stack:
+        opening = stack.enter_context(ExitStack())
+        opening.enter_context(collection_paused())
         interruption = stack.enter_context(Interruption(_say))
         journal = _journal(order, stack)
         async with (
@@ -154,10 +157,8 @@ async def _execute(order: Order) -> Ended:
             _watch_for_standstill(run)
             if order.reload is not None:
                 stack.enter_context(OperatorConsole(run, say=_tell, reload=order.reload, policy=order.supervision))
-            if not order.virtual:
-                # A collection that went through all that was loaded would hold the loop while arms move.
-                gc.collect()
-                gc.freeze()
+            _keep_loaded(order)
+            opening.close()
             with prompt_turns(), Watchdog():
                 result = await _within(order.timeout_s, run)
             over.set()
@@ -166,6 +167,13 @@ async def _execute(order: Order) -> Ended:
         for line in faults.unapplied():
             _say(line)
     return Ended(result=result, log=log, interrupted=bool(interruption.reason))
+
+
+def _keep_loaded(order: Order) -> None:
+    """Have the collector leave out what is there now: going through all of it would hold the loop while arms move."""
+    if not order.virtual:
+        gc.collect()
+    gc.freeze()
 
 
 async def _within(timeout_s: float | None, execution: Run) -> RunResult:
