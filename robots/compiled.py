@@ -24,7 +24,8 @@ def _load_numba() -> Any:
         ensure_blas = algebra.ensure_blas
         algebra.ensure_blas = _refuse_blas
         try:
-            import_module("numba.np.arraymath").ensure_blas = ensure_blas
+            arrays: Any = import_module("numba.np.arraymath")
+            arrays.ensure_blas = ensure_blas
         finally:
             algebra.ensure_blas = ensure_blas
     return numba

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from importlib.metadata import PackageNotFoundError, distribution
+import csv
+from collections.abc import Iterable, Sequence
+from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 
 from engine.errors import CellError
@@ -20,16 +21,26 @@ def installed_share_dir(*, package: str, marker: str) -> Path:
     """
     advice = f"pip install {package}"
     try:
-        files = distribution(package).files or []
+        installed = distribution(package)
     except PackageNotFoundError as error:
         raise CellError(f"the Python package {package} is not installed", where=package, hint=advice) from error
     suffix = "/" + marker
-    for file in files:
+    for file in _files(installed, marker):
         if f"/{file}".endswith(suffix):
-            path = Path(str(file.locate()))
+            path = Path(str(installed.locate_file(file)))
             if path.is_file():
                 return Path(str(path.resolve()).removesuffix(suffix))
     raise CellError(f"the package {package} has no file {marker}", where=package, hint=f"{advice} --force-reinstall")
+
+
+def _files(installed: Distribution, marker: str) -> Iterable[str]:
+    """Return the files of a distribution whose paths have `marker` in them."""
+    record = installed.read_text("RECORD")
+    if record is None:
+        return map(str, installed.files or ())
+    # `files` would make an object of each of its thousands of lines, several times for each arm.
+    lines = (line for line in record.splitlines() if marker in line)
+    return (row[0] for row in csv.reader(lines))
 
 
 def resolve_uri(uri: str, *, package_dirs: Sequence[Path], relative_to: Path) -> Path:
