@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from heapq import nsmallest
 from itertools import islice
 
@@ -19,11 +18,18 @@ def near_names(name: str, known: Iterable[str]) -> str:
     names = set(known)
     if not names:
         return "there are none"
-    near = difflib.get_close_matches(name, _alike(name, names), n=3, cutoff=0.6) if len(name) <= _LONGEST else []
+    near = close_names(name, _alike(name, names), most=3, cutoff=0.6) if len(name) <= _LONGEST else []
     if near:
         return f"did you mean {' or '.join(near)}?"
     shown = ", ".join(each[:_LONGEST] for each in nsmallest(_SHOWN, names))
     return f"known: {shown}{', …' if len(names) > _SHOWN else ''}"
+
+
+def close_names(name: str, known: Sequence[str], *, most: int, cutoff: float) -> list[str]:
+    """Return the known names that are alike by `difflib`, the nearest first; it is loaded with the first mistake."""
+    from difflib import get_close_matches
+
+    return get_close_matches(name, known, n=most, cutoff=cutoff)
 
 
 def _alike(name: str, names: set[str]) -> list[str]:

@@ -28,7 +28,6 @@ from engine.run_log import RunLog
 from engine.skill_port import AttendingPort, BusPort, SkillPort
 from engine.supervision import Supervision
 from engine.suspension import Suspensions
-from engine.undoing import order_step_back
 from engine.userdata import Scope
 
 
@@ -237,6 +236,9 @@ class Run:
             ControlError: it is not paused, or something cannot be undone; nothing has moved.
             JournalError: the run keeps no journal, or it cannot be read.
         """
+        # Few runs are ever taken back, and this one is at rest meanwhile.
+        from engine.undoing import order_step_back
+
         return await order_step_back(
             path, plan=lambda: self.plan, execution=self._execution, control=self._control, journal=self._journal
         )

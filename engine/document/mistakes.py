@@ -6,7 +6,6 @@ value that does not fit gives way to its default or, where there is none, to a s
 
 from __future__ import annotations
 
-import difflib
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -16,6 +15,7 @@ import msgspec
 from msgspec.structs import FieldInfo
 
 from engine.document.yaml_source import DataPath, Place, Source
+from engine.nearness import close_names
 
 MAX_MISTAKES = 100
 """Mistakes of one document that are told."""
@@ -130,7 +130,7 @@ class Sifting:
     def _unknown(self, value: Plain, key: str, fields: Mapping[str, FieldInfo], path: DataPath) -> Plain:
         """Read a mistyped key as the one that was meant, if what stands there fits."""
         absent = [name for name in fields if name not in value]
-        meant = next(iter(difflib.get_close_matches(key[:_LONGEST_KEY], absent, n=1, cutoff=_ALIKE)), "")
+        meant = next(iter(close_names(key[:_LONGEST_KEY], absent, most=1, cutoff=_ALIKE)), "")
         number = len(self.mistakes)
         self._note(Mistake(path=(*path, key), fault="unknown", meant=meant))
         found = self._value(value[key], fields[meant].type, (*path, meant)) if meant else _BROKEN
