@@ -143,7 +143,7 @@ class ArmMotion:
         return self._judge(following, step_s, position, at_rest)
 
     def _measure_rest(self, step_s: float, velocity: Array) -> bool:
-        self._rest_s = self._rest_s + step_s if np.abs(velocity).max() < _REST_RAD_S else 0.0
+        self._rest_s = self._rest_s + step_s if np.maximum.reduce(np.abs(velocity)) < _REST_RAD_S else 0.0
         return self._rest_s >= _REST_S
 
     def _take(self, generator: Generator) -> None:
@@ -159,7 +159,7 @@ class ArmMotion:
         if following.ending is MotionEnd.FAILED or not following.generator.leads:
             return
         error = np.abs(self.position - position)
-        worst = int(np.argmax(error))
+        worst = int(error.argmax())
         if error[worst] > following.tolerance.path_rad:
             following.ending = MotionEnd.FAILED
             following.reason = self._reason(worst, float(error[worst]), "behind its set point")

@@ -50,6 +50,11 @@ class Physics:
         self._change: Array = np.zeros(self.dof_count)
         self._xpos: Array = self._data.xpos
         self._xquat: Array = self._data.xquat
+        self._rotations: Array = self._data.xmat.reshape(-1, 3, 3)
+        self._body_wrenches: Array = self._data.cfrc_ext
+        self._tree_centres: Array = self._data.subtree_com
+        self._pushes: Array = self._data.xfrc_applied
+        self._roots: list[int] = model.body_rootid.tolist()
 
     def refresh(self) -> None:
         """Recompute everything that follows from positions and velocities."""
@@ -63,7 +68,7 @@ class Physics:
     def finish_step(self) -> None:
         """Apply the motors and what pushes, integrate over one step, and work out `pull` and the wrenches."""
         np.negative(self.velocities, out=self._change)
-        pushes = self._data.xfrc_applied
+        pushes = self._pushes
         before = {body: pushes[body].copy() for body in self._attractions}
         for body, attraction in self._attractions.items():
             pushes[body] += attraction
@@ -93,7 +98,7 @@ class Physics:
 
     def point_of(self, body: int, offset: Array) -> Array:
         """Return a point of a body, given in its frame, in the world at the start of the last step, both (3,)."""
-        return self._xpos[body] + self._data.xmat[body].reshape(3, 3) @ offset
+        return self._xpos[body] + self._rotations[body] @ offset
 
     def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
         """Return force and torque about `point` (6,), world axes, that contacts and pushes exerted on bodies.
@@ -101,8 +106,8 @@ class Physics:
         It is of the last step; the bodies belong to one tree. A force sensor before the first of them
         would tell the same, once their own weight and inertia are taken out.
         """
-        sums = self._data.cfrc_ext[bodies].sum(axis=0)
-        centre = self._data.subtree_com[self._model.body_rootid[bodies[0]]]
+        sums = np.add.reduce(self._body_wrenches[bodies])
+        centre = self._tree_centres[self._roots[bodies[0]]]
         force = sums[3:]
         return np.concatenate((force, sums[:3] + cross(centre - point, force)))
 
@@ -186,7 +191,7 @@ class Physics:
         mujoco.mj_resetData(self._model, self._data)
         mujoco.mj_setState(self._model, self._data, state, self._state_kind)
         self.velocities[:] = 0.0
-        self._data.xfrc_applied[:] = 0.0
+        self._pushes[:] = 0.0
         self.pull[:] = 0.0
         self.refresh()
 

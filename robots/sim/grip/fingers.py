@@ -41,7 +41,8 @@ class SlidingGear:
     def opening(self) -> tuple[float, float]:
         """Return the sum of the fingers' ways."""
         indices, physics = self._indices, self._physics
-        return float(physics.positions[indices.qpos].sum()), float(physics.velocities[indices.dof].sum())
+        ways, speeds = physics.positions[indices.qpos], physics.velocities[indices.dof]
+        return float(np.add.reduce(ways)), float(np.add.reduce(speeds))
 
     def press(self, force_n: float) -> None:
         """Set both motors."""
