@@ -93,7 +93,8 @@ class Machine:
             if target is None:
                 raise machine._leads_nowhere(child, left)
             if recorder.heard:
-                recorder.emit(Transitioned, path=path, source=name, outcome=left.outcome, target=target)
+                seq, time_s = recorder.stamp()
+                recorder.record(Transitioned(seq, time_s, path=path, source=name, outcome=left.outcome, target=target))
             else:
                 recorder.count()
             if target not in machine.children:
