@@ -2,6 +2,8 @@
 
 An environment of its own for each set of names costs 150 kB with its first program, so the names
 in a text are replaced by aliases that the shared one declares, `__flexcell_text_0`, by type and number.
+
+CEL is loaded with the first expression that is more than a name: many behaviors have none.
 """
 
 from __future__ import annotations
@@ -10,9 +12,8 @@ import math
 import operator
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from importlib import import_module
 from typing import Any, Literal
-
-from cel_expr_python import cel
 
 MAX_NAMES = 64
 """Variables in one expression."""
@@ -45,7 +46,13 @@ def aliased(text: str, uses: Sequence[NameUse], aliases: Mapping[str, str]) -> s
 def environment() -> Any:
     """Return the environment."""
     known = {alias(number, kind): of_cel for kind, of_cel in _cel_types().items() for number in range(MAX_NAMES)}
-    return cel.NewEnv(variables=known, extensions=[_mixed_arithmetic()])
+    return _cel().NewEnv(variables=known, extensions=[_mixed_arithmetic()])
+
+
+@lru_cache(maxsize=1)
+def error_type() -> Any:
+    """Return the type of a result that is an error."""
+    return _cel().Type.ERROR
 
 
 def word_for(of_cel: str) -> ValueType:
@@ -59,7 +66,7 @@ def word_for(of_cel: str) -> ValueType:
 
 @lru_cache(maxsize=1)
 def _cel_types() -> Mapping[ValueType, Any]:
-    kinds = cel.Type
+    kinds = _cel().Type
     return {
         "boolean": kinds.BOOL,
         "integer": kinds.INT,
@@ -74,6 +81,7 @@ def _cel_types() -> Mapping[ValueType, Any]:
 
 def _mixed_arithmetic() -> Any:
     """Let an integer meet a decimal in `+ - * /`, which CEL alone refuses."""
+    cel = _cel()
     integer, decimal = cel.Type.INT, cel.Type.DOUBLE
     functions: list[Any] = []
     for symbol, compute in (("+", operator.add), ("-", operator.sub), ("*", operator.mul), ("/", _divide)):
@@ -83,6 +91,10 @@ def _mixed_arithmetic() -> Any:
         ]
         functions.append(cel.FunctionDecl(f"_{symbol}_", overloads))
     return cel.CelExtension("mixed_arithmetic", functions)
+
+
+def _cel() -> Any:
+    return import_module("cel_expr_python.cel")
 
 
 def _divide(dividend: float, divisor: float) -> float:

@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sized
 from typing import Any, cast
 
 import msgspec
-from cel_expr_python import cel
 
 from engine.document.cel_environment import (
     ALIAS,
@@ -22,6 +21,7 @@ from engine.document.cel_environment import (
     alias,
     aliased,
     environment,
+    error_type,
     word_for,
 )
 from engine.document.cel_syntax import ParsedExpression, Syntax, read_parsed
@@ -126,7 +126,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
             result = self._program.eval(data=data)
         except (RuntimeError, ValueError, TypeError, OverflowError) as error:
             raise self._failed(_ERROR_STATUS.sub("", str(error)), shown) from error
-        if result.type() == cel.Type.ERROR:
+        if result.type() == error_type():
             raise self._failed(_ERROR_STATUS.sub("", str(result.value())), shown)
         return self._checked(result.plain_value(), shown)
 
