@@ -55,6 +55,8 @@ class ArmControl:
         model, limits = kinematics.model, kinematics.limits
         self.name = name
         self.settings = ArmSettings()
+        self.tool_xyz_m: Array = np.array(self.settings.tool_xyz_m)
+        """Where the tool centre point is in the frame of the tool link, (3,), as the settings say."""
         self.state = ArmState(kinematics)
         self.motion = ArmMotion(joints=model.arm_joints, touching=touching)
         self._kinematics = kinematics
@@ -103,6 +105,7 @@ class ArmControl:
     def configure(self, settings: ArmSettings) -> None:
         """Put checked settings into force, without a bump; also while something moves."""
         before, self.settings = self.settings, settings
+        self.tool_xyz_m = np.array(settings.tool_xyz_m)
         self.motion.pace = settings.speed_override
         self._reflex.watch(settings)
         if _shape(before) == _shape(settings):

@@ -81,7 +81,7 @@ class ArmInLoop:
     def move(self, step_s: float) -> list[AnyMotionEvent]:
         """Read what is measured, move the set point on, and return what happened."""
         physics, indices, control = self._physics, self.indices, self.control
-        tool = physics.point_of(self._tool_link, np.array(control.settings.tool_xyz_m))
+        tool = physics.point_of(self._tool_link, control.tool_xyz_m)
         control.measure(
             physics.positions[indices.qpos],
             physics.velocities[indices.dof],
