@@ -1,13 +1,13 @@
 """Documents: behaviors, cells and entries as strict YAML or JSON, read into frozen models.
 
-A document that cannot be used is a `DocumentError` with file, line and column.
+A document that cannot be used is a `DocumentError` with file, line and column. Entries are read and written by
+`engine.document.entries`, which few programs need.
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
 from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, RobotEntry, load_cell
 from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
 from engine.document.condition import Condition
-from engine.document.entries import Entries, EntriesDocument, load_entries, write_entries
 from engine.document.expression import Template, compile_template
 from engine.document.loader import (
     CircularReference,
@@ -33,8 +33,6 @@ __all__ = [
     "Concurrency",
     "Condition",
     "DepthCamera",
-    "Entries",
-    "EntriesDocument",
     "Fixture",
     "ForEach",
     "Guard",
@@ -58,13 +56,11 @@ __all__ = [
     "compile_template",
     "load_behavior",
     "load_cell",
-    "load_entries",
     "load_source",
     "parse_behavior",
     "parse_source",
     "read_behavior",
     "read_signature",
     "survey_behavior",
-    "write_entries",
     "write_yaml",
 ]

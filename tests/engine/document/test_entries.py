@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document import load_entries, write_entries
+from engine.document.entries import load_entries, write_entries
 from engine.errors import DocumentError
 from engine.skills.entries import EntryRecord
 
