@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from py_trees.behaviour import Behaviour
 
 from engine.carrier import Carrier, Piece
-from engine.clock import turn
+from engine.clock import OneTurn
 from engine.document.expression_cost import MAX_STEPS
 from engine.execution import Execution
 from engine.node_exit import Left
@@ -106,7 +106,7 @@ class Ticker:
         if check is None:
             return self._next_piece()
         if self._in_a_row >= _MOST_IN_A_ROW:
-            await turn()
+            await OneTurn()
             self._in_a_row = 0
         else:
             self._in_a_row += 1
