@@ -2,20 +2,23 @@
 
 What ends in its first step, as most checks of a behavior tree do, needs no task, but nobody knows beforehand. Its first
 step cannot be moved into a task afterwards either: what it opens there, as `asyncio.timeout` does, belongs to the task
-that ran. So a task carries one piece of work after the other and waits in between, and what has to wait keeps it.
+that ran. So a task carries one piece of work after the other and what is decided in between, and what has to wait keeps
+it.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Any, Generic, TypeVar
 
 from engine.activity import Activity
 from engine.first_step import step_now
-from engine.preemption import being_cancelled
+from engine.preemption import is_preempted
 
 T = TypeVar("T")
+Piece = tuple[str, Coroutine[Any, Any, T]]
+"""A node path, and the work of that node."""
 
 
 class Carrier(Generic[T]):
@@ -24,40 +27,47 @@ class Carrier(Generic[T]):
     Args:
         activity: Told which task carries which node.
         loop: The running one.
+        following: Called on the spot with what a piece has ended with; gives the next one, or None.
     """
 
-    def __init__(self, activity: Activity, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(
+        self, activity: Activity, loop: asyncio.AbstractEventLoop, following: Callable[[T], Piece[T] | None]
+    ) -> None:
         self._activity = activity
         self._loop = loop
+        self._following = following
         self._task: asyncio.Task[T] | None = None
         """The one that is free to carry what comes next."""
-        self._next: asyncio.Future[Coroutine[Any, Any, T] | None] | None = None
+        self._next: asyncio.Future[Piece[T] | None] | None = None
         """What it waits for in between."""
         self._on_the_spot = False
-        self._ended: T | None = None
+        self._error: BaseException | None = None
+        """What was raised between two pieces."""
 
-    def run(self, path: str, work: Coroutine[Any, Any, T]) -> T | asyncio.Task[T]:
-        """Run the work of the node at `path` up to where it first waits.
+    def run(self, piece: Piece[T]) -> asyncio.Task[T] | None:
+        """Run a piece, and those that follow, up to where one waits.
 
         Returns:
-            What it has ended with; if it waits, or has raised, the task that it is carried by from now on.
+            The task that carries the one that waits, or has raised, from now on; None where nothing follows any more.
+
+        Raises:
+            BaseException: what `following` has raised.
         """
-        task, self._ended, self._on_the_spot = self._task, None, True
+        task, self._on_the_spot = self._task, True
         if task is None or self._next is None or self._next.done():
-            task = self._task = asyncio.create_task(self._carry(work), name=path)
+            task = self._task = asyncio.create_task(self._carry(piece), name=piece[0])
         else:
-            task.set_name(path)
-            self._next.set_result(work)
-        self._activity.enter(path, task)
+            self._next.set_result(piece)
         try:
             step_now(task)
         finally:
             self._on_the_spot = False
-        if self._ended is not None:
-            self._activity.leave(path, task)
-            return self._ended
+        if self._error is not None:
+            raise self._taken_error()
+        if self._next is not None and not self._next.done():
+            return None
         self._task = self._next = None
-        task.add_done_callback(lambda done: self._activity.leave(path, done))
+        task.add_done_callback(lambda done: self._activity.leave(done.get_name(), done))
         return task
 
     def close(self) -> None:
@@ -67,14 +77,32 @@ class Carrier(Generic[T]):
             step_now(self._task)
         self._task = self._next = None
 
-    async def _carry(self, work: Coroutine[Any, Any, T]) -> T:
+    async def _carry(self, piece: Piece[T]) -> T:
+        task = asyncio.current_task(self._loop)
+        assert task is not None, "it is one"
+        branches = self._activity.branches
+        path, work = piece
         while True:
+            task.set_name(path)
+            branches[path] = task
             ended = await work
             # A task that was asked to end carries nothing else.
-            if not self._on_the_spot or being_cancelled(self._loop):
+            if not self._on_the_spot or task.cancelling() or is_preempted(task):
                 return ended
-            self._ended, self._next = ended, self._loop.create_future()
-            due = await self._next
+            del branches[path]
+            try:
+                due = self._following(ended)
+            except BaseException as error:
+                # `run` raises it: whoever has this carried is to meet it, whatever it is.
+                self._error, due = error, None
             if due is None:
-                return ended
-            work = due
+                self._next = self._loop.create_future()
+                due = await self._next
+                if due is None:
+                    return ended
+            path, work = due
+
+    def _taken_error(self) -> BaseException:
+        error, self._error = self._error, None
+        assert error is not None, "there is one"
+        return error

@@ -12,11 +12,11 @@ import asyncio
 import logging
 import math
 import selectors
-import types
-from collections.abc import Callable, Coroutine, Generator
+from collections.abc import Callable, Coroutine, Iterator
 from concurrent.futures import Executor
 from contextvars import Context
-from typing import Any, Protocol, TypeVar
+from functools import partial
+from typing import Any, NoReturn, Protocol, TypeVar
 
 from engine.errors import FlexcellError
 
@@ -57,6 +57,7 @@ class Lockstep(Protocol):
 Rank = tuple[int, bool]
 """How deep inside of others something is that decides, and whether it is the thing itself and not what is around it."""
 
+_ONE_STEP = (None,)
 _GRID_S = 1e-9
 _CLOSING_S = 60.0
 """How long, in virtual time, a task may take to end after it was cancelled because the loop is closed."""
@@ -68,10 +69,30 @@ class NothingCanWake(FlexcellError):
     """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
 
 
-@types.coroutine
-def turn() -> Generator[None, None, None]:
-    """Let everything that is ready run first: what `asyncio.sleep(0)` awaits, without the coroutine around it."""
-    yield
+class OneTurn(Coroutine[None, None, None]):
+    """Lets everything that is ready run first: what `asyncio.sleep(0)` does, at less cost.
+
+    Whoever awaits it goes through no frame of its own, neither to wait nor when he is woken.
+    """
+
+    __slots__ = ("_steps",)
+    _steps: Iterator[None]
+    __await__ = staticmethod(partial(iter, _ONE_STEP))  # pyright: ignore[reportAssignmentType]
+
+    def send(self, value: None, /) -> None:
+        """Take a step: a task carries it so."""
+        try:
+            steps = self._steps
+        except AttributeError:
+            steps = self._steps = iter(_ONE_STEP)
+        return next(steps)
+
+    def throw(self, error: Any, value: object = None, trace: object = None, /) -> NoReturn:
+        """Raise the error: there is nothing to clean up."""
+        raise value if isinstance(value, BaseException) else error
+
+    def close(self) -> None:
+        """Be done; nothing is open."""
 
 
 class LoopClock:

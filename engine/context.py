@@ -10,7 +10,7 @@ import msgspec
 
 from engine.bus import GoalEnd, GoalStatus, Holder
 from engine.cause import cause_of
-from engine.clock import Clock
+from engine.clock import Clock, OneTurn
 from engine.errors import FlexcellError
 from engine.event import Answered, Called, Cause, GoalFinished, GoalHeld, GoalResumed, GoalSent, Received
 from engine.execution import Execution
@@ -44,6 +44,8 @@ class WaitingClock:
 
     def sleep(self, duration_s: float) -> Coroutine[Any, Any, None]:
         """Let `duration_s` pass."""
+        if duration_s == 0:
+            return OneTurn()
         # Handed on, not awaited: each coroutine around a wait is gone through whenever the state is woken.
         return self._execution.sleep(self._path, duration_s)
 
@@ -87,9 +89,10 @@ class RunningContext(msgspec.Struct, eq=False):
     @property
     def clock(self) -> Clock:
         """The run's time."""
-        if self._clock is None:
-            self._clock = WaitingClock(self._execution, self.path)
-        return self._clock
+        clock = self._clock
+        if clock is None:
+            clock = self._clock = WaitingClock(self._execution, self.path)
+        return clock
 
     async def call(self, request: Service[R], *, to: str) -> R:
         """Ask a service after the journal is durable, as it may have an effect."""

@@ -10,7 +10,7 @@ from typing import Any, Protocol, TypeVar
 
 from engine.activity import Activity
 from engine.bus import SkillBus
-from engine.clock import Clock, turn
+from engine.clock import Clock, OneTurn
 from engine.control.gate import Gate
 from engine.document.duration import LONGEST_S
 from engine.document.expression_cost import MAX_STEPS
@@ -182,7 +182,7 @@ class Execution:
         if not duration_s <= LONGEST_S:
             raise StateError(f"this would wait for {duration_s:g} s", where=path, hint=f"{LONGEST_S:g} s are the most")
         if duration_s <= 0:
-            await turn()
+            await OneTurn()
             return
         self.waits.add_timed(path, duration_s)
         timer = self.suspensions.timer(path, duration_s)

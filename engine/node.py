@@ -127,6 +127,11 @@ class Node:
     def _is_plain_state(self) -> bool:
         return self._plain and not self.work.children
 
+    @cached_property
+    def _lefts(self) -> Mapping[str, Left]:
+        """How a plain state is left by each of its outcomes where nothing went wrong."""
+        return {outcome: Left(outcome) for outcome in self.work.outcomes}
+
     async def perform(self, scope: Scope, execution: Execution) -> Left:
         """Run the node to its end, whatever that is, past the gate before and after it.
 
@@ -150,8 +155,9 @@ class Node:
             ended = _raised(error)
         else:
             if not (execution.gate.armed or being_cancelled(execution.loop)):
-                record_exit(execution, path, visit, outcome.name, cause=outcome.cause)
-                return left_with(outcome)
+                cause = outcome.cause
+                record_exit(execution, path, visit, outcome.name, cause=cause)
+                return self._lefts[outcome.name] if cause is None else left_with(outcome)
             ended = _ended(outcome)
         return await self._perform(scope, execution, Begun(visit, ended))
 

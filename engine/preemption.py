@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+from asyncio import current_task
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -43,7 +44,7 @@ def being_cancelled(loop: asyncio.AbstractEventLoop) -> bool:
     Args:
         loop: The running one, which to find out costs more than the rest of a state that ends at once.
     """
-    task = asyncio.current_task(loop)
+    task = current_task(loop)
     return task is not None and (task.cancelling() > 0 or task in _ASKED)
 
 

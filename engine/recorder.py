@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 from collections.abc import Callable
 from typing import Concatenate, ParamSpec
@@ -34,7 +35,9 @@ class Recorder:
         self._start_s = clock.now_s() - after_s
         self._keeps = not isinstance(journal, NullRunJournal)
         self._watchers: tuple[Watcher, ...] = ()
-        self._seq = after_seq
+        self._numbers = itertools.count(after_seq + 1)
+        self.count: Callable[[], int] = self._numbers.__next__
+        """Number an event that nobody hears: what `emit` does then, without its fields, where a run spends its time."""
         self.heard = self._keeps
         """Whether anybody keeps or watches events; while nobody does they are only numbered."""
         self.ended = False
@@ -55,8 +58,7 @@ class Recorder:
 
     def stamp(self) -> tuple[int, float]:
         """Number and time the next event, which is then made and given to `record`: half of what `emit` costs."""
-        self._seq = seq = self._seq + 1
-        return seq, self.now_s()
+        return self.count(), self.now_s()
 
     def record(self, event: Event) -> None:
         """Keep and tell an event that was made with the last stamp."""
@@ -65,18 +67,13 @@ class Recorder:
             if self._watchers:
                 self.tell(event)
 
-    def count(self) -> None:
-        """Number an event that nobody hears: what `emit` does then, without its fields, where a run spends its time."""
-        self._seq += 1
-
     def log(self, path: str, message: str, *, level: str = "info") -> None:
         """Write a line about a node into the event log; about the run as a whole where `path` is empty."""
         self.emit(Logged, path=path, level=level, message=whole_text(message))
 
     def end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
         """Record the last event and return it, for `tell` once it is known whether it could be kept."""
-        self._seq += 1
-        event = RunEnded(self._seq, self.now_s(), status=status, outcome=outcome, cause=cause)
+        event = RunEnded(*self.stamp(), status=status, outcome=outcome, cause=cause)
         self._journal.append(event)
         self.ended = True
         return event

@@ -97,7 +97,7 @@ class Foreign:
     def tick(self) -> Iterator[Behaviour]:
         """Tick it once; the first time only after what this tick has halted is at rest."""
         behaviour = self.behaviour
-        if behaviour.status is not Status.RUNNING and self._leaves.halting:
+        if behaviour.status is not Status.RUNNING and self._leaves.halted:
             yield self._turn
         self._show_inputs()
         steps = self._tick()

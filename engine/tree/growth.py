@@ -78,9 +78,10 @@ class Growth:
         if part.leaf is not None:
             self._rank += 1
             rank = self._rank
-            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank=rank, caught=caught)
+            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank, caught)
             self.parts[leaf] = part
-            self._post(part, leaf, place)
+            if part.post:
+                self._post(part, leaf, place)
             self.statuses.skips.place(leaf, passing)
             return leaf
         if part.foreign is not None:
@@ -102,21 +103,23 @@ class Growth:
             self.statuses.skips.follow(node)
         if part.source.guard is not None and part.source.kind != "guard":
             self._entry_guard(part, part.source.guard, node, place)
-        self._post(part, node, place)
+        if part.post:
+            self._post(part, node, place)
         self.statuses.follow(node, part.path)
         return node
 
     def _post(self, part: Part, node: Behaviour, place: Place) -> None:
-        if part.post:
-            self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
+        self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
 
     def take_apart(self) -> None:
         """Let go of everything once the tree has ended: nodes that know each other would wait for the collector."""
         for node in self.parts:
             node.parent = None
-            if node not in self.foreign:
-                node.children = []
+            if node in self.posts or (node.children and node not in self.foreign):
+                # Its children, its iterator, and what was put in the place of its methods.
+                vars(node).clear()
         self.parts.clear()
+        self.statuses.skips.forget_all()
 
     def _line(self, part: Part, place: Place, caught: bool) -> Behaviour:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
 from uuid import UUID
 
@@ -16,13 +17,18 @@ from engine.tree.place import Place
 from engine.tree.statuses import Statuses
 from engine.userdata import Scope
 
+_SUCCESS, _FAILURE, _RUNNING, _INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
+"""To look up a member of an enumeration costs more, in Python 3.11, than all else that a leaf tells of itself."""
+
 
 class Turn(Behaviour):
     """What a tick yields where it has to wait: for clean-up of what it halted, and for `check`."""
 
     def __init__(self) -> None:
         super().__init__("turn")
-        self.check: Activation | None = None
+        self.check: TreeLeaf | None = None
+        self.left: Left | None = None
+        """How that has ended on the spot, until its tick goes on."""
 
     def update(self) -> Status:
         """Never be ticked."""
@@ -49,6 +55,9 @@ class TreeLeaf(Behaviour):
     logger = Logger("leaf")
     blackbox_level = BlackBoxLevel.NOT_A_BLACKBOX
     feedback_message = ""
+    children = []
+    stale = False
+    """Whether it may end otherwise now."""
 
     def __init__(
         self,
@@ -57,56 +66,55 @@ class TreeLeaf(Behaviour):
         leaves: Leaves,
         turn: Turn,
         statuses: Statuses,
-        *,
         rank: int,
         caught: bool,
     ) -> None:
+        # All that a leaf sets later is set here: a name that comes later costs a dictionary of its own.
         self.name = plan.node.name
-        self.status = Status.INVALID
+        self.status = _INVALID
         self.parent = None
-        self.children = []
         self.plan = plan
+        self.place = place
         self.left: Left | None = None
         """How it ended last."""
-        self.said = Status.INVALID
+        self.said = _INVALID
         """How it ended when it was last run or observed."""
-        self.stale = False
-        """Whether it may end otherwise now."""
-        self._place = place
         self._leaves = leaves
         self._turn = turn
         self._statuses = statuses
         self._rank = rank
         self._caught = caught
         self._activation: Activation | None = None
+        """While it is active, unless that is over on the spot."""
         self._counted = False
         """Whether an earlier end counted when the present activation was asked for."""
 
     def tick(self) -> Iterator[Behaviour]:
         """Begin when it is not active, then tell how it stands."""
-        activation = self._activation
-        if activation is None:
-            activation = Activation(self.plan, self._place, self._rank, self._caught)
-            self._activation = activation
-            self._counted = self.status is not Status.INVALID
+        turn = self._turn
+        if self._activation is None:
             if self.plan.check:
-                self._turn.check = activation
-                yield self._turn
+                turn.check = self
+                yield turn
             else:
-                self._leaves.ask(activation)
-        try:
-            left = self._leaves.read(activation)
-        except BaseException:
-            # It has ended with this, whatever it is, and begins anew when it is ticked again.
-            self._activation = None
-            raise
-        if left is None:
-            self.status = Status.RUNNING
+                self._leaves.ask(self._activate())
+        left = turn.left
+        if left is not None:
+            turn.left = None
         else:
-            self._activation = None
+            left = self._read()
+        if left is None:
+            self.status = _RUNNING
+        else:
             self._end(left)
             self._statuses.end(self)
         yield self
+
+    def follow(self, task: asyncio.Task[Left]) -> Activation:
+        """Be active, as a check, in this task, in which it has begun."""
+        activation = self._activate()
+        self._leaves.follow(activation, task)
+        return activation
 
     def update(self) -> Status:
         """Return the present status; `tick` does the work."""
@@ -116,7 +124,7 @@ class TreeLeaf(Behaviour):
         """Halt it if it is active."""
         activation, self._activation = self._activation, None
         if activation is None:
-            counted = self.status is not Status.INVALID
+            counted = self.status is not _INVALID
         else:
             self._leaves.halt(activation)
             # One that never began has told nothing; what it had told before still counts.
@@ -127,9 +135,8 @@ class TreeLeaf(Behaviour):
 
     def go_on(self) -> None:
         """Be at work again, without a tick, in place of an activation that was cut."""
-        self._activation = Activation(self.plan, self._place, self._rank, self._caught)
-        self._leaves.ask(self._activation)
-        self.status = Status.RUNNING
+        self._leaves.ask(self._activate())
+        self.status = _RUNNING
 
     def restore(self, left: Left) -> None:
         """Have ended so, in an activation that was read before."""
@@ -145,20 +152,41 @@ class TreeLeaf(Behaviour):
     @property
     def scope(self) -> Scope:
         """Where it reads and writes at present."""
-        return self._place.scope
+        return self.place.scope
 
     def status_of(self, left: Left) -> Status:
         """Return what it means in the tree to end so."""
+        if left.target is None:
+            return _SUCCESS if left.outcome in self.plan.success else _FAILURE
         if left.target == "skipped":
             return self._statuses.skips.passing(self)
-        succeeded = left.target == "success" if left.target is not None else left.outcome in self.plan.success
-        return Status.SUCCESS if succeeded else Status.FAILURE
+        return _SUCCESS if left.target == "success" else _FAILURE
+
+    def _activate(self) -> Activation:
+        self._counted = self.status is not _INVALID
+        self._activation = Activation(self.plan, self.place, self._rank, self._caught)
+        return self._activation
+
+    def _read(self) -> Left | None:
+        activation = self._activation
+        assert activation is not None, "it is active"
+        try:
+            left = self._leaves.read(activation)
+        except BaseException:
+            # It has ended with this, whatever it is, and begins anew when it is ticked again.
+            self._activation = None
+            raise
+        if left is not None:
+            self._activation = None
+        return left
 
     def _end(self, left: Left) -> None:
         self.left = left
         self.status = self.said = self.status_of(left)
+        skips = self._statuses.skips
         if left.target == "skipped":
-            self._statuses.skips.skip(self)
-        elif self._statuses.skips:
-            self._statuses.skips.run(self)
-        self.stale = False
+            skips.skip(self)
+        elif skips.skipped:
+            skips.run(self)
+        if self.stale:
+            self.stale = False

@@ -14,8 +14,8 @@ from functools import partial
 
 import msgspec
 
-from engine.carrier import Carrier
 from engine.execution import Execution
+from engine.first_step import step_now
 from engine.node import overdue
 from engine.node_exit import Left
 from engine.preemption import preempt
@@ -34,8 +34,7 @@ class Activation(msgspec.Struct, eq=False):
         place: Where it reads and writes.
         rank: Its place in the document.
         caught: Whether a decorator around it takes its errors.
-        task: What it is carried by; None before it begins, and where it has ended at once.
-        left_at_once: How it ended then.
+        task: What it is carried by; None before it begins.
     """
 
     plan: LeafPlan
@@ -43,7 +42,6 @@ class Activation(msgspec.Struct, eq=False):
     rank: int
     caught: bool
     task: asyncio.Task[Left] | None = None
-    left_at_once: Left | None = None
 
     @property
     def path(self) -> str:
@@ -57,24 +55,22 @@ class Activation(msgspec.Struct, eq=False):
         Raises:
             FlexcellError: it ended with this error.
         """
-        if self.task is None:
-            return self.left_at_once
-        return self.task.result() if self.task.done() else None
+        return self.task.result() if self.task is not None and self.task.done() else None
 
     @property
     def begun(self) -> bool:
         """Whether it was entered, or is about to be."""
-        return self.task is not None or self.left_at_once is not None
+        return self.task is not None
 
     @property
     def ended(self) -> bool:
         """Whether it has ended, be it with an error."""
-        return self.task.done() if self.task is not None else self.left_at_once is not None
+        return self.task is not None and self.task.done()
 
     @property
     def error(self) -> BaseException | None:
         """The error it ended with, if any."""
-        if self.task is None or not self.ended or self.task.cancelled():
+        if self.task is None or not self.task.done() or self.task.cancelled():
             return None
         return self.task.exception()
 
@@ -94,17 +90,12 @@ class Leaves:
         self._wake = wake
         self._asked: list[Activation] = []
         self._running: set[Activation] = set()
-        self._halted: list[Activation] = []
+        self.halted: list[Activation] = []
+        """What was halted in this tick and has not confirmed yet."""
         self._unread: set[Activation] = set()
         self._probed: Activation | None = None
-        self._carrier = Carrier[Left](execution.activity, execution.loop)
         self.begun: list[str] = []
         """Paths of the leaves begun since `begun` was last cleared."""
-
-    @property
-    def halting(self) -> bool:
-        """Whether something was halted in this tick that has not confirmed yet."""
-        return bool(self._halted)
 
     @property
     def unread(self) -> frozenset[Activation]:
@@ -121,10 +112,9 @@ class Leaves:
         Raises:
             FlexcellError: it ended with this error.
         """
-        if activation.task is not None:
-            if not activation.task.done():
-                return None
-            self._running.discard(activation)
+        if not activation.ended:
+            return None
+        self._running.discard(activation)
         self._unread.discard(activation)
         return activation.left
 
@@ -140,7 +130,7 @@ class Leaves:
         self._running.discard(activation)
         self._unread.discard(activation)
         if not activation.ended or (activation.error is not None and not activation.caught):
-            self._halted.append(activation)
+            self.halted.append(activation)
 
     def forget(self, seen: Iterable[Activation]) -> None:
         """Do not wake for these any more: a tick has followed."""
@@ -152,7 +142,7 @@ class Leaves:
         Raises:
             FlexcellError: a clean-up failed, or did not end in time.
         """
-        if not self._halted:
+        if not self.halted:
             return
         halted = self._take_halted()
         tasks = [each.task for each in halted if each.task is not None]
@@ -163,8 +153,6 @@ class Leaves:
 
     async def begin(self) -> None:
         """Carry out the tick: stop what it halted, then begin what it asked for."""
-        # Between ticks nothing stands by that would count among what waits.
-        self._carrier.close()
         await self.confirm()
         asked, self._asked = self._asked, []
         for activation in asked:
@@ -176,22 +164,17 @@ class Leaves:
             if not activation.plan.check:
                 continue
             self._asked.remove(activation)
-            if not self.ends_at_once(activation):
-                await self.settled(activation)
+            step_now(self._start(activation))
+            await self.settled(activation)
             if activation.ended:
                 self._unread.add(activation)
         await self.begin()
 
-    def ends_at_once(self, activation: Activation) -> bool:
-        """Begin a check on the spot and tell whether that was all; nearly all end so."""
-        node = activation.plan.node
-        self.begun.append(node.path)
-        ended = self._carrier.run(node.path, node.perform(activation.place.scope, self._execution))
-        if isinstance(ended, Left):
-            activation.left_at_once = ended
-            return True
-        self._follow(activation, ended)
-        return False
+    def follow(self, activation: Activation, task: asyncio.Task[Left]) -> None:
+        """Have it be carried by this task, and wake the tree when that ends."""
+        activation.task = task
+        self._running.add(activation)
+        task.add_done_callback(partial(self._end, activation))
 
     async def settled(self, activation: Activation) -> None:
         """Return when a check that goes on has ended, or waits for something but the answer of a service."""
@@ -217,24 +200,20 @@ class Leaves:
         Raises:
             NotStopped: a clean-up did not end in time.
         """
-        self._carrier.close()
         self._asked.clear()
-        self._halted += self._running
+        self.halted += self._running
         self._running.clear()
         self._unread.clear()
         tasks = [each.task for each in self._take_halted() if each.task is not None]
         await preempt(tasks, overdue(self._execution, self._path))
         return tasks
 
-    def _start(self, activation: Activation) -> None:
+    def _start(self, activation: Activation) -> asyncio.Task[Left]:
         work = activation.plan.node.perform(activation.place.scope, self._execution)
-        self._follow(activation, self._execution.activity.branch(activation.path, work))
+        task = self._execution.activity.branch(activation.path, work)
+        self.follow(activation, task)
         self.begun.append(activation.path)
-
-    def _follow(self, activation: Activation, task: asyncio.Task[Left]) -> None:
-        activation.task = task
-        self._running.add(activation)
-        task.add_done_callback(partial(self._end, activation))
+        return task
 
     def _end(self, activation: Activation, _: asyncio.Task[Left]) -> None:
         if activation in self._running and activation is not self._probed:
@@ -242,7 +221,7 @@ class Leaves:
             self._wake()
 
     def _take_halted(self) -> list[Activation]:
-        halted, self._halted = sorted(self._halted, key=lambda each: each.rank), []
+        halted, self.halted = sorted(self.halted, key=lambda each: each.rank), []
         return halted
 
     async def _answer(self, task: asyncio.Task[Left], timeout_s: float) -> float:

@@ -71,6 +71,11 @@ class Part:
         guard = self.source.guard
         return (guard is not None and guard.to == "skipped") or any(child.skips for child in self.children)
 
+    @cached_property
+    def holds_foreign(self) -> bool:
+        """Whether it is a py_trees behaviour, or one is inside."""
+        return self.foreign is not None or any(child.holds_foreign for child in self.children)
+
     def walk(self) -> Iterator[Part]:
         """Go through this part and everything below it, in document order."""
         due: list[Part] = [self]

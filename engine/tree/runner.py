@@ -11,7 +11,6 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from engine.cause import cause_of, describe
-from engine.clock import turn
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
 from engine.errors import FlexcellError, StateError
@@ -33,11 +32,10 @@ from engine.tree.place import Place
 from engine.tree.polling import Polling
 from engine.tree.reactive import Reactive
 from engine.tree.restoring import Branches, restore
+from engine.tree.ticker import Ticker
 from engine.userdata import Scope
 
 _FINAL = (Status.SUCCESS, Status.FAILURE)
-_FAIRNESS = 256
-"""Checks in a row that end at once after which everybody else has a turn."""
 _REMEMBERED = 32
 """How many names are kept to name an endless loop."""
 
@@ -66,7 +64,6 @@ class TreeRunner:
     ) -> None:
         self.ticks = 0
         """How often the tree was ticked."""
-        self._checks = 0
         self._path = path
         self._execution = execution
         self._news = asyncio.Event()
@@ -74,10 +71,10 @@ class TreeRunner:
         self._leaves = Leaves(execution, path, self._news.set)
         self._alarms = Alarms(execution, self._news.set)
         self._growth = Growth(execution=execution, leaves=self._leaves, alarms=self._alarms, clear=self._clear)
-        foreign = any(part.foreign is not None for part in root.walk())
+        self._ticker = Ticker(execution, self._leaves, self._growth.turn, self._growth.statuses)
         self._polling = Polling(path, execution, lambda: (*self._alarms.timers, *self._reactive.timers))
         self._reactive = Reactive(path, execution, growth=self._growth, polling=self._polling, wake=self._news.set)
-        self._blackboard: AbstractContextManager[None] = OwnBlackboard() if foreign else nullcontext()
+        self._blackboard: AbstractContextManager[None] = OwnBlackboard() if root.holds_foreign else nullcontext()
         self._watched = frozenset[str]()
         self._written: set[str] = set()
         self._planned = root
@@ -167,14 +164,7 @@ class TreeRunner:
         self._news.clear()
         for guard in self._growth.guards:
             guard.said = None
-        execution, at_turn, note = self._execution, self._growth.turn, self._growth.statuses.note
-        for step in self._steps(root):
-            if execution.steps > MAX_STEPS:
-                await execution.give_way()
-            if step is at_turn:
-                await self._take_turn()
-            else:
-                note(step)
+        await self._ticker.tick(self._steps(root))
         self._leaves.forget(seen)
         await self._leaves.begin()
         self._alarms.begin()
@@ -205,18 +195,6 @@ class TreeRunner:
             if step is None:
                 return
             yield step
-
-    async def _take_turn(self) -> None:
-        check, self._growth.turn.check = self._growth.turn.check, None
-        if self._leaves.halting:
-            await self._leaves.confirm()
-        if check is None:
-            return
-        self._checks += 1
-        if self._checks % _FAIRNESS == 0:
-            await turn()
-        if not self._leaves.ends_at_once(check):
-            await self._leaves.settled(check)
 
     def _raise_error(self, ended: frozenset[Activation]) -> None:
         """Raise the first error, in document order, that no decorator takes: it ends the tree at once."""

@@ -22,17 +22,18 @@ class Skips:
 
     def __init__(self) -> None:
         self._passing: dict[Behaviour, Status] = {}
-        self._skipped: set[Behaviour] = set()
+        self.skipped: set[Behaviour] = set()
+        """Those that were skipped when they were last due."""
         self._passed: dict[Behaviour, set[Behaviour]] = {}
         """The children that each composite has passed over in its present activation."""
 
     def __contains__(self, part: object) -> bool:
         """Tell whether a part is skipped."""
-        return part in self._skipped and isinstance(part, Behaviour) and part.status is self._passing[part]
+        return part in self.skipped and isinstance(part, Behaviour) and part.status is self._passing[part]
 
     def __bool__(self) -> bool:
         """Tell whether anything has been skipped."""
-        return bool(self._skipped)
+        return bool(self.skipped)
 
     def place(self, part: Behaviour, passing: Status) -> None:
         """Let a part have this status when it is skipped: the part around it passes over that."""
@@ -40,7 +41,7 @@ class Skips:
 
     def skip(self, part: Behaviour) -> Status:
         """Mark a part as skipped; return the status that it is to have."""
-        self._skipped.add(part)
+        self.skipped.add(part)
         return self.passing(part)
 
     def passing(self, part: Behaviour) -> Status:
@@ -49,7 +50,13 @@ class Skips:
 
     def run(self, part: Behaviour) -> None:
         """Mark a part as one that was run."""
-        self._skipped.discard(part)
+        self.skipped.discard(part)
+
+    def forget_all(self) -> None:
+        """Forget all parts; the tree has ended."""
+        self._passing.clear()
+        self.skipped.clear()
+        self._passed.clear()
 
     def follow(self, part: Behaviour) -> None:
         """Have a composite be skipped when all its children are, and a decorator when its child is."""
@@ -103,7 +110,7 @@ class Skips:
 
         def terminate(new_status: Status) -> None:
             # Nothing has ended that was to be remembered, or to cool down.
-            if not (part in self._skipped and isinstance(part, decorators.OneShot | Cooldown)):
+            if not (part in self.skipped and isinstance(part, decorators.OneShot | Cooldown)):
                 own_terminate(new_status)
 
         vars(part)["update"] = update

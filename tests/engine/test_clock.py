@@ -7,10 +7,12 @@ import contextlib
 import math
 import threading
 import time
+from collections.abc import Callable, Coroutine
+from typing import Any
 
 import pytest
 
-from engine.clock import NothingCanWake, VirtualLoop, new_clock, run_virtual
+from engine.clock import NothingCanWake, OneTurn, VirtualLoop, new_clock, run_virtual
 
 
 def test_an_hour_of_sleeps_takes_no_time() -> None:
@@ -174,3 +176,41 @@ def test_what_ignores_its_end_does_not_hold_up_the_loop(caplog: pytest.LogCaptur
 
     assert run_virtual(main()) == 5
     assert "closed over deaf one, which does not end when it is cancelled" in caplog.text
+
+
+async def _awaited_turn() -> None:
+    await OneTurn()
+
+
+@pytest.mark.parametrize("work", [OneTurn, _awaited_turn, lambda: asyncio.sleep(0)])
+def test_a_turn_goes_round_once_as_a_sleep_of_no_time_does(work: Callable[[], Coroutine[Any, Any, None]]) -> None:
+    """Awaited, and as the work of a task."""
+
+    async def main() -> list[str]:
+        order: list[str] = []
+        task = asyncio.create_task(work())
+        task.add_done_callback(lambda _: order.append("task"))
+        for number in range(4):
+            asyncio.get_running_loop().call_soon(order.append, f"before {number}")
+            await work()
+            order.append(f"after {number}")
+        return order
+
+    assert run_virtual(main()) == [
+        "before 0", "after 0", "before 1", "after 1", "task", "before 2", "after 2", "before 3", "after 3",
+    ]  # fmt: skip
+
+
+def test_a_task_that_takes_a_turn_can_be_cancelled() -> None:
+    async def main() -> bool:
+        task = asyncio.create_task(OneTurn())
+        await asyncio.sleep(0)
+        task.cancel()
+        await asyncio.wait({task})
+        return task.cancelled()
+
+    assert run_virtual(main())
+
+
+def test_a_turn_that_nobody_takes_is_closed_without_a_word() -> None:
+    OneTurn().close()

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 from collections.abc import Callable
 from typing import Any, ClassVar
 
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Event
+from engine.errors import StateError
+from engine.event import Entered, Event
 from engine.plan import Plan, new_plan
 from engine.run import Run
 from engine.state import Context, Outcome, State
+from engine.tree.leaf import TreeLeaf
 from tests.engine.tree.run_tree import HEAD
 
 _DONE: list[str] = []
@@ -58,6 +61,17 @@ class EndTask(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
+class Fail(State, frozen=True, kw_only=True):
+    """Raise an error."""
+
+    state_name: ClassVar[str] = "test.Fail"
+    outcomes: ClassVar[tuple[str, ...]] = ("done",)
+
+    async def run(self, ctx: Context) -> Outcome:
+        _DONE.append(ctx.path.rpartition("/")[2])
+        raise StateError("broken", where=ctx.path)
+
+
 class Move(State, frozen=True, kw_only=True):
     """Command a device for a second: no check."""
 
@@ -72,7 +86,7 @@ class Move(State, frozen=True, kw_only=True):
         return Outcome("done")
 
 
-_CATALOGUE: dict[str, type[State]] = {each.state_name: each for each in (Note, Limited, EndTask, Move)}
+_CATALOGUE: dict[str, type[State]] = {each.state_name: each for each in (Note, Limited, EndTask, Fail, Move)}
 
 
 def _plan(kind: str, *states: str) -> Plan:
@@ -122,6 +136,45 @@ def test_among_many_everybody_else_has_a_turn() -> None:
 
     assert _run(_plan("sequence", *["Note"] * count), begin) == "stopped"
     assert 0 < len(_DONE) < count
+
+
+def test_each_of_many_runs_once_though_others_have_turns_in_between() -> None:
+    assert _run(_plan("sequence", *["Note"] * 1000)) == "success"
+    assert [f"c{index}" for index in range(1000)] == _DONE
+
+
+def test_each_has_a_task_in_which_an_operator_finds_it() -> None:
+    found: list[tuple[str, str]] = []
+
+    def begin(run: Run) -> None:
+        def look(event: Event) -> None:
+            task = asyncio.current_task()
+            if isinstance(event, Entered) and event.path.startswith("root/") and task is not None:
+                found.append((event.path, task.get_name()))
+
+        run.watch(look)
+
+    _run(_plan("sequence", "Note", "Note", "Limited"), begin)
+    assert found == [(path, path) for path in ("root/sequence/c0", "root/sequence/c1", "root/sequence/c2")]
+
+
+def test_what_one_raises_is_caught_where_it_stands_and_is_tried_again() -> None:
+    leaves = "{name: c0, state: test.Note}, {name: c1, state: test.Fail}"
+    text = f"{HEAD}root: {{tree: {{retry: {{times: 1, child: {{sequence: [{leaves}]}}}}}}}}\n"
+    assert _run(new_plan(parse_behavior(text, file="t.yaml"), _CATALOGUE)) == "errored"
+    assert _DONE == ["c0", "c1", "c0", "c1"]
+
+
+def test_nothing_of_a_tree_that_has_ended_waits_for_the_collector() -> None:
+    plan = _plan("sequence", *["Note"] * 10)
+    _run(plan)
+    gc.collect()
+    gc.disable()
+    try:
+        _run(plan)
+        assert not [each for each in gc.get_objects() if isinstance(each, TreeLeaf)]
+    finally:
+        gc.enable()
 
 
 def test_one_that_has_its_task_end_ends_no_other() -> None:
