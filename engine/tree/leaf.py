@@ -105,6 +105,8 @@ class TreeLeaf(Behaviour):
         else:
             self._activation = None
             self._end(left)
+            if activation.passed:
+                self._statuses.read(self, self.plan.node.path)
             self._statuses.end(self)
         yield self
 
@@ -129,6 +131,14 @@ class TreeLeaf(Behaviour):
         """Be at work again, without a tick, in place of an activation that was cut."""
         self._activation = Activation(self.plan, self._place, self._rank, self._caught)
         self._leaves.ask(self._activation)
+        self.status = Status.RUNNING
+
+    def keep(self, left: Left, *, passed: bool) -> None:
+        """Have ended so in an activation that was cut, and wait for a tick to read it; `passed` if one has not come."""
+        self._activation = Activation(
+            self.plan, self._place, self._rank, self._caught, left_at_once=left, passed=passed
+        )
+        self._leaves.keep(self._activation)
         self.status = Status.RUNNING
 
     def restore(self, left: Left) -> None:

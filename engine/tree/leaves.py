@@ -9,7 +9,7 @@ at once; what was halted before it in the tick has confirmed by then.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import msgspec
@@ -36,6 +36,7 @@ class Activation(msgspec.Struct, eq=False):
         caught: Whether a decorator around it takes its errors.
         task: What it is carried by; None before it begins, and where it has ended at once.
         left_at_once: How it ended then.
+        passed: Whether a tick has not come to it since it has ended.
     """
 
     plan: LeafPlan
@@ -44,6 +45,7 @@ class Activation(msgspec.Struct, eq=False):
     caught: bool
     task: asyncio.Task[Left] | None = None
     left_at_once: Left | None = None
+    passed: bool = False
 
     @property
     def path(self) -> str:
@@ -142,9 +144,18 @@ class Leaves:
         if not activation.ended or (activation.error is not None and not activation.caught):
             self._halted.append(activation)
 
-    def forget(self, seen: Iterable[Activation]) -> None:
-        """Do not wake for these any more: a tick has followed."""
-        self._unread.difference_update(seen)
+    def keep(self, activation: Activation) -> None:
+        """Have one that has ended in an activation of the tree that was cut wake the tree, unless that was ticked."""
+        if not activation.passed:
+            self._unread.add(activation)
+
+    def forget(self, seen: frozenset[Activation]) -> Sequence[Activation]:
+        """Do not wake for these any more: a tick has followed. Return those to which it has not come, by rank."""
+        passed = sorted(self._unread & seen, key=lambda each: each.rank) if self._unread else ()
+        self._unread -= seen
+        for each in passed:
+            each.passed = True
+        return passed
 
     async def confirm(self) -> None:
         """Stop what was halted, in document order, and return when all clean-up is done.

@@ -175,7 +175,8 @@ class TreeRunner:
                 await self._take_turn()
             else:
                 note(step)
-        self._leaves.forget(seen)
+        for passed in self._leaves.forget(seen):
+            self._growth.statuses.pass_over(passed.path)
         await self._leaves.begin()
         self._alarms.begin()
         self._recent += (*self._leaves.begun, *self._alarms.again)
