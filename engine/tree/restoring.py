@@ -6,7 +6,7 @@ was left of them; a py_trees behaviour that was RUNNING begins anew, as nobody k
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -139,8 +139,7 @@ class _Restoring:
         if isinstance(node, CountingParallel):
             return ended if node.verdict is not Status.RUNNING else []
         if isinstance(node, composites.Parallel):
-            failed = any(child.status is Status.FAILURE for child in ended)
-            return ended if failed or isinstance(node.policy, ParallelPolicy.SuccessOnOne) else []
+            return ended if _decided(node, ended) else []
         if isinstance(node, IfThenElse):
             return self._unread_choice(node, standing)
         if isinstance(node, composites.Composite):
@@ -258,6 +257,15 @@ class _Restoring:
                 pass
         path = self.growth.parts[node].path
         return self.growth.alarms.pending(path)
+
+
+def _decided(node: composites.Parallel, ended: Sequence[Behaviour]) -> bool:
+    """Tell whether a parallel would end with a tick that reads these."""
+    policy = node.policy
+    if isinstance(policy, ParallelPolicy.SuccessOnOne) or any(child.status is Status.FAILURE for child in ended):
+        return True
+    asked = policy.children if isinstance(policy, ParallelPolicy.SuccessOnSelected) else node.children
+    return all(child.status is Status.SUCCESS for child in asked)
 
 
 def _echo(node: Behaviour) -> None:

@@ -102,6 +102,16 @@ TREES = {
           while: {state: test.Check, name: clear, with: {script: [[0, true], [1, true]]}}
           do: {sequence: {memory: false, children: [{state: test.Act, name: a, with: {script: [[0.5, true]]}}]}}
     """,
+    "such an end in a parallel that runs again what has ended": """
+        while_do_else:
+          while: {inverter: {child: {state: test.Check, name: clear, with: {script: [[0, false], [1, false]]}}}}
+          do:
+            parallel:
+              policy: all
+              synchronise: false
+              children:
+                - {state: test.Act, name: a, with: {script: [[0.5, true]]}}
+    """,
     "such an end below two conditions with parts": """
         while_do_else:
           while: {repeat: {times: 2, child: {state: test.Check, name: clear, with: {script: [[0, true], [0.5, true]]}}}}
