@@ -219,8 +219,10 @@ class LiveRun:
         return {event.path: msgspec.structs.replace(self.nodes.get(event.path, NodeLive()), plan=line)}
 
     def _status_changed(self, event: StatusChanged) -> NodeLive:
-        """A composite or decorator of a behavior tree has no visits of its own."""
+        """A composite or decorator of a behavior tree has no visits of its own; how a leaf has ended is known."""
         node = self.nodes.get(event.path, NodeLive())
+        if (node.outcome or node.cause) and event.status != "invalid":
+            return node
         status = {"running": "active", "success": "done", "failure": "failed"}.get(event.status, "idle")
         started = status == "active" and node.status != "active"
         return msgspec.structs.replace(

@@ -167,7 +167,11 @@ class Diverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=T
 
 
 class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
-    """A composite or decorator of a behavior tree has another status: success, failure, running, skipped or invalid."""
+    """A composite or decorator of a behavior tree has another status: success, failure, running, skipped or invalid.
+
+    A leaf is invalid when it is halted, or its end counts no more; running when it has ended and a tick has not come to
+    it, as the condition of a `while_do_else` around it is running. When one comes to it at last, its status is told.
+    """
 
     path: str
     status: str

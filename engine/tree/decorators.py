@@ -50,9 +50,9 @@ class Timeout(Decorator):
         """Count no longer."""
         self._alarms.drop(self.name)
 
-    def restore(self, standing: Standing, elapsed_s: float) -> None:
-        """Go on counting."""
-        if standing.status == "running":
+    def restore(self, standing: Standing, elapsed_s: float, *, reached: bool) -> None:
+        """Go on counting; when time was up and no tick comes here, one has followed that all the same."""
+        if standing.status == "running" and (reached or elapsed_s <= self._after_s):
             self._alarms.set(self.name, max(0.0, self._after_s - elapsed_s))
 
 

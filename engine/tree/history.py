@@ -11,6 +11,9 @@ from dataclasses import dataclass, field
 
 from engine.tree_mark import Mark
 
+_OVER = ("success", "failure", "skipped", "invalid")
+_STATUSES = ("running", "success", "failure", "skipped")
+
 
 @dataclass
 class Standing:
@@ -26,6 +29,10 @@ class Standing:
     """Which was the last one by which it was skipped."""
     over: int = -1
     """Which was the last one by which it was not RUNNING: what is older belongs to an earlier activation."""
+    opened: int = -1
+    """Which was the one by which it became RUNNING last."""
+    passed: int = -1
+    """For a leaf that has ended: the one by which a tick had not come to it; -1 where none tells so, or it was read."""
     ended_s: float | None = None
     """When it was last RUNNING no more; None where it never was."""
     final: str | None = None
@@ -63,23 +70,33 @@ def standings(marks: Iterable[Mark]) -> dict[str, Standing]:
             when = mark.what.partition(" ")[2]
             standing.assigned[when] = standing.assigned.get(when, 0) + 1
             continue
+        if standing.status == "ended" and mark.what in _STATUSES:
+            standing.passed = number if mark.what == "running" else -1
+            _read(unread)
+            continue
         standing.assigned.clear()
-        standing.order = number
-        standing.over = number if mark.what in ("success", "failure", "skipped", "invalid") else standing.over
+        standing.order, standing.passed = number, -1
         what, _, name = mark.what.partition(" ")
+        ended = what in ("outcome", "target", "failed")
+        standing.over = number if ended or mark.what in _OVER else standing.over
         standing.began = number if what in ("entered", "running", "attempt") else standing.began
         standing.skipped = number if mark.what in ("skipped", "target skipped") else standing.skipped
-        ended = what in ("outcome", "target", "failed")
         own_retry = what == "attempt" and any(other is standing for other in unread)
         if not ended and not own_retry:
-            for other in unread:
-                other.read = True
-            unread.clear()
+            _read(unread)
         if ended:
             standing.read = False
             unread.append(standing)
+        was_running = standing.status == "running"
         _fold(standing, what, name, mark.at_s)
+        standing.opened = number if standing.status == "running" and not was_running else standing.opened
     return found
+
+
+def _read(unread: list[Standing]) -> None:
+    for standing in unread:
+        standing.read = True
+    unread.clear()
 
 
 def _fold(standing: Standing, what: str, name: str, at_s: float) -> None:

@@ -98,15 +98,18 @@ class TreeLeaf(Behaviour):
                 yield turn
             else:
                 self._leaves.ask(self._activate())
-        left = turn.left
+        left, passed = turn.left, False
         if left is not None:
             turn.left = None
         else:
+            passed = self._activation is not None and self._activation.passed
             left = self._read()
         if left is None:
             self.status = _RUNNING
         else:
             self._end(left)
+            if passed:
+                self._statuses.read(self, self.plan.node.path)
             self._statuses.end(self)
         yield self
 
@@ -136,6 +139,12 @@ class TreeLeaf(Behaviour):
     def go_on(self) -> None:
         """Be at work again, without a tick, in place of an activation that was cut."""
         self._leaves.ask(self._activate())
+        self.status = _RUNNING
+
+    def keep(self, left: Left, *, passed: bool) -> None:
+        """Have ended so in an activation that was cut, and wait for a tick to read it; `passed` if one has not come."""
+        self._activation = Activation(self.plan, self.place, self._rank, self._caught, restored=left, passed=passed)
+        self._leaves.keep(self._activation)
         self.status = _RUNNING
 
     def restore(self, left: Left) -> None:

@@ -9,7 +9,7 @@ at once; what was halted before it in the tick has confirmed by then.
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import msgspec
@@ -35,6 +35,8 @@ class Activation(msgspec.Struct, eq=False):
         rank: Its place in the document.
         caught: Whether a decorator around it takes its errors.
         task: What it is carried by; None before it begins.
+        restored: How it had ended, unread, in an activation of the tree that was cut.
+        passed: Whether a tick has not come to it since it has ended.
     """
 
     plan: LeafPlan
@@ -42,6 +44,8 @@ class Activation(msgspec.Struct, eq=False):
     rank: int
     caught: bool
     task: asyncio.Task[Left] | None = None
+    restored: Left | None = None
+    passed: bool = False
 
     @property
     def path(self) -> str:
@@ -55,17 +59,17 @@ class Activation(msgspec.Struct, eq=False):
         Raises:
             FlexcellError: it ended with this error.
         """
-        return self.task.result() if self.task is not None and self.task.done() else None
+        return self.task.result() if self.task is not None and self.task.done() else self.restored
 
     @property
     def begun(self) -> bool:
         """Whether it was entered, or is about to be."""
-        return self.task is not None
+        return self.task is not None or self.restored is not None
 
     @property
     def ended(self) -> bool:
         """Whether it has ended, be it with an error."""
-        return self.task is not None and self.task.done()
+        return self.restored is not None or (self.task is not None and self.task.done())
 
     @property
     def error(self) -> BaseException | None:
@@ -132,9 +136,18 @@ class Leaves:
         if not activation.ended or (activation.error is not None and not activation.caught):
             self.halted.append(activation)
 
-    def forget(self, seen: Iterable[Activation]) -> None:
-        """Do not wake for these any more: a tick has followed."""
-        self._unread.difference_update(seen)
+    def keep(self, activation: Activation) -> None:
+        """Have one that has ended in an activation of the tree that was cut wake the tree, unless that was ticked."""
+        if not activation.passed:
+            self._unread.add(activation)
+
+    def forget(self, seen: frozenset[Activation]) -> Sequence[Activation]:
+        """Do not wake for these any more: a tick has followed. Return those to which it has not come, by rank."""
+        passed = sorted(self._unread & seen, key=lambda each: each.rank) if self._unread else ()
+        self._unread -= seen
+        for each in passed:
+            each.passed = True
+        return passed
 
     async def confirm(self) -> None:
         """Stop what was halted, in document order, and return when all clean-up is done.

@@ -6,8 +6,9 @@ was left of them; a py_trees behaviour that was RUNNING begins anew, as nobody k
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
@@ -57,8 +58,15 @@ class _Restoring:
     branches: Branches
     now_s: float
     tick_due: bool = False
+    unreached: int | None = None
+    """The mark since which no tick comes to the part at hand, as the condition of a `while_do_else` is RUNNING."""
     echoed: set[Behaviour] = field(default_factory=set[Behaviour])
     going_on: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
+
+    @cached_property
+    def newest(self) -> int:
+        """The last of all marks."""
+        return max((max(each.order, each.passed) for each in self.known.values()), default=-1)
 
     def part(self, node: Behaviour) -> bool:
         """Restore a part and everything below it; tell whether anything there will wake the tree."""
@@ -86,8 +94,6 @@ class _Restoring:
         awake = any(wakes)
         if isinstance(node, Decorator):
             awake = self._decorator(node, standing) or awake
-        if isinstance(node, WhileDoElse) and running and node.condition.status is Status.RUNNING:
-            self._keep_ends(node)
         if running:
             skips.restore(node, (child for child in node.children if self._was_skipped(child, standing)))
             unread = self._unread(node, standing)
@@ -100,17 +106,32 @@ class _Restoring:
         return awake
 
     def _inside(self, node: Behaviour, child: Behaviour) -> bool:
-        """Restore a child; what ended in a branch before the condition was asked is read with that, without a tick."""
-        due = self.tick_due
+        """Restore a child; a branch of a `while_do_else` whose condition is RUNNING gives no reason to tick."""
+        if not (isinstance(node, WhileDoElse) and child in node.branches and node.condition.status is Status.RUNNING):
+            return self.part(child)
+        around, due, since = self.unreached, self.tick_due, self._passed_since(node.condition, child)
+        self.unreached = since if around is None else min(around, since)
         wakes = self.part(child)
-        if isinstance(node, WhileDoElse) and child in node.branches and node.condition.status is Status.RUNNING:
-            asked_since = max(self._order(child), self._last(child)) < self._asked(node)
-            self.tick_due = due if asked_since else self.tick_due
+        self.unreached, self.tick_due = around, due
         return wakes
 
-    def _asked(self, node: WhileDoElse) -> int:
-        """Return which of the marks was the last one of its condition, and of what is in that."""
-        return max(self._order(node.condition), self._last(node.condition))
+    def _passed_since(self, condition: Behaviour, branch: Behaviour) -> int:
+        """Return the mark since which no tick has come to a branch, by when its condition became RUNNING."""
+        standing, last = self._standing(condition), max(self._order(condition), self._last(condition))
+        if last == self.newest:
+            # The tick that asked it may have been under way, and not have come to tell what it passed over.
+            return max(standing.over, *map(self._ticked, branch.iterate()))
+        return standing.opened if standing.status == "running" else last
+
+    def _ticked(self, node: Behaviour) -> int:
+        """Return the last mark by which a tick had come to a part; leaves that command begin when it is over."""
+        standing = self._standing(node)
+        if not isinstance(node, TreeLeaf):
+            return standing.order
+        if not node.plan.check:
+            return -1
+        # One whose guard was closed was not entered.
+        return standing.order if standing.target is not None else standing.began
 
     def _unread(self, node: Behaviour, standing: Standing) -> list[Behaviour]:
         """Return the children whose end a RUNNING part had not come to read."""
@@ -118,8 +139,7 @@ class _Restoring:
         if isinstance(node, CountingParallel):
             return ended if node.verdict is not Status.RUNNING else []
         if isinstance(node, composites.Parallel):
-            failed = any(child.status is Status.FAILURE for child in ended)
-            return ended if failed or isinstance(node.policy, ParallelPolicy.SuccessOnOne) else []
+            return ended if _decided(node, ended) else []
         if isinstance(node, IfThenElse):
             return self._unread_choice(node, standing)
         if isinstance(node, composites.Composite):
@@ -144,25 +164,13 @@ class _Restoring:
         ended = [branch for branch in node.branches if branch.status in _FINAL]
         unread = [branch for branch in ended if self._order(branch) > standing.over]
         if node.condition.status not in _FINAL or self._order(node.condition) < standing.over:
-            if not isinstance(node, WhileDoElse):
-                return []
-            # For what ended before, a tick would ask the condition once more.
-            return [branch for branch in unread if self._order(branch) > self._asked(node)]
+            return []
         asked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
         at_work = [branch for branch in node.branches if branch.status is Status.RUNNING]
         if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or asked_last)):
             # A tick was cut in which the condition had been asked, and nothing had come of it.
             return [] if at_work == [node.chosen] else [node.condition, *unread]
         return unread
-
-    def _keep_ends(self, node: WhileDoElse) -> None:
-        """Let ends below a branch be read later: no tick has come there since the condition was asked."""
-        for branch in node.branches:
-            inside = tuple(branch.iterate())
-            began = max(self._standing(each).began for each in inside)
-            for leaf in inside:
-                if isinstance(leaf, TreeLeaf) and leaf.status in _FINAL and self._order(leaf) > began:
-                    self._echo(leaf)
 
     def _current(self, node: composites.Composite, standing: Standing) -> Behaviour:
         """Return the child at which a composite with memory goes on."""
@@ -208,8 +216,20 @@ class _Restoring:
             return True
         execution.points.pop(path, None)
         if standing.status == "ended" and (standing.outcome is not None or standing.target is not None):
-            leaf.restore(Left(standing.outcome or "", standing.target))
+            left = Left(standing.outcome or "", standing.target)
+            if self._is_unread(standing):
+                leaf.keep(left, passed=standing.passed >= 0)
+                return True
+            leaf.restore(left)
         return False
+
+    def _is_unread(self, ended: Standing) -> bool:
+        """Tell whether no tick has come to a leaf since it has ended."""
+        if self.unreached is None:
+            # A tick was under way that was about to come there.
+            self.tick_due = self.tick_due or ended.passed >= 0
+            return ended.passed >= 0
+        return ended.passed >= 0 or ended.order > self.unreached
 
     def _echo(self, node: Behaviour) -> None:
         """Have a part that has ended tell its status once more in the next tick, without doing anything."""
@@ -221,7 +241,9 @@ class _Restoring:
         """Restore what a decorator keeps; tell whether it has set a timer."""
         elapsed_s = self.now_s - standing.since_s
         match node:
-            case Timeout() | Retry() | Remap() | Condition():
+            case Timeout():
+                node.restore(standing, elapsed_s, reached=self.unreached is None)
+            case Retry() | Remap() | Condition():
                 node.restore(standing, elapsed_s)
             case Cooldown():
                 ended_s = standing.since_s if standing.first is not None else 0.0
@@ -235,6 +257,15 @@ class _Restoring:
                 pass
         path = self.growth.parts[node].path
         return self.growth.alarms.pending(path)
+
+
+def _decided(node: composites.Parallel, ended: Sequence[Behaviour]) -> bool:
+    """Tell whether a parallel would end with a tick that reads these."""
+    policy = node.policy
+    if isinstance(policy, ParallelPolicy.SuccessOnOne) or any(child.status is Status.FAILURE for child in ended):
+        return True
+    asked = policy.children if isinstance(policy, ParallelPolicy.SuccessOnSelected) else node.children
+    return all(child.status is Status.SUCCESS for child in asked)
 
 
 def _echo(node: Behaviour) -> None:

@@ -165,7 +165,8 @@ class TreeRunner:
         for guard in self._growth.guards:
             guard.said = None
         await self._ticker.tick(self._steps(root))
-        self._leaves.forget(seen)
+        for passed in self._leaves.forget(seen):
+            self._growth.statuses.pass_over(passed.path)
         await self._leaves.begin()
         self._alarms.begin()
         self._recent += (*self._leaves.begun, *self._alarms.again)

@@ -1,7 +1,9 @@
 """Records when the status of a composite, decorator or foreign behaviour of one tree has changed.
 
-Leaves tell themselves that they were entered and left; of them only `invalid` is recorded, when they
-are halted or reset. With that the log holds what `engine.tree.history` needs to go on from there.
+Leaves tell themselves that they were entered and left. Of them `invalid` is recorded, when they are halted or reset,
+and `running` when they have ended and the tick that follows does not come to them, below a `while_do_else` whose
+condition is RUNNING; then their status as well, when one comes to them.
+With that the log holds what `engine.tree.history` needs to go on from there.
 """
 
 from __future__ import annotations
@@ -59,6 +61,14 @@ class Statuses:
         """Record that a leaf is halted, or that its end counts no more as what is around it begins anew."""
         if not self.closing:
             self._tell(path, Status.INVALID)
+
+    def pass_over(self, path: str) -> None:
+        """Record that a leaf has ended and is RUNNING for the tree: a tick has followed that did not come to it."""
+        self._tell(path, Status.RUNNING)
+
+    def read(self, leaf: Behaviour, path: str) -> None:
+        """Record how a leaf has ended that was passed over, now that a tick has come to it."""
+        self._tell(path, self._present(leaf))
 
     def note(self, behaviour: Behaviour) -> None:
         """Record the status of one that was just ticked, if it has changed, or has come about anew."""

@@ -180,6 +180,15 @@ def test_parts_of_a_tree_show_their_status() -> None:
     assert (node.status, node.visits, node.duration_s) == ("done", 1, 1.0)
 
 
+def test_a_leaf_that_has_ended_stands_as_it_did_until_the_tree_reads_that() -> None:
+    """A tick that has not come to it is no further visit."""
+    live = folded(entered(1, "root/tree/a"), exited(2, "root/tree/a"))
+    before = live.nodes["root/tree/a"]
+    for seq, status in enumerate(("running", "success"), 3):
+        live.apply(StatusChanged(seq=seq, time_s=float(seq), path="root/tree/a", status=status))
+        assert live.nodes["root/tree/a"] == before
+
+
 def test_what_a_step_back_undoes_is_active_and_then_as_if_it_had_not_been_entered() -> None:
     """Counters go on; the container's arrow into it is dark again; a neighbour stays as it was."""
     live = folded(

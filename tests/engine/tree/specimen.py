@@ -109,4 +109,17 @@ def trees(*, durations: list[float], polling: bool = True) -> st.SearchStrategy[
     )
 
 
+@st.composite
+def conditional_trees(draw: st.DrawFn, *, durations: list[float]) -> Specimen:
+    """Return a random `while_do_else` whose condition has parts of its own; nothing in it is asked periodically."""
+    leaf = _leaf(durations)
+    inner = st.recursive(
+        leaf, lambda inside: _group(inside) | _decorated(inside, False) | _branching(inside), max_leaves=5
+    )
+    condition = _group(inner) | _decorated(inner, False) | _branching(inner)
+    drawn = (draw(condition), *draw(st.lists(inner | condition, min_size=1, max_size=2)))
+    children = tuple(_renamed(child, f"n{index}") for index, child in enumerate(drawn))
+    return Specimen("while_do_else", "while_do_else", None, children)
+
+
 specimens = trees(durations=[0.0, 0.0, 0.5, 1.0, 2.0])

@@ -97,6 +97,31 @@ TREES = {
           while: {state: test.Check, name: clear, with: {script: [[1, true]]}}
           do: {sequence: [{state: test.Act, name: a, with: {script: [[1, true]]}}, {state: test.Act, name: b}]}
     """,
+    "an end that no tick comes to while the condition takes time": """
+        while_do_else:
+          while: {state: test.Check, name: clear, with: {script: [[0, true], [1, true]]}}
+          do: {sequence: {memory: false, children: [{state: test.Act, name: a, with: {script: [[0.5, true]]}}]}}
+    """,
+    "such an end in a parallel that runs again what has ended": """
+        while_do_else:
+          while: {inverter: {child: {state: test.Check, name: clear, with: {script: [[0, false], [1, false]]}}}}
+          do:
+            parallel:
+              policy: all
+              synchronise: false
+              children:
+                - {state: test.Act, name: a, with: {script: [[0.5, true]]}}
+    """,
+    "such an end below two conditions with parts": """
+        while_do_else:
+          while: {repeat: {times: 2, child: {state: test.Check, name: clear, with: {script: [[0, true], [0.5, true]]}}}}
+          do:
+            sequence:
+              - while_do_else:
+                  while: {inverter: {child: {state: test.Check, name: clear, with: {script: [[0, false], [1, false]]}}}}
+                  do: {sequence: {memory: false, children: [{state: test.Act, name: a, with: {script: [[0.5, true]]}}]}}
+              - {state: test.Act, name: c}
+    """,
     "post-conditions": """
         sequence:
           - state: test.Act
