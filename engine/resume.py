@@ -158,12 +158,14 @@ def started_from(history: History, plan: Plan, path: str) -> Checkpoint:
 
 def _beside(moment: Checkpoint, container: str, name: str) -> dict[str, Point]:
     """Return the points of the other branches of a concurrency container."""
+    if container not in moment.points:
+        return {}
     own = f"{container}/{name}"
-    return (
-        {path: point for path, point in moment.points.items() if inside(container, path) and not inside(own, path)}
-        if container in moment.points
-        else {}
-    )
+    return {
+        path: point
+        for path, point in moment.points.items()
+        if inside(container, path) and path != container and not inside(own, path)
+    }
 
 
 def last_entered(events: Iterable[Event], seq: int) -> str:
