@@ -94,6 +94,16 @@ def test_a_child_that_is_preempted_has_no_outcome() -> None:
     assert [label for label in seen(coverage) if label.startswith("root/right")] == ["root/right: entered"]
 
 
+def test_a_condition_that_preempts_some_branches_is_covered_when_it_fires() -> None:
+    """Each time once, and not where the container ended before."""
+    text = CONCURRENCY.replace("- {good: {left: b}}", "- {preempt: [right], when: {left: b}}")
+    fired = "root: condition 2: preempt right ← left: b"
+    coverage = covered(behavior_of(text), {"outcome": "b", "after_s": 1.0})
+    assert [label for label in seen(coverage) if "condition" in label] == [fired, "root: condition otherwise"]
+    assert "root/right: outcome a" not in seen(coverage)
+    assert fired not in seen(covered(behavior_of(text), {"outcome": "a", "after_s": 1.0}))
+
+
 def test_timeout_guard_and_on_error_are_ways_out() -> None:
     """A guard leaves a node without entering it; the root's timeout gives the behavior its outcome."""
     coverage = covered(
