@@ -17,11 +17,15 @@ Point = tuple[float, float]
 
 
 class RuleBody(Wire):
-    """One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`."""
+    """One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`.
+
+    One that preempts some children has no outcome.
+    """
 
     outcome: str
     when: dict[str, str]
     at_least: int | None
+    preempt: tuple[str, ...]
 
 
 class DocumentNodeBody(GraphNodeBody):

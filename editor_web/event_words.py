@@ -11,6 +11,7 @@ from engine.event import (
     Abandoned,
     Answered,
     BehaviorChanged,
+    BranchesPreempted,
     Called,
     Cause,
     Commanded,
@@ -110,6 +111,9 @@ def _words_of_nodes(event: Event, duration_s: float) -> Words | None:
         case Diverted():
             level = "warning" if event.cause is not None else "info"
             return event.path, level, f"left by {event.by} for {event.target}", event.cause
+        case BranchesPreempted():
+            whom = ", ".join(event.branches)
+            return event.path, "info", f"{event.condition}: {whom or 'all of them had ended'}", None
         case Retried():
             return event.path, "warning", f"attempt {event.attempt} after {_seconds(event.wait_s)}", event.cause
         case StatusChanged():

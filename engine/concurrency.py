@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Coroutine, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 from engine.cause import under
 from engine.diagnosis import explain, went_wrong
-from engine.document.condition import Condition
+from engine.document.condition import Condition, deciding, preempting
 from engine.entry import NOTHING, Entry
 from engine.errors import StateError
-from engine.event import Cause
+from engine.event import BranchesPreempted, Cause
 from engine.execution import Execution
 from engine.node import Node, overdue
-from engine.node_exit import ContainerOutcome, Left
-from engine.preemption import preempt, raise_failure
+from engine.node_exit import PREEMPTED, ContainerOutcome, Left
+from engine.point import Point
+from engine.preemption import BackgroundPreemptions, preempt, raise_failure
 from engine.state import Outcome
 from engine.userdata import Scope
 
@@ -41,14 +42,24 @@ class Concurrency:
     def outcomes(self) -> tuple[str, ...]:
         """Those of its conditions, and `otherwise`."""
         otherwise = (self.otherwise,) if self.otherwise is not None else ()
-        return tuple(dict.fromkeys((*(condition.outcome for condition in self.conditions), *otherwise)))
+        return tuple(dict.fromkeys((*(condition.outcome for condition in self.deciding), *otherwise)))
+
+    @cached_property
+    def deciding(self) -> tuple[Condition, ...]:
+        """The conditions that decide the outcome, in order of precedence."""
+        return deciding(self.conditions)
+
+    @cached_property
+    def preempting(self) -> tuple[Condition, ...]:
+        """The conditions that preempt some children while the others go on."""
+        return preempting(self.conditions)
 
     @cached_property
     def nominal(self) -> frozenset[str]:
         """Outcomes of conditions that ask only for nominal outcomes of the children."""
         return frozenset(
             c.outcome
-            for c in self.conditions
+            for c in self.deciding
             if c.asks_only_for(lambda name, due: due in self.children[name].work.nominal)
         )
 
@@ -69,8 +80,7 @@ class Concurrency:
         """Start all children, decide whenever some have finished, preempt and await the others."""
         point = entry.point
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
-        written: Mapping[str, Mapping[str, object]] = point.branches if point is not None else {}
-        branches = _Branches(path, inner, execution, written)
+        branches = _Branches(path, inner, execution, point)
         execution.branching[path] = branches
         branches.start(self)
         try:
@@ -88,7 +98,7 @@ class Concurrency:
             return await self._decide(path, branches, execution)
         finally:
             execution.branching.pop(path, None)
-            await preempt(branches.tasks.values(), overdue(execution, path))
+            await branches.end(branches.tasks)
 
     async def _decide(self, path: str, branches: _Branches, execution: Execution) -> Outcome:
         latest = self
@@ -100,11 +110,12 @@ class Concurrency:
             if branches.are_others(latest):
                 await branches.follow(latest)
             finished = branches.finished(latest)
-            for condition in latest.conditions:
+            for condition in latest.deciding:
                 if condition.holds(has_ended(finished)):
                     return latest.ended(condition, finished)
             if len(finished) == len(branches.tasks):
                 return latest._uncovered(path, finished)
+            branches.preempt_by(latest.preempting)
 
     def ended(self, condition: Condition, finished: Mapping[str, Left]) -> ContainerOutcome:
         """Return its outcome by a condition that holds, with the children that this asked for as the reason."""
@@ -124,7 +135,7 @@ class Concurrency:
         return None
 
     def _uncovered(self, path: str, finished: Mapping[str, Left]) -> Outcome:
-        how = ", ".join(f"{name}: {left.outcome}" for name, left in finished.items())
+        how = ", ".join(f"{name}: {left.outcome or 'preempted'}" for name, left in finished.items())
         if self.otherwise is None:
             raise StateError(
                 f"all children have finished ({how}) and no condition matches",
@@ -140,18 +151,22 @@ class Concurrency:
 class _Branches:
     """The branches of one activation of a concurrency container: their tasks and scopes, and who has ended."""
 
-    def __init__(
-        self, path: str, inner: Scope, execution: Execution, written: Mapping[str, Mapping[str, object]]
-    ) -> None:
+    def __init__(self, path: str, inner: Scope, execution: Execution, point: Point | None) -> None:
         self.tasks: dict[str, asyncio.Task[Left]] = {}
         self.arrival = asyncio.Event()
         self._path = path
         self._inner = inner
         self._execution = execution
-        self._written = written
+        self._before = point if point is not None else Point(visit=0)
         self._scopes: dict[str, Scope] = {}
         self._arrived: list[str] = []
         self._finished: dict[str, Left] = {}
+        self._preempted = {name for names in self._before.preempted.values() for name in names}
+        self._fired = set(self._before.preempted)
+        self._preemptions = BackgroundPreemptions(overdue(execution, path), self.wake)
+        if not execution.goes_on:
+            for said, names in self._before.preempted.items():
+                execution.recorder.emit(BranchesPreempted, path=path, condition=said, branches=names)
 
     def wake(self) -> None:
         """Have the container look again."""
@@ -161,14 +176,19 @@ class _Branches:
         """Start the children that have not been started."""
         fresh = {name: child for name, child in container.children.items() if name not in self.tasks}
         for name in fresh:
-            self._scopes[name] = branch_scope(
-                self._path, name, self._inner, self._written.get(name, {}), shared=container.shared
-            )
+            written = self._before.branches.get(name, {})
+            self._scopes[name] = branch_scope(self._path, name, self._inner, written, shared=container.shared)
         for name, child in fresh.items():
-            work = child.perform(self._scopes[name], self._execution)
-            self.tasks[name] = self._execution.activity.branch(child.path, work)
+            self.tasks[name] = self._execution.activity.branch(child.path, self._work(name, child))
         for name in fresh:
             self.tasks[name].add_done_callback(partial(self._arrive, name))
+        if self._preempted:
+            self.wake()
+
+    def _work(self, name: str, child: Node) -> Coroutine[None, None, Left]:
+        if name in self._preempted and child.path not in self._execution.points:
+            return _ended_before(child.path, self._before.failed_clean_ups.get(name))
+        return child.perform(self._scopes[name], self._execution)
 
     def are_others(self, container: Concurrency) -> bool:
         """Tell whether a hot change has given the container other branches."""
@@ -177,23 +197,67 @@ class _Branches:
     async def follow(self, container: Concurrency) -> None:
         """Preempt the branches that are gone, whose writes are merged, and start those that are new."""
         gone = [name for name in self.tasks if name not in container.children]
-        await preempt([self.tasks[name] for name in gone], overdue(self._execution, self._path))
+        await self.end(gone)
         for name in gone:
             self._execution.suspensions.has_cleaned_up(f"{self._path}/{name}")
             task = self.tasks.pop(name)
             raise_failure((task,))
             self._finished.pop(name, None)
+            self._preempted.discard(name)
             self._scopes.pop(name)
         self.start(container)
 
     def finished(self, container: Concurrency) -> Mapping[str, Left]:
-        """Return how those have ended that have, in the order in which they did."""
+        """Return how those have ended that have, in the order in which they did.
+
+        Raises:
+            NotStopped: one that was preempted was abandoned.
+        """
+        self._preemptions.raise_failure()
         arrived = [name for name in self._arrived if name in self.tasks]
         self._arrived.clear()
         rank = list(container.children).index
         for name in sorted(arrived, key=rank):
-            self._finished[name] = _as_outcome(self.tasks[name].result())
+            self._finished[name] = self._left(name)
         return self._finished
+
+    def _left(self, name: str) -> Left:
+        task = self.tasks[name]
+        # One that was to clean up when the engine died may have ended otherwise, but was preempted all the same.
+        if name in self._preempted and (task.cancelled() or task.exception() is None):
+            return PREEMPTED
+        return _as_outcome(task.result())
+
+    def preempt_by(self, conditions: Iterable[Condition]) -> None:
+        """Preempt, in order, what conditions name that hold for the first time."""
+        so = has_ended(self._finished)
+        for condition in conditions:
+            if condition.said not in self._fired and condition.holds(so):
+                self._fired.add(condition.said)
+                self._record(condition)
+        for name, task in self.tasks.items():
+            if name in self._preempted and not task.done():
+                self._preemptions.begin(task)
+
+    def _record(self, condition: Condition) -> None:
+        over = self._preempted.union(self._finished)
+        names = tuple(name for name in self.tasks if name in condition.preempt and name not in over)
+        self._preempted.update(names)
+        self._execution.recorder.emit(BranchesPreempted, path=self._path, condition=condition.said, branches=names)
+
+    async def end(self, names: Collection[str]) -> None:
+        """Preempt those of some branches that have not ended, and return when they have.
+
+        Raises:
+            NotStopped: some were abandoned.
+            CancelledError: the caller was cancelled meanwhile; they have ended all the same.
+        """
+        tasks = [self.tasks[name] for name in names]
+        try:
+            others = [task for task in tasks if task not in self._preemptions]
+            await preempt(others, overdue(self._execution, self._path))
+        finally:
+            await self._preemptions.finish(tasks)
 
     def merge(self, name: str) -> None:
         """Write what a branch has written where the keys live around it."""
@@ -212,6 +276,13 @@ class _Branches:
 def has_ended(finished: Mapping[str, Left]) -> Callable[[str, str], bool]:
     """Return what a condition asks: whether a child has finished with an outcome."""
     return lambda name, due: name in finished and finished[name].outcome == due
+
+
+async def _ended_before(path: str, failure: Cause | None) -> Left:
+    """End as a branch did that was preempted before the engine died."""
+    if failure is not None:
+        raise StateError(failure.message, where=path)
+    raise asyncio.CancelledError
 
 
 def _as_outcome(left: Left) -> Left:

@@ -166,6 +166,17 @@ class Diverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=T
     cause: Cause | None = None
 
 
+class BranchesPreempted(Event, frozen=True, kw_only=True, tag="branches_preempted"):
+    """A condition of concurrency container `path` holds that preempts some branches, while the others go on.
+
+    `branches` are those of them that had not ended; each counts as ended, without an outcome, when it has cleaned up.
+    """
+
+    path: str
+    condition: str
+    branches: tuple[str, ...]
+
+
 class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
     """A composite or decorator of a behavior tree has another status: success, failure, running, skipped or invalid.
 
@@ -365,6 +376,7 @@ AnyEvent = (
     | UserdataWritten
     | Transitioned
     | Diverted
+    | BranchesPreempted
     | Retried
     | StatusChanged
     | GoalSent

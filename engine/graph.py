@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import msgspec
 
 from engine.document.behavior import Behavior
+from engine.document.condition import deciding
 from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES, Node
 from engine.plan import Catalogue
 
@@ -75,7 +76,7 @@ class _Drawing:
             return target.outcomes if target is not None else tuple(node.transitions)
         if node.concurrency is not None:
             otherwise = (node.concurrency.otherwise,) if node.concurrency.otherwise else ()
-            return tuple(dict.fromkeys((*(rule.outcome for rule in node.concurrency.rules), *otherwise)))
+            return tuple(dict.fromkeys((*(rule.outcome for rule in deciding(node.concurrency.rules)), *otherwise)))
         if node.foreach is not None:
             return FOREACH_OUTCOMES
         if node.sequential is None:
@@ -105,5 +106,5 @@ def _ways_out(child: Node) -> Mapping[str, str]:
 def _rules(node: Node) -> tuple[str, ...]:
     if node.concurrency is None:
         return ()
-    rules = [f"{rule.outcome}: {rule}" for rule in node.concurrency.rules]
+    rules = [f"{rule.consequence}: {rule}" for rule in node.concurrency.rules]
     return (*rules, *([f"{node.concurrency.otherwise}: otherwise"] if node.concurrency.otherwise else []))

@@ -11,13 +11,14 @@ from dataclasses import replace
 from typing import cast
 
 from engine.checkpoint import Checkpoint
-from engine.concurrency import Concurrency, has_ended
+from engine.container_reason import reason_of
 from engine.control.autonomy import AutonomyLevel
-from engine.diagnosis import Diagnosis, explain
+from engine.diagnosis import Diagnosis
 from engine.document.node import FOREACH_OUTCOMES
 from engine.errors import DocumentError
 from engine.event import (
     BehaviorChanged,
+    BranchesPreempted,
     Cause,
     Commanded,
     Diverted,
@@ -45,7 +46,6 @@ from engine.node_standing import LeftNode, OpenNode, as_left
 from engine.plan import Plan
 from engine.point import Point
 from engine.priority import Priority
-from engine.reference import Reference
 from engine.tree_mark import mark_of
 
 BY_OUTCOME = ("operator", "start")
@@ -102,6 +102,8 @@ class History:
                 self._exit(event)
             case Diverted():
                 self._divert(event)
+            case BranchesPreempted():
+                self._preempt(event)
             case Retried():
                 self._retry(event)
             case Transitioned():
@@ -212,6 +214,8 @@ class History:
             reason=node.diagnosis.reason,
             values=dict(self._scopes.get(scope, {})),
             branches=branches,
+            preempted=dict(node.preempted),
+            failed_clean_ups=dict(node.failed_clean_ups),
             round=node.round,
             done=tuple(node.done),
         )
@@ -282,9 +286,11 @@ class History:
         self._commit_writes(path)
         node = self._open.pop(path, None)
         outcome = event.outcome or None
-        reason = self._reason(path, node, outcome)
+        reason = reason_of(self._work(path), path, outcome, node, self._left)
         self._forget_inside(path)
         if event.preempted:
+            if (container := self._open.get(path.rpartition("/")[0])) is not None:
+                container.take_clean_up(event)
             return
         self._left[path] = LeftNode(
             event.visit,
@@ -296,21 +302,15 @@ class History:
             since_s=node.since_s if node is not None else event.time_s,
         )
 
-    def _reason(self, path: str, node: OpenNode | None, outcome: str | None) -> Cause | None:
-        """Return how a container came to its outcome, as `engine.node.ContainerOutcome` has it; no event tells it."""
-        work = self._work(path)
-        if work is None or outcome is None:
-            return None
-        if isinstance(work, Concurrency):
-            ended = {name: as_left(left) for name in work.children if (left := self._left.get(f"{path}/{name}"))}
-            holding = next(
-                (each for each in work.conditions if each.outcome == outcome and each.holds(has_ended(ended))), None
-            )
-            return work.ended(holding, ended).reason if holding is not None else None
-        if isinstance(work, Reference):
-            root = self._left.get(f"{path}/root")
-            return explain(work.target.root, as_left(root)) if root is not None else None
-        return node.diagnosis.reason if node is not None else None
+    def _preempt(self, event: BranchesPreempted) -> None:
+        """Know which branches are to end; one that stood between two attempts, or at the gate, has ended with that."""
+        container = self._open.get(event.path)
+        if container is None:
+            return
+        container.preempted[event.condition] = event.branches
+        for path in (f"{event.path}/{name}" for name in event.branches):
+            if (node := self._open.get(path)) is None or not node.entered:
+                self._drop(path)
 
     def _divert(self, event: Diverted) -> None:
         path = event.path
@@ -348,6 +348,9 @@ class History:
         for path in event.removed:
             # What it had written was merged just before.
             self._scopes.pop(f"{path}*", None)
+            above, _, name = path.rpartition("/")
+            if (container := self._open.get(above)) is not None:
+                container.forget_branch(name)
         for path in (*event.restarted, *event.removed):
             self._drop(path)
 

@@ -22,6 +22,10 @@ class Left(msgspec.Struct, frozen=True):
     back: bool = False
 
 
+PREEMPTED = Left("")
+"""How a branch has ended that a condition of its container has preempted."""
+
+
 class ContainerOutcome(Outcome, frozen=True):
     """The outcome of a container; `reason` is how it came to it, for an outcome that has no cause."""
 

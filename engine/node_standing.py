@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from engine.diagnosis import Diagnosis
-from engine.event import Cause
+from engine.event import Cause, Exited
 from engine.node_exit import Left
 from engine.tree_mark import Mark
 
@@ -22,8 +22,25 @@ class OpenNode:
     entered: bool = True
     current: str | None = None
     diagnosis: Diagnosis = field(default_factory=Diagnosis)
+    preempted: dict[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    failed_clean_ups: dict[str, Cause] = field(default_factory=dict[str, Cause])
     round: int = 0
     done: list[Mark] = field(default_factory=list[Mark])
+
+    def has_preempted(self, name: str) -> bool:
+        """Tell whether a condition has preempted this branch of it."""
+        return any(name in branches for branches in self.preempted.values())
+
+    def take_clean_up(self, event: Exited) -> None:
+        """Know why the clean-up of a branch failed that a condition has preempted."""
+        name = event.path.rpartition("/")[2]
+        if event.cause is not None and not event.outcome and self.has_preempted(name):
+            self.failed_clean_ups[name] = event.cause
+
+    def forget_branch(self, name: str) -> None:
+        """Know no more that a condition has preempted this branch."""
+        self.preempted = without_branch(self.preempted, name)
+        self.failed_clean_ups.pop(name, None)
 
 
 @dataclass(frozen=True)
@@ -38,6 +55,11 @@ class LeftNode:
     passed: bool = False
     attempt: int = 1
     since_s: float = 0.0
+
+
+def without_branch(preempted: Mapping[str, tuple[str, ...]], name: str) -> dict[str, tuple[str, ...]]:
+    """Return what conditions have preempted, without one branch."""
+    return {said: tuple(each for each in branches if each != name) for said, branches in preempted.items()}
 
 
 def as_left(left: LeftNode) -> Left:

@@ -41,6 +41,10 @@ class Point:
     """The userdata of a container's own scope."""
     branches: Mapping[str, Mapping[str, object]] = field(default_factory=dict[str, Mapping[str, object]])
     """What the children of a concurrency container had written into scopes of their own."""
+    preempted: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """The children of a concurrency container that its conditions have preempted, by the condition in words."""
+    failed_clean_ups: Mapping[str, Cause] = field(default_factory=dict[str, Cause])
+    """Why the clean-up of some of them had failed."""
     round: int = 0
     """The round that a foreach container is in, from 0."""
     done: tuple[tuple[str, str, float], ...] = ()

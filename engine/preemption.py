@@ -137,6 +137,59 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
         raise cancelled
 
 
+class BackgroundPreemptions:
+    """Preemptions that others go on beside, each bounded and told of as `preempt` does it.
+
+    Args:
+        overdue: What becomes of tasks that take their time.
+        on_failure: Called when a task was abandoned; `raise_failure` raises what it is about.
+    """
+
+    def __init__(self, overdue: Overdue, on_failure: Callable[[], None]) -> None:
+        self._overdue = overdue
+        self._on_failure = on_failure
+        self._waits: dict[asyncio.Task[Any], asyncio.Task[None]] = {}
+
+    def __contains__(self, task: asyncio.Task[Any]) -> bool:
+        """Tell whether a task is preempted by this."""
+        return task in self._waits
+
+    def begin(self, task: asyncio.Task[Any]) -> None:
+        """Ask a task to clean up and end, unless it was asked before."""
+        if task in self._waits:
+            return
+        preempt_for_good(task)
+        wait = asyncio.create_task(preempt((task,), self._overdue), name=f"preempt {task.get_name()}")
+        wait.add_done_callback(self._ended)
+        self._waits[task] = wait
+
+    def raise_failure(self) -> None:
+        """Raise NotStopped if a task was abandoned."""
+        raise_failure(wait for wait in self._waits.values() if wait.done())
+
+    async def finish(self, tasks: Iterable[asyncio.Task[Any]]) -> None:
+        """Return when those of some tasks that are preempted by this have ended.
+
+        Raises:
+            NotStopped: a task was abandoned.
+            CancelledError: the caller was cancelled meanwhile; the tasks have ended all the same.
+        """
+        waits = [self._waits[task] for task in tasks if task in self._waits]
+        cancelled: asyncio.CancelledError | None = None
+        while unfinished := [wait for wait in waits if not wait.done()]:
+            try:
+                await asyncio.wait(unfinished)
+            except asyncio.CancelledError as error:
+                cancelled = error
+        self.raise_failure()
+        if cancelled is not None:
+            raise cancelled
+
+    def _ended(self, wait: asyncio.Task[None]) -> None:
+        if not wait.cancelled() and wait.exception() is not None:
+            self._on_failure()
+
+
 def raise_failure(tasks: Iterable[asyncio.Task[Any]]) -> None:
     """Raise the error, with its own cause, of the first of these tasks, all ended, that has one."""
     for task in tasks:

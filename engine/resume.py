@@ -17,6 +17,7 @@ from engine.leaf import Leaf
 from engine.nearness import near_names
 from engine.node import Node
 from engine.node_path import inside
+from engine.node_standing import without_branch
 from engine.plan import Plan
 from engine.point import Point
 from engine.stand_in import SUBSTITUTE
@@ -150,7 +151,14 @@ def started_from(history: History, plan: Plan, path: str) -> Checkpoint:
             if node.work.kind == "behavior":
                 raise ControlError("the behavior around it was not active then", where=above, hint="start before it")
             known = Point(visit=1, values=node.work.initial_values({}))
-        points[above] = replace(known, current=name, attempt=1, elapsed_s=0.0)
+        points[above] = replace(
+            known,
+            current=name,
+            attempt=1,
+            elapsed_s=0.0,
+            preempted=without_branch(known.preempted, name),
+            failed_clean_ups={branch: cause for branch, cause in known.failed_clean_ups.items() if branch != name},
+        )
         if node.work.kind == "concurrency":
             points |= _beside(moment, above, name)
     return replace(moment, points=points, rerun=(path,))
@@ -158,12 +166,14 @@ def started_from(history: History, plan: Plan, path: str) -> Checkpoint:
 
 def _beside(moment: Checkpoint, container: str, name: str) -> dict[str, Point]:
     """Return the points of the other branches of a concurrency container."""
+    if container not in moment.points:
+        return {}
     own = f"{container}/{name}"
-    return (
-        {path: point for path, point in moment.points.items() if inside(container, path) and not inside(own, path)}
-        if container in moment.points
-        else {}
-    )
+    return {
+        path: point
+        for path, point in moment.points.items()
+        if inside(container, path) and path != container and not inside(own, path)
+    }
 
 
 def last_entered(events: Iterable[Event], seq: int) -> str:

@@ -17,7 +17,7 @@ What comes out is an `engine.document.Behavior`: check it, plan it, run it, writ
 """
 
 from engine.authoring.behavior import behavior
-from engine.authoring.container import concurrency, foreach, machine, priority, tree
+from engine.authoring.container import Preempt, concurrency, foreach, machine, priority, tree
 from engine.authoring.export import is_made_in_python, to_yaml, write_behavior
 from engine.authoring.expression import Param, expr
 from engine.authoring.leaf import behaviour, reference, state
@@ -48,6 +48,7 @@ __all__ = [
     "Param",
     "PartKeys",
     "Post",
+    "Preempt",
     "Retry",
     "Step",
     "StepKeys",

@@ -3,14 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Unpack
 
 from engine.authoring.place import calling_position
 from engine.authoring.plain import as_plain
 from engine.authoring.step import Step, StepKeys, TreePart, given, new_step
+from engine.document.condition import PREEMPT, WHEN
 
 Rule = tuple[str, Mapping[str, str | int]]
 """`("finished", {"left": "reached", "right": "reached"})`: the outcome, and what it takes; with `at_least`, so many."""
+
+
+@dataclass(frozen=True)
+class Preempt:
+    """A condition that preempts some of the steps side by side, while the others go on.
+
+    Args:
+        steps: Their names.
+        when: What it takes, as in a rule.
+    """
+
+    steps: Sequence[str]
+    when: Mapping[str, str | int]
 
 
 def machine(
@@ -45,7 +60,7 @@ def priority(
 def concurrency(
     *,
     states: Mapping[str, Step],
-    conditions: Sequence[Rule],
+    conditions: Sequence[Rule | Preempt],
     otherwise: str | None = None,
     userdata: Mapping[str, object] | None = None,
     shared: Sequence[str] | None = None,
@@ -56,17 +71,24 @@ def concurrency(
     Args:
         states: The steps by name, in order.
         conditions: `(outcome, {step: its outcome})` in order of precedence; all of one must hold,
-            or so many of it as a number under `at_least` says.
+            or so many of it as a number under `at_least` says. `Preempt(steps, when)` among them decides nothing.
         otherwise: The outcome when all have ended and no condition holds.
         userdata: Initial values of its own scope.
         shared: Keys of this scope, or of one around it, that the steps see each other write.
         **keys: What every step may be given.
     """
-    rules = [{outcome: dict(when)} for outcome, when in conditions]
+    rules = [_entry(condition) for condition in conditions]
     what = given(
         states=dict(states), conditions=rules, otherwise=otherwise, userdata=_values(userdata), shared=_list(shared)
     )
     return new_step("concurrency", what, **keys)
+
+
+def _entry(condition: Rule | Preempt) -> dict[str, object]:
+    if isinstance(condition, Preempt):
+        return {PREEMPT: list(condition.steps), WHEN: dict(condition.when)}
+    outcome, when = condition
+    return {outcome: dict(when)}
 
 
 def foreach(

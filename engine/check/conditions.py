@@ -9,15 +9,16 @@ from typing import Any, NamedTuple
 
 from engine.check.finding import Finding
 from engine.check.subject import Placed, Subject
-from engine.document.condition import Condition
+from engine.document.condition import PREEMPT, WHEN, Condition, deciding, preemptable, preempting
 from engine.nearness import near_names
 
 MAX_STEPS = 20_000
 _SHOWN = 3
+_PREEMPTED = ""
 
 
 def check_conditions(subject: Subject) -> Iterator[Finding]:
-    """Find unknown children and outcomes in conditions, and combinations that no condition covers."""
+    """Find unknown children and outcomes in conditions, who cannot be preempted, and what no condition covers."""
     for placed in subject.nodes.values():
         if placed.node.concurrency is not None:
             names = list(_check_names(subject, placed))
@@ -31,7 +32,7 @@ def _check_names(subject: Subject, placed: Placed) -> Iterator[Finding]:
     children = placed.node.children
     for index, rule in enumerate(container.rules if container else ()):
         for name, outcome in rule.when.items():
-            keys = ("concurrency", "conditions", index, rule.outcome, name)
+            keys = ("concurrency", "conditions", index, rule.outcome or WHEN, name)
             if name not in children:
                 hint = near_names(name, children)
                 message = f"there is no child `{name}` here"
@@ -42,20 +43,34 @@ def _check_names(subject: Subject, placed: Placed) -> Iterator[Finding]:
                 hint = near_names(outcome, outcomes)
                 message = f"`{name}` has no outcome `{outcome}`"
                 yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=hint)
+        for place, name in enumerate(rule.preempt):
+            keys = ("concurrency", "conditions", index, PREEMPT, place)
+            if name not in children:
+                hint = near_names(name, children)
+                yield subject.finding(
+                    "unknown-child", f"there is no child `{name}` here", placed.path, *keys, hint=hint
+                )
+            elif name in rule.when and rule.needs_all:
+                message = f"`{name}` has ended when this condition holds"
+                hint = "name children that may still be at work; one of those it asks for may be, with `at_least`"
+                yield subject.finding("preempts-itself", message, placed.path, *keys, hint=hint)
 
 
 def _check_coverage(subject: Subject, placed: Placed) -> Iterator[Finding]:
     container = placed.node.concurrency
     outcomes = {child.name: subject.possible(child) for child in subject.children(placed)}
     known = {name: found for name, found in outcomes.items() if found is not None}
-    # With a child that never ends, the moment when all have finished never comes.
-    if container is None or len(known) < len(outcomes) or not all(known.values()):
+    # With a child that never ends, the moment when all have finished never comes, unless it is preempted.
+    if container is None or len(known) < len(outcomes):
         return
-    search = _Search(container.rules, known)
+    preempted = preemptable(container.rules)
+    if any(not found and name not in preempted for name, found in known.items()):
+        return
+    search = _Search(deciding(container.rules), preempting(container.rules), known)
     uncovered = list(itertools.islice(search.uncovered(), _SHOWN))
     where = (placed.path, "concurrency", "conditions")
     for combination in uncovered:
-        shown = ", ".join(f"{name}: {outcome}" for name, outcome in combination.items())
+        shown = ", ".join(f"{name}: {outcome or 'preempted'}" for name, outcome in combination.items())
         hint = "add a condition for it, or `otherwise: OUTCOME`"
         message = f"no condition holds when all children have finished with {shown}"
         yield subject.finding("uncovered-combination", message, *where, hint=hint, at_key=True)
@@ -77,21 +92,27 @@ class _Search:
     """Looks for combinations of child outcomes that satisfy no condition.
 
     Only outcomes that conditions name can matter, so each child has those, and one other that
-    stands for the rest. Partial combinations that satisfy a condition are not followed further.
+    stands for the rest. Partial combinations that satisfy a condition are not followed further. A child that a
+    condition may preempt can end so as well, with `_PREEMPTED` for an outcome, where that condition holds.
     """
 
     rules: Sequence[Condition]
+    preempting: Sequence[Condition]
     outcomes: Mapping[str, tuple[str, ...]]
     steps: int = 0
     exhausted: bool = False
-    _covered: set[tuple[int, tuple[tuple[int, int], ...]]] = field(default_factory=set[Any])
+    _covered: set[tuple[int, tuple[tuple[int, int], ...], tuple[tuple[str, str], ...]]] = field(
+        default_factory=set[Any]
+    )
 
     def uncovered(self) -> Iterator[dict[str, str]]:
         """Go through uncovered combinations until the search is over or takes too long."""
         named: dict[str, set[str]] = {}
-        for rule in self.rules:
+        for rule in (*self.rules, *self.preempting):
             for name, outcome in rule.when.items():
                 named.setdefault(name, set()).add(outcome)
+        for name in [name for rule in self.preempting for name in rule.preempt]:
+            named.setdefault(name, set()).add(_PREEMPTED)
         choices = {name: self._distinct(all_of, named.get(name, set())) for name, all_of in self.outcomes.items()}
         # The children that most conditions name decide most, so they are tried first.
         order = sorted(named, key=lambda name: -sum(name in rule.when for rule in self.rules))
@@ -101,7 +122,8 @@ class _Search:
 
     def _distinct(self, outcomes: tuple[str, ...], named: set[str]) -> tuple[str, ...]:
         rest = [outcome for outcome in outcomes if outcome not in named]
-        return (*(outcome for outcome in outcomes if outcome in named), *rest[:1])
+        preempted = (_PREEMPTED,) if _PREEMPTED in named else ()
+        return (*(outcome for outcome in outcomes if outcome in named), *rest[:1], *preempted)
 
     def _extend(
         self,
@@ -114,11 +136,13 @@ class _Search:
         if self.steps > MAX_STEPS:
             self.exhausted = True
             return
-        if not open_rules or not order:
-            yield dict(chosen)
+        if not order or not (open_rules or self.preempting):
+            if self._can_happen(chosen):
+                yield dict(chosen)
             return
-        # What counts children asks only how many have ended so, not which.
-        left = (len(order), tuple((id(rule.when), rule.needed) for rule in open_rules))
+        # What counts children asks only how many have ended so, not which; who is preempted asks how they have.
+        asked = tuple(chosen.items()) if self.preempting else ()
+        left = (len(order), tuple((id(rule.when), rule.needed) for rule in open_rules), asked)
         if left in self._covered:
             return
         is_covered = True
@@ -131,6 +155,18 @@ class _Search:
                     yield combination
         if is_covered and not self.exhausted:
             self._covered.add(left)
+
+    def _can_happen(self, chosen: Mapping[str, str]) -> bool:
+        """Tell whether each child that was preempted was so by a condition that holds."""
+
+        def ended_so(name: str, due: str) -> bool:
+            return chosen.get(name) == due
+
+        return all(
+            any(name in rule.preempt and rule.holds(ended_so) for rule in self.preempting)
+            for name, outcome in chosen.items()
+            if outcome == _PREEMPTED
+        )
 
 
 def _still_open(rules: Sequence[_Open], name: str, outcome: str) -> list[_Open] | None:

@@ -65,6 +65,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "idle-every": ("warning", "an `every` that is never used"),
     "unused-outcome": ("warning", "an outcome is declared or connected that nothing leads to"),
     "unknown-child": ("error", "a condition names a child that does not exist"),
+    "preempts-itself": ("error", "a condition preempts a child that has ended when it holds"),
     "uncovered-combination": ("error", "all children may finish so that no condition holds"),
     "combinations-not-checked": ("warning", "there are too many combinations of child outcomes to check"),
     "shared-resource": ("error", "nodes that run side by side command the same device"),

@@ -13,6 +13,7 @@ from engine.check.component import components
 from engine.check.finding import Finding
 from engine.check.flow.read import Read, assignments
 from engine.check.subject import Placed, Subject
+from engine.document.condition import deciding
 from engine.document.node import FOREACH_OUTCOMES, Concurrency, Node
 
 _SHOWN = 6
@@ -93,7 +94,9 @@ class Instants:
     def _of_branches(self, container: Concurrency, children: Sequence[Placed]) -> frozenset[str]:
         seen = {child.name: self._seen(child) for child in children}
         found = {
-            rule.outcome for rule in container.rules if rule.holds(lambda name, outcome: outcome in seen.get(name, ()))
+            rule.outcome
+            for rule in deciding(container.rules)
+            if rule.holds(lambda name, outcome: outcome in seen.get(name, ()))
         }
         if container.otherwise is not None and all(seen.values()):
             found.add(container.otherwise)

@@ -9,6 +9,7 @@ from engine.check.finding import Finding, new_finding
 from engine.check.gaps import Gaps
 from engine.check.status import BOTH, Status, Statuses, closed_statuses, end_statuses
 from engine.document.behavior import Behavior
+from engine.document.condition import deciding
 from engine.document.expression import Template, compile_template
 from engine.document.node import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
 from engine.document.signature import StateSignature, read_signature
@@ -276,7 +277,7 @@ def _own_outcomes(placed: Placed, subject: Subject) -> tuple[str, ...] | None:
         referred = subject.behavior.references.get(node.behavior)
         return referred.outcomes if referred is not None else None
     if node.concurrency is not None:
-        named = [rule.outcome for rule in node.concurrency.rules]
+        named = [rule.outcome for rule in deciding(node.concurrency.rules)]
         return tuple(dict.fromkeys([*named, *([node.concurrency.otherwise] if node.concurrency.otherwise else [])]))
     if node.foreach is not None:
         return FOREACH_OUTCOMES
@@ -297,7 +298,7 @@ def _nominal(placed: Placed, subject: Subject) -> frozenset[str]:
         return frozenset(referred.success or referred.outcomes) if referred is not None else frozenset()
     if node.concurrency is not None:
         good = {child.name: subject.nominal[child.path] for child in subject.children(placed)}
-        rules = node.concurrency.rules
+        rules = deciding(node.concurrency.rules)
         return frozenset(
             rule.outcome for rule in rules if rule.asks_only_for(lambda name, due: due in good.get(name, ()))
         )

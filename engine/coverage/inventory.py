@@ -144,7 +144,7 @@ class _Listing:
         for number, rule in enumerate(container.rules, start=1):
             rules.append(Rule(name=f"{number}: {_text(rule)}", condition=rule))
             where = behavior.position(inside, "concurrency", "conditions", number - 1)
-            self._add("condition", path, where, rules[-1].name, rule.outcome)
+            self._add("condition", path, where, rules[-1].name, rule.consequence)
         if container.otherwise is not None:
             always = Condition(outcome=container.otherwise, when={})
             rules.append(Rule(name="otherwise", condition=always))
@@ -177,4 +177,4 @@ def _statuses_of_part(node: Node) -> tuple[str, ...]:
 
 def _text(rule: Condition) -> str:
     children = ", ".join(f"{child}: {outcome}" for child, outcome in rule.when.items())
-    return f"{rule.outcome} ← {children}" if rule.needs_all else f"{rule.outcome} ← {rule.needed} of {children}"
+    return f"{rule.consequence} ← {children if rule.needs_all else f'{rule.needed} of {children}'}"

@@ -6,6 +6,7 @@ from engine.coverage.inventory import Inventory
 from engine.coverage.item import Key
 from engine.event import (
     BehaviorChanged,
+    BranchesPreempted,
     Diverted,
     Entered,
     Event,
@@ -49,6 +50,8 @@ class Tally:
                 self._count(("transition", f"{event.path}/{event.source}", event.outcome))
             case Diverted():
                 self._diverted(event)
+            case BranchesPreempted():
+                self._preempted(event)
             case Retried():
                 self._finish(event.path, None)
             case StatusChanged():
@@ -65,9 +68,18 @@ class Tally:
         finished = self._finished.get(path, {})
         for rule in self._inventory.rules.get(path, ()):
             condition = rule.condition
-            if condition.outcome == outcome and condition.holds(lambda child, due: finished.get(child) == due):
+            if (
+                condition.decides
+                and condition.outcome == outcome
+                and condition.holds(lambda child, due: finished.get(child) == due)
+            ):
                 self._count(("condition", path, rule.name))
                 break
+
+    def _preempted(self, event: BranchesPreempted) -> None:
+        rules = self._inventory.rules.get(event.path, ())
+        name = next((rule.name for rule in rules if rule.condition.said == event.condition), "")
+        self._count(("condition", event.path, name))
 
     def _diverted(self, event: Diverted) -> None:
         self._finish(event.path, event.target)

@@ -11,7 +11,8 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from engine.document.conversion import Strict
-from engine.document.node import Key, Node, OutcomeName
+from engine.document.node import Key, Node
+from engine.document.node_kind import OutcomeName
 from engine.document.parameter import Parameter
 from engine.document.substitutes import Substitutes
 from engine.document.yaml_source import DataPath, Source

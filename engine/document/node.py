@@ -15,7 +15,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.condition import Condition, read_condition
+from engine.document.condition import Condition, ConditionEntry, read_entry
 from engine.document.conversion import Strict
 from engine.document.duration import Duration, seconds
 from engine.document.node_kind import (
@@ -24,12 +24,10 @@ from engine.document.node_kind import (
     TREE_KINDS,
     WRAPPERS,
     AutonomyLevel,
-    Count,
     Expression,
     Key,
     NodeKind,
     NodeName,
-    OutcomeName,
     Post,
     Reference,
     Status,
@@ -99,26 +97,21 @@ class Machine(Strict, frozen=True, kw_only=True):
 class Concurrency(Strict, frozen=True, kw_only=True):
     """Children side by side; the first condition that holds decides the outcome.
 
-    A condition asks for outcomes of children, all of them, or any `at_least` of them. Keys in `shared` have one value
-    for all children at any time; what a child writes to other keys is seen by the others once all have ended.
+    A condition asks for outcomes of children, all of them, or any `at_least` of them. One with `preempt` decides
+    nothing: when it first holds, the children named there are preempted and the others go on. Keys in `shared` have one
+    value for all children at any time; what a child writes to other keys is seen by the others once all have ended.
     """
 
     states: Annotated[dict[NodeName, Node], Meta(min_length=1, description="The children, at least one")]
-    conditions: tuple[
-        Annotated[
-            dict[OutcomeName, Annotated[dict[str, str | Count], Meta(min_length=1, description="`{child: outcome}`")]],
-            Meta(min_length=1, max_length=1, description="`{outcome: {child: outcome, …, at_least: number}}`"),
-        ],
-        ...,
-    ]
+    conditions: tuple[ConditionEntry, ...]
     otherwise: str | None = None
     userdata: dict[Key, object] = {}
     shared: tuple[Key, ...] = ()
 
     @property
     def rules(self) -> tuple[Condition, ...]:
-        """The conditions in order of precedence."""
-        return tuple(read_condition(name, when) for entry in self.conditions for name, when in entry.items())
+        """The conditions in order of precedence, those that preempt among them."""
+        return tuple(rule for entry in self.conditions if (rule := read_entry(entry)) is not None)
 
 
 class ForEach(Strict, frozen=True, kw_only=True, rename={"item": "as"}):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import cast
 
 from engine.document.behavior import Behavior
 from engine.document.cel_expression import RESERVED
-from engine.document.condition import AT_LEAST
+from engine.document.condition import AT_LEAST, PREEMPT, WHEN
 from engine.document.conversion import together
 from engine.document.duration import seconds
 from engine.document.mistakes import MAX_MISTAKES
@@ -82,7 +83,7 @@ def _of_node(behavior: Behavior, path: str, node: Node, *, in_tree: bool) -> Ite
     if node.concurrency is not None or node.foreach is not None:
         yield from _no_transitions(behavior, path, node)
     if node.concurrency is not None:
-        yield from _counts(behavior, path, node.concurrency)
+        yield from _conditions(behavior, path, node.concurrency)
     yield from _tree_part(behavior, path, node) if in_tree else _no_tree_part(behavior, path, node)
     yield from _rounds(behavior, path, node)
     yield from _every(behavior, path, node, in_tree=in_tree)
@@ -200,24 +201,64 @@ def _thresholds(behavior: Behavior, path: str, group: Parallel) -> Iterator[Brea
         yield Breach(path=path, error=error, excess=("parallel", key))
 
 
-def _counts(behavior: Behavior, path: str, container: Concurrency) -> Iterator[Breach]:
-    """A number in a condition is `at_least`, and no more than the children beside it."""
+def _conditions(behavior: Behavior, path: str, container: Concurrency) -> Iterator[Breach]:
+    """A condition has one outcome, or says whom it preempts and when; a number in it is `at_least`."""
     for index, entry in enumerate(container.conditions):
-        for outcome, when in entry.items():
-            children = sum(isinstance(due, str) for due in when.values())
-            excess = ("concurrency", "conditions", index) if not children else None
-            for name, due in when.items():
-                if isinstance(due, str) or (name == AT_LEAST and due <= children):
-                    continue
-                keys = ("concurrency", "conditions", index, outcome, name)
-                where = behavior.position(path, *keys)
-                if name == AT_LEAST:
-                    message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
-                else:
-                    message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
-                # Of a condition without children nothing is left, and it goes with the first that is wrong in it.
-                yield Breach(path=path, error=DocumentError(message, where=where, hint=hint), excess=excess or keys)
-                excess = None
+        keys = ("concurrency", "conditions", index)
+        found = _misshapen(entry)
+        if found is None:
+            yield from _counts(behavior, path, keys, entry)
+        else:
+            key, message, hint = found
+            error = DocumentError(message, where=behavior.key_position(path, *keys, key), hint=hint)
+            yield Breach(path=path, error=error, excess=keys)
+
+
+def _misshapen(entry: Mapping[str, object]) -> tuple[str, str, str] | None:
+    """Return the key that makes an entry no condition, what is wrong with it, and what to do."""
+    preempted = entry.get(PREEMPT)
+    if isinstance(preempted, tuple):
+        named = cast("tuple[str, ...]", preempted)
+        if len(entry) == 1:
+            return PREEMPT, f"a condition with `{PREEMPT}` says when", f"add `{WHEN}: {{child: outcome}}`"
+        other = next(key for key in entry if key != PREEMPT)
+        if other != WHEN:
+            hint = f"write `{WHEN}` here, and `{other}` in a condition of its own"
+            return other, f"a condition decides an outcome or has `{PREEMPT}`, not both", hint
+        repeated = next((name for name in named if named.count(name) > 1), None)
+        if repeated is not None:
+            return PREEMPT, f"`{repeated}` is repeated in `{PREEMPT}`", "remove it"
+    elif len(entry) > 1:
+        outcome = list(entry)[1]
+        return outcome, "a condition has one outcome", f"put `{outcome}` in a condition of its own"
+    no_mapping = next((key for key, value in entry.items() if isinstance(value, tuple) and key != PREEMPT), None)
+    if no_mapping is None:
+        return None
+    return no_mapping, f"`{no_mapping}`: a list, expected a mapping", "write `{child: outcome}`"
+
+
+def _counts(
+    behavior: Behavior, path: str, keys: tuple[str | int, ...], entry: Mapping[str, object]
+) -> Iterator[Breach]:
+    """A number in a condition is `at_least`, and no more than the children beside it."""
+    for key, written in entry.items():
+        if not isinstance(written, dict):
+            continue
+        when = cast("dict[str, str | int]", written)
+        children = sum(isinstance(due, str) for due in when.values())
+        excess = keys if not children else None
+        for name, due in when.items():
+            if isinstance(due, str) or (name == AT_LEAST and due <= children):
+                continue
+            where = behavior.position(path, *keys, key, name)
+            if name == AT_LEAST:
+                message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
+            else:
+                message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
+            # Of a condition without children nothing is left, and it goes with the first that is wrong in it.
+            error = DocumentError(message, where=where, hint=hint)
+            yield Breach(path=path, error=error, excess=excess or (*keys, key, name))
+            excess = None
 
 
 def _bare(behavior: Behavior, path: str, node: Node) -> Iterator[Breach]:

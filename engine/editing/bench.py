@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import cast
 
-from engine.document.condition import AT_LEAST
+from engine.document.condition import AT_LEAST, PREEMPT, WHEN
 from engine.document.node import SLOTS
 from engine.editing.draft import Draft
 from engine.editing.knowledge import Ends, Knowledge
@@ -257,12 +257,28 @@ def _follow_conditions(body: Plain, names: dict[str, str | None]) -> None:
     conditions = cast("list[object]", listed)
     emptied: list[object] = []
     for entry in conditions:
-        for when in cast("Plain", entry).values() if isinstance(entry, dict) else ():
-            if isinstance(when, dict):
-                _follow_when(cast("Plain", when), names)
-        if isinstance(entry, dict) and all(when == {} for when in cast("Plain", entry).values()):
-            emptied.append(cast("object", entry))
+        if not isinstance(entry, dict):
+            continue
+        written = cast("Plain", entry)
+        for value in written.values():
+            if isinstance(value, dict):
+                _follow_when(cast("Plain", value), names)
+        preempted = written.get(PREEMPT)
+        if isinstance(preempted, list):
+            _follow_preempted(cast("list[object]", preempted), names)
+        if all(value in ({}, []) for value in written.values()) or preempted == [] or written.get(WHEN) == {}:
+            emptied.append(written)
     conditions[:] = [entry for entry in conditions if not any(entry is gone for gone in emptied)]
+
+
+def _follow_preempted(listed: list[object], names: dict[str, str | None]) -> None:
+    kept: list[object] = []
+    for name in listed:
+        to = names.get(name, name) if isinstance(name, str) else name
+        if to is not None and to not in kept:
+            kept.append(to)
+    if kept != listed:
+        listed[:] = kept
 
 
 def _follow_when(when: Plain, names: dict[str, str | None]) -> None:

@@ -203,7 +203,7 @@ def _rules(spot: Spot) -> list[Condition]:
 
 
 def _in_words(spot: Spot) -> tuple[str, ...]:
-    said = [f"{rule.outcome}: {rule}" for rule in _rules(spot)]
+    said = [f"{rule.consequence}: {rule}" for rule in _rules(spot)]
     otherwise = spot.body.get("otherwise") if spot.kind == "concurrency" else None
     return (*said, *([f"{otherwise}: otherwise"] if otherwise else []))
 

@@ -9,7 +9,7 @@ from typing import cast
 
 from engine.check.entries import Entries
 from engine.check.subject import Catalogue
-from engine.document.condition import Condition, read_condition
+from engine.document.condition import Condition, deciding, read_entry
 from engine.document.node import FOREACH_OUTCOMES, TREE_OUTCOMES
 from engine.document.signature import StateSignature, read_signature
 from engine.document.yaml_source import load_source
@@ -117,6 +117,7 @@ class Knowledge:
     def _of_concurrency(self, outline: Outline, spot: Spot, known: dict[str, Ends]) -> Ends:
         found = rules(spot)
         otherwise = spot.body.get("otherwise")
+        found = deciding(found)
         named = [*(rule.outcome for rule in found), *([otherwise] if isinstance(otherwise, str) else [])]
         good = {child.name: self.ends(outline, child, known=known).success for child in outline.children(spot)}
         nominal = [rule.outcome for rule in found if rule.asks_only_for(lambda name, due: due in good.get(name, ()))]
@@ -149,9 +150,12 @@ def rules(spot: Spot) -> list[Condition]:
     found: list[Condition] = []
     listed = spot.body.get("conditions")
     for entry in cast("list[object]", listed) if isinstance(listed, list) else ():
-        for outcome, when in cast("Plain", entry).items() if isinstance(entry, dict) else ():
-            if isinstance(when, dict):
-                found.append(read_condition(outcome, cast("Plain", when)))
+        if isinstance(entry, dict):
+            written = cast("Plain", entry)
+            # One that says too much is shown as several.
+            several = ({key: value} for key, value in written.items())
+            each = (written,) if read_entry(written) is not None else several
+            found += [rule for one in each if (rule := read_entry(one)) is not None]
     return found
 
 

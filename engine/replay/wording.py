@@ -12,6 +12,7 @@ import msgspec
 from engine.event import (
     Answered,
     BehaviorChanged,
+    BranchesPreempted,
     Called,
     Commanded,
     Diverted,
@@ -52,6 +53,8 @@ def wording(event: Event) -> str:
             return f"transition {event.source}: {event.outcome or 'left'} → {event.target}"
         case Diverted():
             return f"left for {event.target} by {event.by}"
+        case BranchesPreempted():
+            return event.condition
         case GoalSent() | Called():
             return f"request {event.address}"
         case GoalFinished():

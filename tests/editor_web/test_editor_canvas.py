@@ -322,6 +322,25 @@ def test_the_rules_of_a_concurrency_are_edited_as_a_table(browser: Browser, shop
     ]
 
 
+def test_a_rule_preempts_some_branches_while_the_others_go_on(browser: Browser, shop: Workshop) -> None:
+    """Then it has no outcome; the table and the canvas name whom it preempts."""
+    with at_editor(browser, shop, SHIFT_ID) as page:
+        card(page, "root/both").locator(".frame-head").click()
+        some = page.locator(".rule-preempts").nth(1)
+        expect(some.locator("summary")).to_have_text("all")
+        some.locator("summary").click()
+        some.get_by_label("right", exact=True).click()
+        expect(some.locator("summary")).to_have_text("right")
+        expect(page.get_by_label("Outcome of rule 2")).to_have_count(0)
+        expect(card(page, "root/both").locator(".rules")).to_contain_text("preempt right")
+        idle(page)
+        save(page)
+        node = load_behavior(shop.project / SHIFT_ID).root.children["both"]
+    assert node.concurrency is not None
+    second = node.concurrency.rules[1]
+    assert (second.outcome, second.preempt, dict(second.when)) == ("", ("right",), {"left": "b"})
+
+
 def test_conduct_data_and_the_document_itself_are_edited_in_forms(browser: Browser, shop: Workshop) -> None:
     """Timeout, retry, autonomy, `${…}` with completion, a new parameter."""
     with at_editor(browser, shop, SHIFT_ID) as page:

@@ -10,6 +10,7 @@ import pytest
 from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.document import parse_behavior
+from engine.event import BranchesPreempted, Event
 from engine.plan import new_plan
 from engine.run import Run, RunResult
 from engine.state import Context, Outcome, State
@@ -29,6 +30,16 @@ root:
       - {one: {fast: done}}
       - {other: {slow: done}}
 """
+PREEMPTING = (
+    TEXT[: TEXT.index("    conditions:")]
+    + """
+      never: {state: test.Hops, with: {hops: -1}}
+    conditions:
+      - {preempt: [slow, never], when: {fast: done}}
+      - {one: {never: done}}
+    otherwise: other
+"""
+)
 GO: list[asyncio.Event] = []
 
 
@@ -84,3 +95,18 @@ async def test_others_on_the_loop_hold_up_nothing() -> None:
     # It was decided when the run was quiet, not given up after a time.
     assert turns < 200
     spinning.cancel()
+
+
+@pytest.mark.parametrize("hops", [0, 1, 7, 50])
+async def test_a_condition_preempts_only_what_has_not_ended_at_its_instant(hops: int) -> None:
+    """However many turns of the loop the end of another branch of that instant takes."""
+    GO[:] = [asyncio.Event()]
+    behavior = parse_behavior(PREEMPTING.replace("HOPS", str(hops)), file="t.yaml")
+    events: list[Event] = []
+    async with SkillBus(new_clock()) as bus:
+        asyncio.get_running_loop().call_soon(GO[0].set)
+        run = Run(new_plan(behavior, {"test.Hops": Hops}), run="r", bus=bus)
+        run.watch(events.append)
+        result = await run.execute()
+    assert result.outcome == "other"
+    assert [event.branches for event in events if isinstance(event, BranchesPreempted)] == [("never",)]

@@ -6,13 +6,14 @@ them, those have ended as it says; the others may have been stopped anywhere.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 
 from engine.check.flow.effect import Effect, either
 from engine.check.flow.graph import Way
 from engine.check.flow.site import Sites
 from engine.check.subject import Placed
+from engine.document.condition import deciding, preemptable
 from engine.document.node import shared_keys
 
 Ways = Mapping[str, Sequence[Way]]
@@ -25,10 +26,12 @@ def concurrency_ends(
     container = placed.node.concurrency
     branches = _Branches(children, ways, entry, shared=sites.all_bits(shared_keys(placed.node)) & ~sites.undefined)
     ends: dict[str, int] = {}
-    for rule in container.rules if container is not None else ():
+    for rule in deciding(container.rules) if container is not None else ():
         ends[rule.outcome] = ends.get(rule.outcome, 0) | branches.merged(rule.when if rule.needs_all else {})
     if container is not None and container.otherwise is not None:
-        ends[container.otherwise] = ends.get(container.otherwise, 0) | branches.all_ended(sites)
+        ends[container.otherwise] = ends.get(container.otherwise, 0) | branches.all_ended(
+            sites, preemptable(container.rules)
+        )
     return ends
 
 
@@ -77,11 +80,13 @@ class _Branches:
             fact = fact & ~((effect.kill | effect.defines) & ~self._later[name] & ~self._shared) | effect.gen
         return fact
 
-    def all_ended(self, sites: Sites) -> int:
-        """Return what holds when all branches have ended, somehow."""
+    def all_ended(self, sites: Sites, preempted: Collection[str]) -> int:
+        """Return what holds when all branches have ended, somehow; those `preempted` may have stopped anywhere."""
         fact = self._entry
-        for ways in self._ways.values():
-            fact = either(way.effect for way in ways).after(fact, sites)
+        for name, ways in self._ways.items():
+            ended = either(way.effect for way in ways)
+            stopped = either(way.effect.perhaps() for way in ways).after(fact, sites) if name in preempted else 0
+            fact = ended.after(fact, sites) | stopped
         # Of a shared key nobody knows who wrote last.
         return fact | self._entry & self._shared
 

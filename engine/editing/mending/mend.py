@@ -25,6 +25,7 @@ _MAKERS: Mapping[str, Maker] = {
     "unreachable-node": wiring.unreachable,
     "ambiguous-target": wiring.ambiguous,
     "unknown-child": wiring.unknown_child,
+    "preempts-itself": wiring.preempts_itself,
     "uncovered-combination": wiring.uncovered,
     "unknown-state": parameters.unknown_state,
     "unknown-parameter": parameters.unknown,

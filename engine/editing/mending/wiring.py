@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import cast
 
+from engine.document.condition import PREEMPT, deciding, read_entry
 from engine.editing.edit import (
     AnyEdit,
     ClearTransition,
@@ -15,6 +16,7 @@ from engine.editing.edit import (
     SetInitial,
     SetTransition,
 )
+from engine.editing.knowledge import rules
 from engine.editing.mending.fix import Fix, Place, is_slip, mapping, near, renamed, strings
 from engine.editing.outline import Plain
 
@@ -109,8 +111,8 @@ def _replaced(place: Place, name: str, old: str, new: str) -> AnyEdit | None:
     if place.spot.kind == "foreach" and old in strings(place.spot.body.get("next")):
         return SetField(path=path, field="next", value=_swapped(place.spot.body["next"], old, new))
     if place.spot.kind == "concurrency":
-        rules = _rules(place, lambda when: {**when, name: new} if when.get(name) == old else when)
-        return SetField(path=path, field="conditions", value=rules)
+        conditions = _rules(place, lambda when: {**when, name: new} if when.get(name) == old else when)
+        return SetField(path=path, field="conditions", value=conditions)
     return None
 
 
@@ -183,26 +185,52 @@ def ambiguous(place: Place) -> Iterator[Fix]:
 
 
 def unknown_child(place: Place) -> Iterator[Fix]:
-    """Name a child that there is, or drop what a condition says of one that is not."""
+    """Name a child that there is where a condition asks for, or preempts, one that is not."""
     name = place.names[0]
     names = [child.name for child in place.bench.outline.children(place.spot)]
     for right in near(name, names):
-        rules = _rules(place, lambda when, right=right: renamed(when, name, right))
-        edit = SetField(path=place.spot.path, field="conditions", value=rules)
+        conditions = _rules(
+            place,
+            lambda when, right=right: renamed(when, name, right),
+            lambda listed, right=right: _swapped(listed, name, right),
+        )
+        edit = SetField(path=place.spot.path, field="conditions", value=conditions)
         yield Fix(title=f"Write `{right}` instead of `{name}`", edits=(edit,), sure=is_slip(name, right, names))
+
+
+def preempts_itself(place: Place) -> Iterator[Fix]:
+    """Leave a child that has ended when a condition holds out of those that it preempts; it goes with the last one."""
+    name = place.names[0]
+    kept: list[object] = []
+    for entry in _entries(place):
+        rule = read_entry(entry)
+        if rule is None or name not in rule.when or name not in rule.preempt or not rule.needs_all:
+            kept.append(entry)
+        elif others := [child for child in rule.preempt if child != name]:
+            kept.append({**entry, PREEMPT: others})
+    edit = SetField(path=place.spot.path, field="conditions", value=kept)
+    yield Fix(title=f"Do not preempt `{name}`", edits=(edit,))
 
 
 def uncovered(place: Place) -> Iterator[Fix]:
     """Say how a concurrency container ends when no condition holds."""
-    listed = cast("list[object]", place.spot.body.get("conditions") or [])
-    for outcome in dict.fromkeys(name for rule in listed for name in mapping(rule)):
+    for outcome in dict.fromkeys(rule.outcome for rule in deciding(rules(place.spot))):
         edit = SetField(path=place.spot.path, field="otherwise", value=outcome)
         yield Fix(title=f"Otherwise end with `{outcome}`", edits=(edit,))
 
 
-def _rules(place: Place, change: Callable[[Plain], Plain]) -> list[object]:
-    """Return the conditions of a concurrency container, each changed by a function of what it asks for."""
-    made: list[object] = []
-    for rule in cast("list[object]", place.spot.body.get("conditions") or []):
-        made.append({outcome: change(mapping(when)) for outcome, when in mapping(rule).items()})
-    return made
+def _rules(
+    place: Place, change: Callable[[Plain], Plain], whom: Callable[[list[object]], list[object]] = list
+) -> list[object]:
+    """Return the conditions of a concurrency container, with what each asks for, and preempts, changed by functions."""
+    return [{key: _changed(value, change, whom) for key, value in entry.items()} for entry in _entries(place)]
+
+
+def _changed(
+    value: object, change: Callable[[Plain], Plain], whom: Callable[[list[object]], list[object]]
+) -> Plain | list[object]:
+    return whom(cast("list[object]", value)) if isinstance(value, list) else change(mapping(value))
+
+
+def _entries(place: Place) -> list[Plain]:
+    return [mapping(entry) for entry in cast("list[object]", place.spot.body.get("conditions") or [])]

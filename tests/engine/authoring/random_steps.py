@@ -10,6 +10,7 @@ from engine.authoring import (
     Guard,
     Param,
     Post,
+    Preempt,
     Retry,
     Step,
     Timeout,
@@ -124,7 +125,9 @@ def _steps(draw: st.DrawFn, depth: int, keys: st.SearchStrategy[dict[str, Any]],
         return make(initial=draw(NAMES), states=states, userdata=draw(st.none() | USERDATA), **more)
     if kind == "concurrency":
         states = draw(st.dictionaries(NAMES, _steps(depth - 1, _ALONE), min_size=1, max_size=3))
-        rules = draw(st.lists(st.tuples(OUTCOMES, st.dictionaries(NAMES, OUTCOMES, min_size=1)), max_size=3))
+        asked = st.dictionaries(NAMES, OUTCOMES, min_size=1)
+        some = st.builds(Preempt, st.lists(NAMES, min_size=1, max_size=2, unique=True), asked)
+        rules = draw(st.lists(st.tuples(OUTCOMES, asked) | some, max_size=3))
         otherwise = draw(st.none() | OUTCOMES)
         return concurrency(states=states, conditions=rules, otherwise=otherwise, userdata=draw(USERDATA), **more)
     if kind == "tree":

@@ -8,6 +8,7 @@ import pytest
 
 from engine.authoring import (
     Guard,
+    Preempt,
     Retry,
     Step,
     Timeout,
@@ -110,7 +111,11 @@ def test_every_container_is_written() -> None:
                 ),
                 "times": foreach(state(Give), times=expr("2 + 1")),
             },
-            conditions=[("good", {"first": "ok", "rounds": "exhausted"}), ("bad", {"rounds": "broken"})],
+            conditions=[
+                ("good", {"first": "ok", "rounds": "exhausted"}),
+                Preempt(["times"], {"first": "ok", "rounds": "broken", "at_least": 1}),
+                ("bad", {"rounds": "broken"}),
+            ],
             otherwise="bad",
             userdata={"all": []},
         )
@@ -132,6 +137,7 @@ root:
       times: {foreach: {child: {state: test.Give}, times: "${2 + 1}"}}
     conditions:
       - {good: {first: ok, rounds: exhausted}}
+      - {preempt: [times], when: {first: ok, rounds: broken, at_least: 1}}
       - {bad: {rounds: broken}}
     otherwise: bad
     userdata: {all: []}

@@ -96,10 +96,15 @@ class _Maker:
             some = self._draw(st.lists(st.sampled_from(names), min_size=1, unique=True))
             when = {name: self._draw(st.sampled_from(drawn[name].outcomes)) for name in some}
             count = {"at_least": self._draw(st.integers(1, len(some)))} if self._draw(st.booleans()) else {}
-            conditions.append({self._draw(st.sampled_from(LABELS)): {**when, **count}})
+            others = [name for name in names if name not in some]
+            if not others or self._draw(st.integers(0, 2)):
+                conditions.append({self._draw(st.sampled_from(LABELS)): {**when, **count}})
+            else:
+                preempted = self._draw(st.lists(st.sampled_from(others), min_size=1, max_size=2, unique=True))
+                conditions.append({"preempt": preempted, "when": {**when, **count}})
         container = {"states": states, "conditions": conditions, "otherwise": "x", "userdata": self.userdata()}
-        outcomes = tuple(dict.fromkeys([*(next(iter(rule)) for rule in conditions), "x"]))
-        good = [next(iter(rule)) for rule in conditions]
+        good = [next(iter(rule)) for rule in conditions if "preempt" not in rule]
+        outcomes = tuple(dict.fromkeys([*good, "x"]))
         return Drawn({"concurrency": container}, outcomes, tuple(good) or outcomes)
 
     def _foreach(self, depth: int) -> Drawn:

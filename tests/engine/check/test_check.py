@@ -69,6 +69,13 @@ NESTED = (
 """
 )
 
+PREEMPTING = PARALLEL.replace(
+    "      - {failed: {right: failed}}\n",
+    "      - {preempt: [left], when: {right: failed}}\n"
+    "      - {failed: {left: reached, right: failed}}\n"
+    "    otherwise: failed\n",
+)
+
 REFERENCE = (
     HEADER
     + """root:
@@ -474,8 +481,42 @@ CASES: dict[str, list[Case]] = {
             at="lfet: failed}}",
             says="did you mean left",
         ),
+        Case(
+            good=PREEMPTING,
+            old="preempt: [left]",
+            new="preempt: [lfet]",
+            path="root",
+            at="lfet], when",
+            says="did you mean left",
+        ),
+        Case(
+            good=PREEMPTING,
+            old="when: {right",
+            new="when: {rihgt",
+            path="root",
+            at="rihgt: failed}",
+            says="did you mean right",
+        ),
+    ],
+    "preempts-itself": [
+        Case(
+            good=PREEMPTING,
+            old="preempt: [left]",
+            new="preempt: [left, right]",
+            path="root",
+            at="right], when",
+            says="`right` has ended when this condition holds (name children that may still be at work",
+        ),
     ],
     "uncovered-combination": [
+        Case(
+            good=PREEMPTING,
+            old="    otherwise: failed\n",
+            new="",
+            path="root",
+            at="conditions:",
+            says="left: preempted, right: failed",
+        ),
         Case(
             good=PARALLEL,
             old="      - {failed: {right: failed}}\n",

@@ -113,6 +113,13 @@ def _concurrency(children: list[Node]) -> Node:
     return {"concurrency": {"states": states, "conditions": first, "otherwise": "a"}}
 
 
+def _partial(children: list[Node]) -> Node:
+    """Let the end of the first child end the second one, while the others go on."""
+    states = {f"c{index}": child for index, child in enumerate(children)}
+    some = [{"preempt": ["c1"], "when": {"c0": out}} for out in _outs(children[0])]
+    return {"concurrency": {"states": states, "conditions": some, "otherwise": "a"}}
+
+
 def _foreach(child: Node) -> Node:
     return {"foreach": {"times": 2, "child": child, "next": [*_outs(child)]}}
 
@@ -145,6 +152,7 @@ TREES = st.recursive(
         st.lists(inner, min_size=1, max_size=3).map(partial(_machine, kind="machine"))
         | st.lists(inner, min_size=1, max_size=2).map(partial(_machine, kind="priority"))
         | st.lists(inner, min_size=1, max_size=3).map(_concurrency)
+        | st.lists(inner, min_size=2, max_size=3).map(_partial)
         | inner.map(_foreach)
         | st.builds(
             _tree, st.lists(inner, min_size=1, max_size=3), st.sampled_from(["sequence", "selector", "parallel"])

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from engine.coverage import Coverage
 from engine.coverage.item import ITEM_KINDS
 from engine.errors import FlexcellError
-from engine.event import Diverted, Entered, Exited, Transitioned
+from engine.event import BranchesPreempted, Diverted, Entered, Exited, Transitioned
 from engine.plan import new_plan
 from tests.engine.coverage.covered import behavior_of, covered, events_of, missing, seen, written
 from tests.engine.fake_states import CATALOGUE
 from tests.engine.reference.act import CATALOGUE as ACTS
 from tests.engine.reference.interpreter import Interpreter, TooLong
-from tests.engine.reference.random_behaviors import STOPS, Case, cases
+from tests.engine.reference.random_behaviors import STOPS, Case, cases, preempting_cases
 
 MACHINE = """
 userdata: {outcome: a}
@@ -92,6 +92,16 @@ def test_a_child_that_is_preempted_has_no_outcome() -> None:
     """It was entered, no more."""
     coverage = covered(behavior_of(CONCURRENCY), {"outcome": "b", "after_s": 1.0})
     assert [label for label in seen(coverage) if label.startswith("root/right")] == ["root/right: entered"]
+
+
+def test_a_condition_that_preempts_some_branches_is_covered_when_it_fires() -> None:
+    """Each time once, and not where the container ended before."""
+    text = CONCURRENCY.replace("- {good: {left: b}}", "- {preempt: [right], when: {left: b}}")
+    fired = "root: condition 2: preempt right ← left: b"
+    coverage = covered(behavior_of(text), {"outcome": "b", "after_s": 1.0})
+    assert [label for label in seen(coverage) if "condition" in label] == [fired, "root: condition otherwise"]
+    assert "root/right: outcome a" not in seen(coverage)
+    assert fired not in seen(covered(behavior_of(text), {"outcome": "a", "after_s": 1.0}))
 
 
 def test_timeout_guard_and_on_error_are_ways_out() -> None:
@@ -252,9 +262,12 @@ def test_the_log_of_another_version_is_refused() -> None:
 
 
 @settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
-@given(cases(), STOPS)
+@given(cases() | preempting_cases(), STOPS)
 def test_nothing_that_happens_is_missed(case: Case, stop_at_s: float) -> None:
-    """In any behavior: every entry, transition and diversion counts once, and every decision has its condition."""
+    """In any behavior: every entry, transition and diversion counts once, and every decision has its condition.
+
+    So does whatever a condition has preempted.
+    """
     try:
         Interpreter(case.behavior).run(stop_at_s)
     except TooLong:
@@ -269,7 +282,8 @@ def test_nothing_that_happens_is_missed(case: Case, stop_at_s: float) -> None:
     assert kinds["node"] == sum(isinstance(e, Entered) for e in events)
     assert kinds["transition"] == len(taken)
     assert kinds["timeout"] + kinds["guard"] + kinds["on_error"] == sum(isinstance(e, Diverted) for e in events)
-    assert kinds["condition"] == sum(work[e.path] == "concurrency" for e in decided)
+    fired = [e for e in events if isinstance(e, BranchesPreempted)]
+    assert kinds["condition"] == sum(work[e.path] == "concurrency" for e in decided) + len(fired)
 
 
 @settings(deadline=None, max_examples=20)

@@ -34,6 +34,11 @@ def as_condition(outcome: str, when: dict[str, str]) -> dict[str, dict[str, str]
     return {outcome: when}
 
 
+def as_preempting(whom: list[str], when: dict[str, str]) -> Plain:
+    """Return one entry of `conditions` that decides nothing."""
+    return {"preempt": whom, "when": when}
+
+
 def keyed(required: Drawn, optional: Drawn | None = None) -> st.SearchStrategy[Plain]:
     """Draw a mapping with some keys, and others that may be absent."""
     return st.fixed_dictionaries(required, optional=optional or {})
@@ -66,7 +71,9 @@ def containers(inner: st.SearchStrategy[Plain]) -> st.SearchStrategy[Plain]:
         {"initial": WORDS, "states": st.dictionaries(WORDS, wired, min_size=1, max_size=3)},
         {"userdata": st.dictionaries(KEYS, VALUES, max_size=2)},
     )
-    condition = st.builds(as_condition, OUTCOMES, st.dictionaries(WORDS, OUTCOMES, min_size=1))
+    asked = st.dictionaries(WORDS, OUTCOMES, min_size=1)
+    whom = st.lists(WORDS, min_size=1, max_size=2, unique=True)
+    condition = st.builds(as_condition, OUTCOMES, asked) | st.builds(as_preempting, whom, asked)
     concurrency = keyed(
         {
             "states": st.dictionaries(WORDS, inner, min_size=1, max_size=3),

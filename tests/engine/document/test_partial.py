@@ -152,6 +152,11 @@ def test_a_key_that_resembles_another_one_by_chance_is_only_told() -> None:
         ("{good: {one: 3, at_least: 2}}", ["`one`: 3 is no outcome", "there are only 0 children in this condition"]),
         ("{good: {one: 3, two: done}}", ["`one`: 3 is no outcome"]),
         ("{good: {one: a}}, {bad: {at_least: 1}}, {bad: {two: 1}}", ["there are only 0 children", "`two`: 1 is no"]),
+        ("{preempt: [one]}", ["a condition with `preempt` says when"]),
+        ("{preempt: [one], good: {two: done}}", ["a condition decides an outcome or has `preempt`, not both"]),
+        ("{preempt: [one], when: {two: 3}}", ["`two`: 3 is no outcome"]),
+        ("{preempt: [one], when: {}}", ["`when`: expected mapping of length >= 1"]),
+        ("{good: {one: a}, bad: {one: b}}, {preempt: [one, one], when: {two: done}}", ["one outcome", "is repeated"]),
     ],
 )
 def test_a_condition_of_which_nothing_is_left_is_left_out(condition: str, told: list[str]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from typing import Any
+from typing import Any, cast
 
 Plain = dict[str, Any]
 MACHINES = ("machine", "priority")
@@ -180,8 +180,7 @@ def _rename(document: Plain, path: str, name: str) -> None:
     body["states"] = {name if key == old else key: each for key, each in body["states"].items()}
     if "concurrency" in container:
         body["conditions"] = [
-            {outcome: {name if key == old else key: due for key, due in when.items()} for outcome, when in rule.items()}
-            for rule in body["conditions"]
+            {key: _renamed(value, old, name) for key, value in rule.items()} for rule in body["conditions"]
         ]
         return
     if body["initial"] == old:
@@ -199,16 +198,26 @@ def _rename(document: Plain, path: str, name: str) -> None:
             child["on_error"] = name
 
 
+def _renamed(value: Any, old: str, name: str) -> Any:
+    """Rename a child in a condition, or among those that it preempts."""
+    if isinstance(value, list):
+        return [name if each == old else each for each in cast("list[str]", value)]
+    return {name if key == old else key: due for key, due in value.items()}
+
+
+def _without(value: Any, old: str) -> Any:
+    if isinstance(value, list):
+        return [each for each in cast("list[str]", value) if each != old]
+    return _of_those_left({key: due for key, due in value.items() if key != old})
+
+
 def _remove(document: Plain, path: str) -> None:
     parent, _, old = path.rpartition("/")
     container = _node(document, parent)
     body = _body(container)
     del body["states"][old]
     if "concurrency" in container:
-        rules = [
-            {outcome: _of_those_left({k: v for k, v in when.items() if k != old}) for outcome, when in rule.items()}
-            for rule in body["conditions"]
-        ]
+        rules = [{key: _without(value, old) for key, value in rule.items()} for rule in body["conditions"]]
         body["conditions"] = [rule for rule in rules if all(rule.values())]
         return
     if body["initial"] == old:

@@ -152,6 +152,44 @@ SLIPS = [
         "Write `left` instead of `leftt`",
     ),
     (
+        "unknown-child",
+        HEAD + dedent("""\
+        root:
+          concurrency:
+            states:
+              left: {state: flow.Wait, with: {duration_s: 1}}
+              right: {state: flow.Wait, with: {duration_s: 1}}
+            conditions: [{preempt: [rihgt], when: {left: done}}, {good: {right: done}}]
+            otherwise: failed
+        """),
+        "Write `right` instead of `rihgt`",
+    ),
+    (
+        "preempts-itself",
+        HEAD + dedent("""\
+        root:
+          concurrency:
+            states:
+              left: {state: flow.Wait, with: {duration_s: 1}}
+              right: {state: flow.Wait, with: {duration_s: 1}}
+            conditions: [{preempt: [left, right], when: {left: done}}, {good: {right: done}}]
+            otherwise: failed
+        """),
+        "Do not preempt `left`",
+    ),
+    (
+        "uncovered-combination",
+        HEAD + dedent("""\
+        root:
+          concurrency:
+            states:
+              left: {state: flow.Wait, with: {duration_s: 1}}
+              right: {state: flow.Wait, with: {duration_s: 1}}
+            conditions: [{preempt: [right], when: {left: done}}, {good: {right: done}}]
+        """),
+        "Otherwise end with `good`",
+    ),
+    (
         "uncovered-combination",
         HEAD + dedent("""\
         root:
@@ -217,3 +255,18 @@ def test_what_is_wrong_in_another_behavior_is_mended_there(tmp_path: Path) -> No
     findings = examine(text, file=tmp_path / "x.yaml", knowledge=known).findings
     assert [each.code for each in findings] == ["unconnected-outcome"]
     assert fixes_of(text, findings, file="x.yaml", knowledge=known) == ((),)
+
+
+def test_a_mistake_in_one_condition_leaves_those_that_preempt_as_they_are() -> None:
+    """Fixes write the conditions as a whole, whom they preempt included; `otherwise` is offered their outcomes only."""
+    text = HEAD + dedent("""\
+        root:
+          concurrency:
+            states:
+              left: {state: flow.Wait, with: {duration_s: 1}}
+              right: {state: flow.Wait, with: {duration_s: 1}}
+            conditions: [{preempt: [right], when: {left: done}}, {good: {rihgt: done}}]
+        """)
+    made = mended(text, next(fix for _, fix in offered(text, "unknown-child")))
+    assert "conditions: [{preempt: [right], when: {left: done}}, {good: {right: done}}]" in made
+    assert [fix.title for _, fix in offered(made, "uncovered-combination")] == ["Otherwise end with `good`"]

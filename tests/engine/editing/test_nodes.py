@@ -158,6 +158,17 @@ def test_a_count_of_branches_follows_those_that_are_left() -> None:
     assert "- {done: {left: a}}   # both of them" in made
 
 
+def test_those_that_a_condition_preempts_are_renamed_and_removed_with_their_branches() -> None:
+    """A condition that preempts nobody any more, or asks for nobody, goes."""
+    some = TEXT.replace("- {odd: {right: b}}", "- {preempt: [left], when: {right: b}}   # too late")
+    made = edited(some, {"edit": "rename_node", "path": "root/both/left", "name": "west"})
+    assert "- {preempt: [west], when: {right: b}}   # too late" in made
+    made = edited(some, {"edit": "rename_node", "path": "root/both/right", "name": "east"})
+    assert "- {preempt: [left], when: {east: b}}   # too late" in made
+    for gone in ("left", "right"):
+        assert "too late" not in edited(some, {"edit": "remove_nodes", "paths": [f"root/both/{gone}"]})
+
+
 def test_the_last_state_may_be_removed_and_another_one_added() -> None:
     paths = ["root/first", "root/second", "root/both", "root/third"]
     made = edited(TEXT, {"edit": "remove_nodes", "paths": paths})

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal, cast
 
 from engine.document import Behavior, Node
+from engine.document.condition import Condition
 from engine.document.parameter import bind_parameters
 from tests.engine.reference.schedule import Children, Deadline, End, Preempted, Schedule, Sleep, Steps, Task
 from tests.engine.reference.scope import Failed, Scope
@@ -181,6 +182,7 @@ class Interpreter:
         return End(self._now_s, decided.outcome)
 
     def _decided(self, node: Node, path: str, tasks: Mapping[str, Task]) -> Steps:
+        fired: set[int] = set()
         while True:
             try:
                 yield Children(path, tuple(tasks.values()))
@@ -189,6 +191,20 @@ class Interpreter:
             end = _decision(node, {name: task.end for name, task in tasks.items() if task.end is not None})
             if end is not None:
                 return End(self._now_s, end.outcome, failed=end.failed)
+            self._preempt_some(node, path, tasks, fired)
+
+    def _preempt_some(self, node: Node, path: str, tasks: Mapping[str, Task], fired: set[int]) -> None:
+        """End the branches that conditions name which hold for the first time, first in the document first."""
+        assert node.concurrency is not None
+        finished = {name: task.end for name, task in tasks.items() if task.end is not None}
+        ending: set[str] = set()
+        for index, rule in enumerate(node.concurrency.rules):
+            if rule.preempt and index not in fired and _holds(rule, finished):
+                fired.add(index)
+                ending.update(rule.preempt)
+        for name, task in tasks.items():
+            if name in ending and task.end is None:
+                self.schedule.preempt(task, path.count("/"))
 
     def _foreach(self, node: Node, path: str, scope: Scope) -> Steps:
         rounds = node.foreach
@@ -238,10 +254,14 @@ def _decision(node: Node, finished: Mapping[str, End]) -> End | None:
     if any(end.failed for end in finished.values()):
         return End(0.0, failed=True)
     for rule in node.concurrency.rules:
-        ended_so = [name for name, due in rule.when.items() if name in finished and finished[name].outcome == due]
-        if len(ended_so) >= (rule.at_least or len(rule.when)):
+        if not rule.preempt and _holds(rule, finished):
             return End(0.0, rule.outcome)
     if len(finished) == len(node.children):
         otherwise = node.concurrency.otherwise
         return End(0.0, otherwise or "", failed=otherwise is None)
     return None
+
+
+def _holds(rule: Condition, finished: Mapping[str, End]) -> bool:
+    ended_so = [name for name, due in rule.when.items() if name in finished and finished[name].outcome == due]
+    return len(ended_so) >= (rule.at_least or len(rule.when))

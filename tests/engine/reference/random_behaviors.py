@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from engine.authoring import (
     Guard,
     Param,
+    Preempt,
     Retry,
     Step,
     Timeout,
@@ -114,10 +115,10 @@ def _concurrencies(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
     states = {name: draw(_steps(depth - 1, LATE)) for name in names}
     due = st.sampled_from(["a", "a", "b", "x", "y", "late", "exhausted"])
     whens = st.dictionaries(st.sampled_from(names), due, min_size=1, max_size=2)
-    rules = [
-        (outcome, {**when, **({"at_least": draw(st.integers(1, len(when)))} if draw(st.booleans()) else {})})
-        for outcome, when in draw(st.lists(st.tuples(st.sampled_from(OUTS), whens), max_size=4))
-    ]
+    rules: list[tuple[str, Drawn] | Preempt] = []
+    for outcome, when in draw(st.lists(st.tuples(st.sampled_from(OUTS), whens), max_size=4)):
+        counted = {**when, **({"at_least": draw(st.integers(1, len(when)))} if draw(st.booleans()) else {})}
+        rules.append((outcome, counted) if draw(st.booleans()) else Preempt(draw(_some(names)), counted))
     return concurrency(
         states=states,
         conditions=rules,
@@ -126,6 +127,36 @@ def _concurrencies(draw: st.DrawFn, depth: int, keys: Drawn) -> Step:
         userdata=draw(USERDATA),
         **keys,
     )
+
+
+@st.composite
+def _preempting(draw: st.DrawFn) -> Step:
+    """Draw branches of which conditions preempt some, mostly with others left that go on."""
+    first, *others = names = ["p", "q", "r"]
+    # The first ends when others may still be at work, and mostly as some condition asks.
+    starter = state(
+        Act(after_s=draw(st.sampled_from([0.0, 1.0, 1.0, 2.0])), ends=draw(st.sampled_from(["a", "a", "a", "b"])))
+    )
+    states = {first: starter, **{name: draw(_steps(draw(st.integers(0, 2)), LATE)) for name in others}}
+    entries: list[tuple[str, Drawn] | Preempt] = [Preempt(draw(_some(others)), {first: "a"})]
+    for _ in range(draw(st.integers(0, 3))):
+        when: Drawn = {name: draw(st.sampled_from("aaabxy")) for name in draw(_some(names))}
+        count = {"at_least": draw(st.integers(1, len(when)))} if draw(st.booleans()) else {}
+        preempts = draw(st.booleans())
+        entries.append(
+            Preempt(draw(_some(names)), when | count) if preempts else (draw(st.sampled_from(OUTS)), when | count)
+        )
+    return concurrency(
+        states=dict(draw(st.permutations(list(states.items())))),
+        conditions=draw(st.permutations(entries)),
+        otherwise=draw(st.sampled_from(["x", "y", "y", None])),
+        shared=draw(st.sampled_from([None, None, None, ["n"]])),
+        userdata=draw(USERDATA),
+    )
+
+
+def _some(names: list[str]) -> st.SearchStrategy[list[str]]:
+    return st.lists(st.sampled_from(names), min_size=1, max_size=2, unique=True)
 
 
 @st.composite
@@ -190,3 +221,10 @@ def cases(draw: st.DrawFn) -> Case:
     userdata = {"n": draw(st.integers(0, 2)), "xs": [1, 2], **draw(USERDATA)}
     root = draw(_steps(DEPTH, st.sampled_from(OUTS)))
     return Case(behavior("random", outcomes=["x"], userdata=userdata, root=root))
+
+
+@st.composite
+def preempting_cases(draw: st.DrawFn) -> Case:
+    """Draw a behavior with a container whose conditions preempt some of its branches."""
+    userdata = {"n": draw(st.integers(0, 2)), "xs": [1, 2], **draw(USERDATA)}
+    return Case(behavior("random", outcomes=["x"], userdata=userdata, root=draw(_preempting())))

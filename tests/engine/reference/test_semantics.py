@@ -13,7 +13,7 @@ from engine.journal import encode_event_log
 from tests.engine.reference.activation import lines_of, story_of
 from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter, TooLong
-from tests.engine.reference.random_behaviors import STOPS, Case, cases
+from tests.engine.reference.random_behaviors import STOPS, Case, cases, preempting_cases
 from tests.engine.reference.schedule import Schedule
 
 ORDERS = 12
@@ -32,9 +32,16 @@ def test_the_engine_does_what_the_reference_does(case: Case, stop_at_s: float) -
     compare(case, stop_at_s)
 
 
+@given(preempting_cases(), STOPS)
+@settings(COMPARING, max_examples=300)
+def test_conditions_preempt_the_branches_that_the_reference_preempts(case: Case, stop_at_s: float) -> None:
+    """While the others go on."""
+    compare(case, stop_at_s)
+
+
 @pytest.mark.nightly
 @pytest.mark.timeout(3600)
-@given(cases(), STOPS)
+@given(cases() | preempting_cases(), STOPS)
 @settings(COMPARING, max_examples=10_000)
 def test_the_engine_does_what_the_reference_does_ten_thousand_times(case: Case, stop_at_s: float) -> None:
     """As above."""

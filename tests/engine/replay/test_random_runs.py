@@ -80,6 +80,13 @@ def _first(children: list[Node]) -> Node:
     return {"concurrency": {"states": states, "conditions": conditions, "otherwise": "a"}}
 
 
+def _some(children: list[Node]) -> Node:
+    """All at once; the first one to end ends the second."""
+    states = {f"c{index}": child for index, child in enumerate(children)}
+    conditions = [{"preempt": ["c1"], "when": {"c0": out}} for out in _outs(children[0])] if len(children) > 1 else []
+    return {"concurrency": {"states": states, "conditions": conditions, "otherwise": "a"}}
+
+
 def _all(children: list[Node]) -> Node:
     """All at once; over when all are."""
     states = {f"c{index}": child for index, child in enumerate(children)}
@@ -115,6 +122,9 @@ def _trees(
 UNDISTURBED = _trees(_leaves(GRID, st.integers(0, 4)), _all, priority=False)
 DISTURBED = _trees(
     st.builds(_limited, _leaves(OFF_GRID, st.just(0)), st.just(0.0) | GRID, st.integers(0, 1)), _first, priority=True
+)
+PARTLY_PREEMPTED = _trees(
+    st.builds(_limited, _leaves(OFF_GRID, st.just(0)), st.just(0.0) | GRID, st.integers(0, 1)), _some, priority=True
 )
 
 
@@ -191,3 +201,11 @@ def test_a_run_that_was_stopped_paused_and_stepped_replays_the_same(
 @given(tree=DISTURBED, acts=PLANS, supervision=SUPERVISIONS)
 def test_a_run_under_supervision_replays_the_same(tree: Node, acts: dict[float, Act], supervision: Supervision) -> None:
     _same(_document(tree), acts={**acts, **OVER}, supervision=supervision)
+
+
+@settings(max_examples=60, deadline=None)
+@given(tree=PARTLY_PREEMPTED, acts=PLANS, seed=st.integers(0, 9))
+def test_a_run_in_which_conditions_preempt_some_branches_replays_the_same(
+    tree: Node, acts: dict[float, Act], seed: int
+) -> None:
+    _same(_document(tree), acts={**acts, **OVER}, seed=seed)

@@ -45,6 +45,49 @@ BEHAVIORS = {
               last: {state: test.Write, with: {value: "${value + other}"}, out: {value: other},
                      transitions: {done: good}}
         """,
+    "conditions that preempt some branches": """
+        userdata: {value: 0, other: 0}
+        root:
+          machine:
+            initial: some
+            states:
+              some:
+                concurrency:
+                  states:
+                    mover:
+                      machine:
+                        initial: write
+                        states:
+                          write: {state: test.Write, with: {value: 1}, transitions: {done: hang}}
+                          hang: {state: test.Hang, with: {cleanup_s: 1}, transitions: {done: spoil}}
+                          spoil: {state: test.Write, with: {value: 9}, transitions: {done: out}}
+                    again: {state: test.Raise, retry: {times: 9, backoff: 8}, on_error: spoiled}
+                    lost: {state: test.Give, with: {after_s: 1}}
+                    late: {state: test.Give, with: {after_s: 2}}
+                    light: {state: test.Write, with: {value: 2, after_s: 4}, out: {value: other}}
+                  conditions:
+                    - {preempt: [mover], when: {lost: a}}
+                    - {preempt: [again, late, lost], when: {late: a, lost: a}}
+                    - {fine: {lost: a, late: a, light: done}}
+                    - {wrong: {mover: out, light: done}}
+                    - {wrong: {again: spoiled}}
+                  otherwise: wrong
+                transitions: {fine: rest, wrong: bad}
+              rest: {state: test.Give, with: {after_s: 1}, transitions: {a: good, b: bad, c: bad}}
+        """,
+    "all branches preempted or done": """
+        userdata: {value: 0}
+        root:
+          concurrency:
+            states:
+              hanging: {state: test.Hang, with: {cleanup_s: 2}}
+              writing: {state: test.Write, with: {value: 1, after_s: 1}}
+              last: {state: test.Give, with: {after_s: 2}}
+            conditions:
+              - {preempt: [hanging], when: {writing: done}}
+              - {bad: {hanging: done}}
+            otherwise: good
+        """,
     "retry, timeout, guard and foreach": """
         userdata: {sum: [], last: 0}
         root:

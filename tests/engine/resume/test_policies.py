@@ -149,3 +149,21 @@ def test_the_data_of_a_moment_start_a_new_run_at_a_chosen_step() -> None:
     assert skipped.result.userdata == {"value": 2}
     with pytest.raises(ControlError, match="there is no such node"):
         run_virtual(main("root/four"))
+
+
+def test_a_run_that_starts_inside_a_branch_gives_its_container_the_whole_timeout() -> None:
+    """The run of old had spent two of its seconds there; the branch beside it goes on as it stood."""
+    plan = _plan("""
+    root:
+      timeout: {after: 3 s, to: bad}
+      concurrency:
+        states:
+          one: {state: test.Give, with: {after_s: 2}}
+          two: {state: test.Give, with: {after_s: 2.5}}
+        conditions: [{good: {one: a, two: a}}]
+    """)
+    whole = _whole(plan)
+    history = read_history(plan, "r1", whole.events, until_seq=_events_until(whole, "root/two")[-1].seq + 1)
+    assert history.time_s == 2.0
+    points = started_from(history, plan, "root/two").points
+    assert (points["root"].elapsed_s, points["root/one"].left) == (0.0, "a")

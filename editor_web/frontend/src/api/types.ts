@@ -992,11 +992,12 @@ export interface RobotLine {
   readonly way: WayLine | null
 }
 
-/** One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`. */
+/** One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`. One that preempts some children has no outcome. */
 export interface RuleBody {
   readonly outcome: string
   readonly when: Dict<string>
   readonly at_least: number | null
+  readonly preempt: readonly string[]
 }
 
 /** One run, under way or over. */

@@ -26,7 +26,7 @@ describe.each(NAMES)('a dictionary with names like %s', (name) => {
     expect(Object.keys(withChanges({}, { [name]: scope }, false))).toEqual([name])
     const changed = fold(EMPTY, { k: 'documents', changed: { [name]: 'hash' } }, 0)
     expect(changed !== 'gap' && lookup(changed.documents, name)).toBe('hash')
-    const rule = { outcome: 'done', when: { other: 'a' }, at_least: null }
+    const rule = { outcome: 'done', when: { other: 'a' }, at_least: null, preempt: [] }
     expect(withChild([rule], 0, name, 'b')).toEqual([{ ...rule, when: { other: 'a', [name]: 'b' } }])
     expect(withChild([rule], 0, name, '')).toEqual([rule])
   })

@@ -69,7 +69,7 @@ it('stacks what runs side by side, and shows the rules below', async () => {
   const root = node('root', ['both'], {
     kind: 'concurrency',
     children: [node('root/left', ['a']), node('root/right', ['a'])],
-    rules: [{ outcome: 'both', when: { left: 'a', right: 'a' }, at_least: null }],
+    rules: [{ outcome: 'both', when: { left: 'a', right: 'a' }, at_least: null, preempt: [] }],
   })
   const { boxes } = await arrange(root, options)
   expect(boxes.get('root/right')?.y).toBeGreaterThan(boxes.get('root/left')?.y ?? 0)

@@ -3,19 +3,46 @@ import { without as withoutName, type Dict } from '../dict'
 import type { EditNode } from './model'
 
 export interface Rule {
+  /** Empty where it preempts some children, and the others go on. */
   readonly outcome: string
   readonly when: Dict<string>
   /** How many of these children; null asks for all of them. */
   readonly at_least: number | null
+  readonly preempt: readonly string[]
 }
 
-/** As documents write them: `[{finished: {left: reached, right: reached, at_least: 1}}]`. */
-export function conditionsOf(
+export type Condition = Dict<Dict<string | number> | readonly string[]>
+
+/**
+ * As documents write them: `[{finished: {left: reached, right: reached, at_least: 1}}]`, or
+ * `[{preempt: [right], when: {left: failed}}]`.
+ */
+export function conditionsOf(rules: readonly Rule[]): readonly Condition[] {
+  return rules.map(({ outcome, when, at_least, preempt }) => {
+    const asked = at_least === null ? when : { ...when, at_least }
+    return preempt.length > 0 ? { preempt, when: asked } : { [outcome]: asked }
+  })
+}
+
+/** What comes of a rule, in words: its outcome, or whom it preempts. */
+export function consequenceOf({ outcome, preempt }: Pick<Rule, 'outcome' | 'preempt'>): string {
+  return preempt.length > 0 ? `preempt ${preempt.join(', ')}` : outcome
+}
+
+/** Have a rule preempt a child or not. With its first one it decides no outcome any more, with its last one it does. */
+export function withPreempted(
   rules: readonly Rule[],
-): readonly Dict<Dict<string | number>>[] {
-  return rules.map(({ outcome, when, at_least }) => ({
-    [outcome]: at_least === null ? when : { ...when, at_least },
-  }))
+  index: number,
+  child: string,
+  isPreempted: boolean,
+): readonly Rule[] {
+  return rules.map((rule, at) => {
+    if (at !== index) return rule
+    const others = rule.preempt.filter((name) => name !== child)
+    const preempt = isPreempted ? [...others, child] : others
+    if (preempt.length > 0) return { ...rule, outcome: '', preempt }
+    return { ...rule, outcome: rule.outcome || 'failed', preempt }
+  })
 }
 
 /** Ask for so many of the children that a rule names; all of them, and more than all, is said without a number. */
@@ -60,14 +87,19 @@ export function added(
     children.flatMap((child) => (child.outcomes[0] ? [[child.name, child.outcomes[0]]] : [])),
   )
   const candidates: Rule[] = [
-    { outcome: 'finished', when: all, at_least: null },
+    { outcome: 'finished', when: all, at_least: null, preempt: [] },
     ...children.flatMap((child) =>
-      child.outcomes.slice(1).map((outcome) => ({ outcome: 'failed', when: { [child.name]: outcome }, at_least: null })),
+      child.outcomes.slice(1).map((outcome) => ({
+        outcome: 'failed',
+        when: { [child.name]: outcome },
+        at_least: null,
+        preempt: [],
+      })),
     ),
   ]
-  const said = new Set(rules.map((rule) => textOf(rule.when)))
+  const said = new Set(rules.filter((rule) => rule.preempt.length === 0).map((rule) => textOf(rule.when)))
   const next = candidates.find((rule) => Object.keys(rule.when).length > 0 && !said.has(textOf(rule.when)))
-  return next ? [...rules, next] : [...rules, { outcome: 'finished', when: all, at_least: null }]
+  return next ? [...rules, next] : [...rules, { outcome: 'finished', when: all, at_least: null, preempt: [] }]
 }
 
 function textOf(when: Rule['when']): string {

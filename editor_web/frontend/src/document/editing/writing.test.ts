@@ -5,7 +5,7 @@ import { completed, openingAt } from './completion'
 import { chordText, isChord } from './keys'
 import { aligned, neighborOf } from './neighbors'
 import { nodeAtLine, stateNear, writingAt } from './places'
-import { added, conditionsOf, withChild, withCount } from './rules'
+import { added, conditionsOf, consequenceOf, withChild, withCount, withPreempted } from './rules'
 import { machineNode, node } from './testNodes'
 
 const NAMES = ['speed', 'line_speed', 'part'].map((name) => ({ name, origin: 'parameter', detail: '' }))
@@ -77,14 +77,25 @@ it('proposes the rules that are missing, and writes them as documents do', () =>
   const first = added([], children)
   expect(conditionsOf(first)).toEqual([{ finished: { l: 'done', r: 'done' } }])
   expect(conditionsOf(added(first, children)).at(-1)).toEqual({ failed: { l: 'failed' } })
-  expect(withChild(first, 0, 'r', '')).toEqual([{ outcome: 'finished', when: { l: 'done' }, at_least: null }])
-  expect(withChild([{ outcome: 'x', when: { l: 'done' }, at_least: null }], 0, 'l', '')).toEqual([
-    { outcome: 'x', when: { l: 'done' }, at_least: null },
+  expect(withChild(first, 0, 'r', '')).toEqual([{ outcome: 'finished', when: { l: 'done' }, at_least: null, preempt: [] }])
+  expect(withChild([{ outcome: 'x', when: { l: 'done' }, at_least: null, preempt: [] }], 0, 'l', '')).toEqual([
+    { outcome: 'x', when: { l: 'done' }, at_least: null, preempt: [] },
   ])
   const one = withCount(first, 0, 1)
   expect(conditionsOf(one)).toEqual([{ finished: { l: 'done', r: 'done', at_least: 1 } }])
   expect(conditionsOf(withChild(one, 0, 'r', ''))).toEqual([{ finished: { l: 'done' } }])
   expect(conditionsOf(withCount(one, 0, 2))).toEqual(conditionsOf(first))
+})
+
+it('writes whom a rule preempts, and gives it an outcome again when it preempts nobody', () => {
+  const children = [node('root/l', ['done', 'failed']), node('root/r', ['done'])]
+  const some = withPreempted(added([], children), 0, 'r', true)
+  expect(conditionsOf(some)).toEqual([{ preempt: ['r'], when: { l: 'done', r: 'done' } }])
+  expect(some.map(consequenceOf)).toEqual(['preempt r'])
+  const more = withPreempted(withCount(some, 0, 1), 0, 'l', true)
+  expect(conditionsOf(more)).toEqual([{ preempt: ['r', 'l'], when: { l: 'done', r: 'done', at_least: 1 } }])
+  expect(conditionsOf(withPreempted(some, 0, 'r', false))).toEqual([{ failed: { l: 'done', r: 'done' } }])
+  expect(conditionsOf(added(some, children)).at(-1)).toEqual({ finished: { l: 'done', r: 'done' } })
 })
 
 it('finds the node of a line, and what is written at a place', () => {

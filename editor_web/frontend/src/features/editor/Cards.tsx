@@ -12,6 +12,7 @@ import {
 } from '@tabler/icons-react'
 import { memo } from 'react'
 import { isFailure, type Way } from '../../document/editing/model'
+import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
 import { iconOf } from './kinds'
@@ -208,7 +209,7 @@ function RuleTable({ node }: { node: CardData['node'] }) {
       {node.rules.length === 0 && <div className="rule is-missing">no rule yet</div>}
       {node.rules.map((rule, index) => (
         <div key={index} className="rule">
-          <span className={`rule-outcome${isFailure(rule.outcome) ? ' is-failure' : ''}`}>{rule.outcome}</span>
+          <span className={`rule-outcome${isFailure(rule.outcome) ? ' is-failure' : ''}`}>{consequenceOf(rule)}</span>
           <span className="rule-when">
             {rule.at_least !== null && <em>{rule.at_least} of </em>}
             {Object.entries(rule.when).map(([child, outcome], position) => (

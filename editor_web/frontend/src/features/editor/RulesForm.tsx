@@ -3,7 +3,17 @@ import { lookup } from '../../document/dict'
 import { IconArrowDown, IconArrowUp, IconPlus, IconTrash } from '@tabler/icons-react'
 import type { EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
-import { added, conditionsOf, moved, renamedOutcome, withChild, withCount, without, type Rule } from '../../document/editing/rules'
+import {
+  added,
+  conditionsOf,
+  moved,
+  renamedOutcome,
+  withChild,
+  withCount,
+  without,
+  withPreempted,
+  type Rule,
+} from '../../document/editing/rules'
 import { perform, performOn } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
@@ -20,6 +30,7 @@ export function RulesForm({ node }: { node: EditNode }) {
           <thead>
             <tr>
               <th scope="col">Outcome</th>
+              <th scope="col">Preempts</th>
               <th scope="col">How many</th>
               {node.children.map((child) => (
                 <th scope="col" key={child.name}>
@@ -35,10 +46,26 @@ export function RulesForm({ node }: { node: EditNode }) {
             {node.rules.map((rule, index) => (
               <tr key={index}>
                 <td>
-                  <TemplateInput
-                    label={`Outcome of rule ${index + 1}`}
-                    value={rule.outcome}
-                    onCommit={(typed) => typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)}
+                  {rule.preempt.length > 0 ? (
+                    <span className="rule-outcome">none, goes on</span>
+                  ) : (
+                    <TemplateInput
+                      label={`Outcome of rule ${index + 1}`}
+                      value={rule.outcome}
+                      onCommit={(typed) =>
+                        typed && set((rules) => renamedOutcome(rules, index, typed), `Rule ${index + 1}`)
+                      }
+                    />
+                  )}
+                </td>
+                <td>
+                  <Preempted
+                    index={index}
+                    rule={rule}
+                    names={node.children.map((child) => child.name)}
+                    onSet={(child, isPreempted) =>
+                      set((rules) => withPreempted(rules, index, child, isPreempted), `Rule ${index + 1}`)
+                    }
                   />
                 </td>
                 <td>
@@ -134,5 +161,37 @@ export function RulesForm({ node }: { node: EditNode }) {
         />
       </div>
     </Section>
+  )
+}
+
+/** Whom a rule preempts while the others go on; everybody, where it decides an outcome. */
+function Preempted({
+  index,
+  rule,
+  names,
+  onSet,
+}: {
+  index: number
+  rule: Rule
+  names: readonly string[]
+  onSet: (child: string, isPreempted: boolean) => void
+}) {
+  const gone = rule.preempt.filter((name) => !names.includes(name))
+  return (
+    <details className="rule-preempts">
+      <summary aria-label={`Preempted by rule ${index + 1}`}>
+        {rule.preempt.length > 0 ? rule.preempt.join(', ') : 'all'}
+      </summary>
+      {[...names, ...gone].map((name) => (
+        <label key={name}>
+          <input
+            type="checkbox"
+            checked={rule.preempt.includes(name)}
+            onChange={({ currentTarget: { checked } }) => onSet(name, checked)}
+          />
+          {name}
+        </label>
+      ))}
+    </details>
   )
 }

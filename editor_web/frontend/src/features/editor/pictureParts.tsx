@@ -2,6 +2,7 @@
 import { FRAME_HEAD, pillWidth, portY, RULE_HEIGHT, rowsHeight, tableHeight } from '../../document/editing/measure'
 import type { Marking } from '../../document/editing/changes'
 import { isFailure, type EditNode } from '../../document/editing/model'
+import { consequenceOf } from '../../document/editing/rules'
 import type { Box } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 import type { CanvasNode, CardNode, PillNode } from './elements'
@@ -234,7 +235,7 @@ export function Twig({ node, box, palette, mark, onPick }: PartProps) {
 export function Rules({ node, box, palette }: { node: EditNode; box: Box; palette: Palette }) {
   const lines = [
     ...node.rules.map((rule) => [
-      rule.outcome,
+      consequenceOf(rule),
       (rule.at_least === null ? '' : `${rule.at_least} of `) +
         Object.entries(rule.when)
           .map(([child, outcome]) => `${child} = ${outcome}`)
