@@ -20,6 +20,8 @@ def _load_numba() -> Any:
     """
     numba: Any = import_module("numba")
     algebra: Any = import_module("numba.np.linalg")
+    if not hasattr(algebra, "ensure_blas"):
+        return numba
     with import_module("numba.core.compiler_lock").global_compiler_lock:
         ensure_blas = algebra.ensure_blas
         algebra.ensure_blas = _refuse_blas

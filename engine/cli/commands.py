@@ -11,8 +11,6 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command, get_group
 
-from engine.cli.plain_values import take_plain_values
-
 _PLACES = {
     "run": "engine.cli.run:run",
     "resume": "engine.cli.resume:resume",
@@ -47,7 +45,6 @@ class Commands(TyperGroup):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self.commands: Any = _CommandsOnDemand()
-        take_plain_values(self)
 
 
 class _CommandsOnDemand(Mapping[str, Any]):
@@ -70,11 +67,7 @@ def _loaded(name: str) -> Any:
     if isinstance(found, typer.Typer):
         group: Any = get_group(found)
         group.name = name
-        for each in (group, *group.commands.values()):
-            take_plain_values(each)
         return group
     single = typer.Typer(add_completion=False)
     single.command(name)(found)
-    command: Any = get_command(single)
-    take_plain_values(command)
-    return command
+    return get_command(single)
