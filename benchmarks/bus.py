@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from benchmarks.benchmark_cli import run_script
 from benchmarks.comparison import Columns, Result, Row, Table
-from benchmarks.script import run_script
 
 PACKAGES = ("flexcell", "blinker", "pyee")
 _CONTROL_HZ = 1000

@@ -13,18 +13,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from editor_web.server import dashboard
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.cli.inputs import read_behavior, read_cell
 from engine.journal import Journal
-from engine.launch import new_origin, new_run
-from engine.plan import new_plan
-from engine.recording import RecordingOrder, RunRecording, collect_documents
+from engine.project.run_factory import new_origin, new_run
+from engine.project.session import Session
+from engine.recording import RecordingOptions, RunRecording, collect_documents
 from engine.registry import load_states
-from engine.run import Run
-from engine.session import Session
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run
 from robots.port import ControllerName
-from robots.sim.process_host import ProcessHost
-from robots.sim.world import SimWorld
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.world.sim_world import SimWorld
 
 BEHAVIOR = Path(__file__).with_name("two_arms_for_ever.yaml")
 _ROOT = Path(__file__).parents[1]
@@ -49,7 +49,7 @@ async def busy_cell(controller: ControllerName, *, folder: Path, browser: bool =
     catalogue = load_states()
     behavior, _ = read_behavior(BEHAVIOR, catalogue)
     document = read_cell(None, behavior)
-    order = RecordingOrder(path=folder / "run.mcap", documents=collect_documents(behavior, document))
+    order = RecordingOptions(path=folder / "run.mcap", documents=collect_documents(behavior, document))
     with Journal.open(folder) as journal:
         async with (
             RunRecording.open(order, inline=False) as recording,

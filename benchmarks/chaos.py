@@ -18,7 +18,7 @@ from pathlib import Path
 
 import httpx
 
-from benchmarks.chaos_losses import LOSSES, Ended, Failed, Loss, moving_run
+from benchmarks.chaos_losses import LOSSES, Loss, LossResult, TrialFailure, moving_run
 
 
 def main() -> int:
@@ -41,7 +41,7 @@ def main() -> int:
     return 1 if failed else 0
 
 
-def _trial(loss: Loss, chance: random.Random) -> Ended:
+def _trial(loss: Loss, chance: random.Random) -> LossResult:
     with tempfile.TemporaryDirectory() as folder:
         try:
             with loss.server(Path(folder) / "cell") as running:
@@ -50,9 +50,9 @@ def _trial(loss: Loss, chance: random.Random) -> Ended:
                 return loss.happens(running, run, chance)
         except httpx.HTTPStatusError as error:
             answer = error.response
-            return Ended(wrong=f"FAILED: {error.request.url.path} answers {answer.status_code}: {answer.text}")
-        except (Failed, httpx.HTTPError, OSError) as error:
-            return Ended(wrong=f"FAILED: {error}")
+            return LossResult(wrong=f"FAILED: {error.request.url.path} answers {answer.status_code}: {answer.text}")
+        except (TrialFailure, httpx.HTTPError, OSError) as error:
+            return LossResult(wrong=f"FAILED: {error}")
 
 
 if __name__ == "__main__":

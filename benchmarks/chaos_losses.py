@@ -33,7 +33,7 @@ _JUMPS_S = (3_600.0, 86_400.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended:
+class LossResult:
     """How a trial ended; `wrong` is empty where it passed."""
 
     rest_s: float | None = None
@@ -42,11 +42,11 @@ class Ended:
     wrong: str = ""
 
 
-class Failed(Exception):
+class TrialFailure(Exception):
     """Something was not as it must be."""
 
 
-def _engine_killed(running: Server, run: str, _chance: random.Random) -> Ended:
+def _engine_killed(running: Server, run: str, _chance: random.Random) -> LossResult:
     began_s = time.monotonic()
     world = running.children("sim.process_main")[0]
     running.signal(signal.SIGKILL)
@@ -61,31 +61,31 @@ def _engine_killed(running: Server, run: str, _chance: random.Random) -> Ended:
         check=False,
     )
     if "Traceback" in done.stderr or done.returncode not in (1, 2, 3):
-        raise Failed(f"resume ended with {done.returncode}: {done.stderr[-200:]}")
+        raise TrialFailure(f"resume ended with {done.returncode}: {done.stderr[-200:]}")
     after = "says why not" if done.returncode == 2 else "resumed"
     cause = done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.stdout.strip()[-120:]
-    return Ended(rest_s=max(0.0, rest_s), cause=cause, after=after)
+    return LossResult(rest_s=max(0.0, rest_s), cause=cause, after=after)
 
 
-def _engine_suspended(running: Server, run: str, _chance: random.Random) -> Ended:
+def _engine_suspended(running: Server, run: str, _chance: random.Random) -> LossResult:
     began_s = time.monotonic()
     running.signal(signal.SIGSTOP)
     rest_s = running.resting_since_s() - began_s
     time.sleep(_SUSPENDED_S)
     running.signal(signal.SIGCONT)
     cause = _cause(running, run, "silent")
-    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return LossResult(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _world_lost(running: Server, run: str, _chance: random.Random, *, by: signal.Signals, word: str) -> Ended:
+def _world_lost(running: Server, run: str, _chance: random.Random, *, by: signal.Signals, word: str) -> LossResult:
     os.kill(running.children("sim.process_main")[0], by)
     cause = _cause(running, run, word)
     running.http.post("/api/v1/cell/connect", json={}).raise_for_status()
     running.look_at_world()
-    return Ended(cause=cause, after=_runs_again(running))
+    return LossResult(cause=cause, after=_runs_again(running))
 
 
-def _relay_killed(running: Server, run: str, _chance: random.Random) -> Ended:
+def _relay_killed(running: Server, run: str, _chance: random.Random) -> LossResult:
     began_s = time.monotonic()
     os.kill(running.children("stop.process")[0], signal.SIGKILL)
     rest_s = running.resting_since_s() - began_s
@@ -93,26 +93,26 @@ def _relay_killed(running: Server, run: str, _chance: random.Random) -> Ended:
     _until(lambda: not running.children("sim.process_main"), _END_S, "the world's process lives on")
     running.http.post("/api/v1/cell/connect", json={}).raise_for_status()
     running.look_at_world()
-    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return LossResult(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _worker_killed(running: Server, run: str, _chance: random.Random, *, worker: str) -> Ended:
+def _worker_killed(running: Server, run: str, _chance: random.Random, *, worker: str) -> LossResult:
     pids = running.children(worker)
     if not pids:
-        raise Failed("there is no such process")
+        raise TrialFailure("there is no such process")
     os.kill(pids[0], signal.SIGKILL)
     time.sleep(_SUSPENDED_S)
     told = running.run(run)
     if told["status"] not in ("running", "finished", "errored") or (told["status"] != "running" and not told["cause"]):
-        raise Failed(f"the run is {told['status']} without a cause")
+        raise TrialFailure(f"the run is {told['status']} without a cause")
     after = "went on" if told["status"] == "running" else "ended"
     cause = str(told["cause"]) or "the run goes on"
     if told["status"] == "running":
         _stop(running)
-    return Ended(cause=cause, after=f"{after}; {_runs_again(running)}")
+    return LossResult(cause=cause, after=f"{after}; {_runs_again(running)}")
 
 
-def _disk_full(running: Server, run: str, _chance: random.Random) -> Ended:
+def _disk_full(running: Server, run: str, _chance: random.Random) -> LossResult:
     began_s = time.monotonic()
     filler = running.state / "filler"
     with filler.open("wb", buffering=0) as file:
@@ -125,10 +125,10 @@ def _disk_full(running: Server, run: str, _chance: random.Random) -> Ended:
         cause = _cause(running, run, "the journal cannot be written")
     rest_s = running.resting_since_s() - began_s
     filler.unlink()
-    return Ended(rest_s=rest_s, cause=cause, after=_runs_again(running))
+    return LossResult(rest_s=rest_s, cause=cause, after=_runs_again(running))
 
 
-def _clock_jumps(running: Server, run: str, chance: random.Random, *, sign: int) -> Ended:
+def _clock_jumps(running: Server, run: str, chance: random.Random, *, sign: int) -> LossResult:
     """The run goes on through a jump of the system's clock and one back."""
     by_s = sign * chance.uniform(*_JUMPS_S)
     _jump(running.folder.parent, by_s)
@@ -138,9 +138,9 @@ def _clock_jumps(running: Server, run: str, chance: random.Random, *, sign: int)
     _until(lambda: not running.heartbeat.at_rest_since_ns, _END_S, "no arm moves after the jumps")
     told = running.run(run)
     if told["status"] != "running":
-        raise Failed(f"the run is {told['status']}: {told['cause']}")
+        raise TrialFailure(f"the run is {told['status']}: {told['cause']}")
     _stop(running)
-    return Ended(cause=f"by {by_s:+.0f} s; the run goes on", after=_runs_again(running))
+    return LossResult(cause=f"by {by_s:+.0f} s; the run goes on", after=_runs_again(running))
 
 
 def _clock_s(running: Server) -> float:
@@ -159,7 +159,7 @@ def _jump(folder: Path, by_s: float) -> None:
 class Loss:
     """Something that is lost: `happens` takes server, run, and the trial's chance; `disk` is as for `server`."""
 
-    happens: Callable[[Server, str, random.Random], Ended]
+    happens: Callable[[Server, str, random.Random], LossResult]
     disk: str = ""
     sets_clock: bool = False
 
@@ -195,7 +195,7 @@ def _cause(running: Server, run: str, word: str) -> str:
     _until(lambda: running.run(run)["status"] not in ("running", "stopping"), _END_S, "the run does not end")
     cause = str(running.run(run)["cause"])
     if word not in cause:
-        raise Failed(f"the cause does not say {word!r}: {cause}")
+        raise TrialFailure(f"the cause does not say {word!r}: {cause}")
     return cause
 
 
@@ -217,7 +217,7 @@ def moving_run(running: Server) -> str:
                 return run
             time.sleep(_LOOK_S)
         time.sleep(_SUSPENDED_S)
-    raise Failed(f"no arm moves within {_MOVING_S:g} s: {running.run(run)['cause']}")
+    raise TrialFailure(f"no arm moves within {_MOVING_S:g} s: {running.run(run)['cause']}")
 
 
 def _stop(running: Server) -> None:
@@ -230,7 +230,7 @@ def _until(true: Callable[[], bool], limit_s: float, otherwise: str) -> None:
     deadline_s = time.monotonic() + limit_s
     while not true():
         if time.monotonic() > deadline_s:
-            raise Failed(f"{otherwise} within {limit_s:g} s")
+            raise TrialFailure(f"{otherwise} within {limit_s:g} s")
         time.sleep(_LOOK_S)
 
 

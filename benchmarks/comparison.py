@@ -75,7 +75,7 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredTable:
     """A table with its results."""
 
     table: Table
@@ -100,17 +100,17 @@ class Measured:
         return [result.row.name, *(cell(result) for cell in self.table.columns.values()), ratio]
 
 
-def measure(table: Table, *, rounds: int, quick: bool) -> Measured:
+def measure(table: Table, *, rounds: int, quick: bool) -> MeasuredTable:
     """Run every row in `rounds` fresh processes, one row after the other in each round."""
     found: dict[str, list[Sample | str]] = {row.name: [] for row in table.rows}
     for _ in range(rounds):
         for row in table.rows:
             at_least_s = 0.0 if quick else table.at_least_s
             found[row.name].append(_run(row.job, at_least_s, row.quick if quick else row.sizes))
-    return Measured(table, tuple(_result(row, found[row.name]) for row in table.rows))
+    return MeasuredTable(table, tuple(_result(row, found[row.name]) for row in table.rows))
 
 
-def report(measured: Sequence[Measured], packages: Sequence[str]) -> dict[str, object]:
+def report(measured: Sequence[MeasuredTable], packages: Sequence[str]) -> dict[str, object]:
     """Return everything that was measured, with what it was measured on, for JSON."""
     return {
         "machine": machine(),

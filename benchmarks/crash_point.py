@@ -59,11 +59,11 @@ class _CrashingRun:
     async def events(self) -> Sequence[Event]:
         return await self.inner.events()
 
-    async def keep_up(self) -> None:
-        await self.inner.keep_up()
+    async def apply_backpressure(self) -> None:
+        await self.inner.apply_backpressure()
 
-    def keep_world(self, state: bytes) -> None:
-        self.inner.keep_world(state)
+    def append_world_state(self, state: bytes) -> None:
+        self.inner.append_world_state(state)
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
         self.inner.on_failure(listener)

@@ -15,11 +15,11 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.document import Behavior, load_behavior, load_cell, parse_behavior
 from engine.document.cell import Cell
 from engine.errors import ControlError
-from engine.event import Entered, Event, PauseConfirmed, SteppedBack
-from engine.plan import Catalogue
+from engine.event import Event, NodeEntered, PauseConfirmed, RunSteppedBack
 from engine.registry import load_states
-from engine.resume import RERUN, Question
-from engine.run import Run
+from engine.runtime.history.resume import RERUN, ResumeQuestion
+from engine.runtime.plan import Catalogue
+from engine.runtime.run import Run
 from engine.skill import Action, Service
 from engine.state import ActivationRecord, Context, Outcome, State
 
@@ -245,7 +245,7 @@ class Subject:
     catalogue: Callable[[], Catalogue]
     cell: Callable[[], Cell | None] = lambda: None
     install: Callable[[SkillBus, Path], object] = lambda bus, effects: None
-    answer: Callable[[Question, Sequence[str]], str] = lambda question, effects: RERUN
+    answer: Callable[[ResumeQuestion, Sequence[str]], str] = lambda question, effects: RERUN
     once: frozenset[str] = frozenset()
     """Effects that no crash may repeat."""
     operate: Callable[[Run, Sequence[Event]], object] = lambda run, events: None
@@ -270,11 +270,11 @@ class Reviser:
         run.watch(self._take)
 
     def _count(self, event: Event) -> None:
-        self._back += isinstance(event, SteppedBack)
+        self._back += isinstance(event, RunSteppedBack)
 
     def _take(self, event: Event) -> None:
         self._count(event)
-        if isinstance(event, Entered) and event.path == "root/last" and self._back < REVISIONS:
+        if isinstance(event, NodeEntered) and event.path == "root/last" and self._back < REVISIONS:
             asyncio.get_running_loop().call_later(0.2, self._run.control.pause)
         if isinstance(event, PauseConfirmed):
             order = asyncio.get_running_loop().create_task(self._go())
@@ -293,7 +293,7 @@ class Reviser:
         self._run.control.resume()
 
 
-def _as_seen(question: Question, effects: Sequence[str]) -> str:
+def _as_seen(question: ResumeQuestion, effects: Sequence[str]) -> str:
     return "stamped" if ASKED[question.path] in effects else RERUN
 
 

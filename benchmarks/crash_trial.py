@@ -18,16 +18,16 @@ import msgspec
 
 from benchmarks.crash_point import Counter, CrashingJournal, CrashPoint, Moment
 from benchmarks.crash_subjects import Subject
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document.cell import Cell
-from engine.event import Entered, Event, Exited
+from engine.event import Event, NodeEntered, NodeExited
 from engine.journal import Journal, list_runs
-from engine.launch import Resumption, new_origin, new_run, plan_resume, resume_run
-from engine.plan import new_plan
-from engine.recorded_run import RecordedRun, read_run
-from engine.resume import NeedsAnswers
-from engine.run import RunResult
+from engine.project.run_factory import ResumePlan, new_origin, new_run, plan_resume, resume_run
+from engine.recording.recorded_run import RecordedRun, read_run
+from engine.runtime.history.resume import ResumeDecisionRequired
+from engine.runtime.plan import new_plan
+from engine.runtime.run import RunResult
 
 SEED = 3
 
@@ -143,12 +143,12 @@ def _go_on(subject: Subject, folder: Path, point: CrashPoint | None) -> None:
     counter = Counter(point)
     answers: dict[str, str] = {}
 
-    def decide() -> Resumption:
+    def decide() -> ResumePlan:
         return plan_resume(found, plan, catalogue=catalogue, answers=answers)
 
     try:
         resumption = decide()
-    except NeedsAnswers as questions:
+    except ResumeDecisionRequired as questions:
         effects = _effects(folder)
         answers |= {each.path: subject.answer(each, effects) for each in questions.questions}
         resumption = decide()
@@ -213,10 +213,10 @@ def _repeated(folder: Path) -> list[str]:
     finished: set[tuple[str, int]] = set()
     problems: list[str] = []
     for event in found.effective:
-        key: Any = (event.path, event.visit) if isinstance(event, Entered | Exited) else None
-        if isinstance(event, Exited) and not event.preempted:
+        key: Any = (event.path, event.visit) if isinstance(event, NodeEntered | NodeExited) else None
+        if isinstance(event, NodeExited) and not event.preempted:
             finished.add(key)
-        elif isinstance(event, Entered) and key in finished:
+        elif isinstance(event, NodeEntered) and key in finished:
             problems.append(f"{event.path} was entered again as visit {event.visit}")
     if [event.seq for event in found.events] != list(range(1, len(found.events) + 1)):
         problems.append("the events are not numbered without gaps")

@@ -21,16 +21,16 @@ from typing import Any
 import websockets.asyncio.client
 
 from benchmarks.process_cpu import cpu_s, memory_mb
-from editor_web.access import load_access
-from editor_web.data_wire import Look
-from editor_web.look import Looking
+from editor_web.security.authentication import load_access_tokens
 from editor_web.server import Dashboard, dashboard
+from editor_web.telemetry.data_frames import DataSubscription
+from editor_web.telemetry.page_subscriptions import PageSubscriptions
 from engine.bus import Topic
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.journal import Journal
 from engine.messages import JointState
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.session import Session
 
 CURVES = 32
 _REPEATS = 200
@@ -71,21 +71,21 @@ async def _measure(topics: int, seconds: float) -> None:
             async with dashboard(
                 session, token_file=Path(folder) / "tokens", cell_view=False, shadows=False
             ) as running:
-                await _print_pages(running, load_access(Path(folder) / "tokens").operator, made[:2], seconds)
+                await _print_pages(running, load_access_tokens(Path(folder) / "tokens").operator, made[:2], seconds)
 
 
 def _print_looks(session: Session, topics: int) -> None:
-    page = Looking(session)
-    page.look(Look(number=1, fields=fields()))
+    page = PageSubscriptions(session)
+    page.look(DataSubscription(number=1, fields=fields()))
     print(f"a sample of {CURVES} curves     {_mean_us(page.sample):8.0f} us, 20 a second")
     print(f"its frame                 {_mean_us(lambda: (page.sample(), page.due())):8.0f} us")
 
     def traffic() -> None:
-        page.look(Look(traffic=True))
+        page.look(DataSubscription(traffic=True))
         page.due()
 
     def message() -> None:
-        page.look(Look(topic="arm0/joint_state"))
+        page.look(DataSubscription(topic="arm0/joint_state"))
         page.due()
 
     print(f"traffic of {topics} topics     {_mean_us(traffic):8.0f} us, 1 a second")

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from engine.document.loader import parse_behavior
-from engine.editing import Draft, Knowledge, apply_edits, examine, read_edits
-from engine.editing.graph import document_graph
+from engine.editing import Draft, ProjectContext, analyze_text, apply_edits, read_edits
+from engine.editing.document_graph import document_graph
 from engine.registry import load_states
 
 ROOT = Path(__file__).parents[1]
@@ -76,7 +76,7 @@ def kept_by_ruamel(text: str) -> bool:
 def main() -> None:
     """Print both tables."""
     text = large()
-    knowledge = Knowledge(load_states(), FILE.parent, ROOT)
+    context = ProjectContext(load_states(), FILE.parent, ROOT)
     deep = "root/a5/b5"
     edits: dict[str, list[dict[str, Any]]] = {
         "set_parameter": [{"edit": "set_parameter", "path": f"{deep}/c5", "name": "duration_s", "value": 1}],
@@ -100,13 +100,13 @@ def main() -> None:
         ],
     }
     print(f"{SIDE**3} states, {len(text) / 1e3:.0f} kB")
-    drawn = milliseconds(lambda: document_graph(Draft(text, file="x.yaml"), knowledge))
-    checked = milliseconds(lambda: examine(text, file=FILE, knowledge=knowledge))
+    drawn = milliseconds(lambda: document_graph(Draft(text, file="x.yaml"), context))
+    checked = milliseconds(lambda: analyze_text(text, file=FILE, context=context))
     print(f"  {'draw':23} {drawn:7.1f} ms")
     print(f"  {'draw and check':23} {checked:7.1f} ms")
     for name, raw in edits.items():
         made, _ = read_edits(raw)
-        spent = milliseconds(lambda made=made: apply_edits(text, made, file="x.yaml", knowledge=knowledge))
+        spent = milliseconds(lambda made=made: apply_edits(text, made, file="x.yaml", context=context))
         print(f"  {name:23} {spent:7.1f} ms")
     files = sorted((ROOT / "behaviors").rglob("*.yaml"))
     texts = [file.read_text(encoding="utf-8") for file in files]

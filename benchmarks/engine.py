@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from benchmarks.benchmark_cli import run_script
 from benchmarks.comparison import Columns, Result, Row, Table
-from benchmarks.script import run_script
 
 PACKAGES = ("flexcell", "py_trees", "transitions", "python-statemachine", "sismic")
 _SMACH_LIKE = "SMACH-like (threads)"

@@ -16,11 +16,11 @@ from pathlib import Path
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Entered, Event
+from engine.event import Event, NodeEntered
 from engine.journal import Journal
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 
 _BEHAVIOR = """
 flexcell: 1
@@ -62,7 +62,7 @@ async def _run(rounds: int) -> tuple[float, list[float]]:
 
     def look(event: Event) -> None:
         nonlocal count
-        if isinstance(event, Entered) and event.kind == "state":
+        if isinstance(event, NodeEntered) and event.kind == "state":
             count += 1
             if count % (rounds // 10) == 0:
                 marks_s.append(time.perf_counter())

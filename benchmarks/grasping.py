@@ -15,7 +15,7 @@ import msgspec
 import numpy as np
 
 from engine.clock import run_virtual
-from robots.sim.scene import Scene
+from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim import test_grasping_2f85 as two_fingers
 from tests.robots.sim import test_grasping_claw as claw
 from tests.robots.sim import test_grasping_magnet as magnet
@@ -31,7 +31,7 @@ class Task:
     """One tool with its part: what leads to the grip, up, down, and away again."""
 
     name: str
-    scene: Scene
+    scene: SimScene
     off: bool
     grip: Step
     up: Step

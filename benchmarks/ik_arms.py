@@ -10,11 +10,11 @@ import numpy as np
 
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import ARMS_DIR, robot_model
-from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
-BASE = Rigid.of((-0.55, 0.1, 0.2), (0.0, 0.1, 0.3, 1.0))
+BASE = RigidTransform.of((-0.55, 0.1, 0.2), (0.0, 0.1, 0.3, 1.0))
 CALIBRATION = ARMS_DIR / "ur10" / "ur10_calibration.yaml"
 
 
@@ -22,7 +22,7 @@ CALIBRATION = ARMS_DIR / "ur10" / "ur10_calibration.yaml"
 class Request:
     """A pose that the tool reaches with the joints within their limits, and where the arm is when asked."""
 
-    target: Rigid
+    target: RigidTransform
     seed: Array
 
 
@@ -61,7 +61,7 @@ def requests(kinematics: ArmKinematics, count: int, *, seed: int = 1) -> list[Re
     ]
 
 
-def solves(kinematics: ArmKinematics, target: Rigid, joints: Array) -> bool:
+def solves(kinematics: ArmKinematics, target: RigidTransform, joints: Array) -> bool:
     """Return whether joints put the tool within 10 µm and 0.1 mrad of the target, within the limits."""
     lower, upper = np.array(kinematics.limits.lower_rad), np.array(kinematics.limits.upper_rad)
     pose = kinematics.tool_pose(joints)

@@ -10,12 +10,12 @@ import numpy as np
 
 from engine.messages import Vector3
 from robots.port import Array
-from robots.sim.cell_model import CellModel
-from robots.sim.people.hand_way import HandState, hand_way
-from robots.sim.people.limb import Limb, LimbPose
-from robots.sim.people.person_spec import PersonIndices
-from robots.sim.physics import mujoco
-from robots.sim.scene import PersonBody
+from robots.sim.people.hand_trajectory import HandMotion, plan_hand_trajectory
+from robots.sim.physics.cell_model import CellModel
+from robots.sim.physics.limb import Limb, LimbPose
+from robots.sim.physics.person_spec import PersonIndices
+from robots.sim.physics.physics import mujoco
+from robots.sim.scene.sim_scene import PersonBody
 
 STEP_S = 0.05
 """How finely ways of arm and person are compared."""
@@ -31,7 +31,7 @@ _TRIES = 5000
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordedWay:
+class UndisturbedMotion:
     """A motion that nobody disturbed: `joints` (m, n) every `STEP_S` from its start to its end."""
 
     start: tuple[float, ...]
@@ -93,7 +93,7 @@ class IntrusionDrawer:
         self.drawn = 0
         self.too_near = 0
 
-    def draw(self, way: RecordedWay, random: np.random.Generator) -> Intrusion:
+    def draw(self, way: UndisturbedMotion, random: np.random.Generator) -> Intrusion:
         """Return an intrusion into a way.
 
         Raises:
@@ -105,7 +105,7 @@ class IntrusionDrawer:
                 return found
         raise ValueError("nobody gets into this way; let a shoulder stand nearer to it")
 
-    def _tried(self, way: RecordedWay, random: np.random.Generator) -> Intrusion | None:
+    def _tried(self, way: UndisturbedMotion, random: np.random.Generator) -> Intrusion | None:
         after_s = float(random.uniform(0.0, 0.9 * way.duration_s))
         ahead_s = float(random.uniform(after_s, way.duration_s))
         speed_m_s = float(random.uniform(0.25, 1.2))
@@ -144,7 +144,9 @@ class IntrusionDrawer:
             noticeable_s=noticeable_s,
         )
 
-    def _noticeable_s(self, who: _Reacher, way: RecordedWay, poses: Sequence[LimbPose], after_s: float) -> float | None:
+    def _noticeable_s(
+        self, who: _Reacher, way: UndisturbedMotion, poses: Sequence[LimbPose], after_s: float
+    ) -> float | None:
         """Return when the person is first in the rest of the way, None for never."""
         for k, pose in enumerate(poses):
             at_s = after_s + k * STEP_S
@@ -154,7 +156,7 @@ class IntrusionDrawer:
         return None
 
     def _keeps_clear(
-        self, who: _Reacher, way: RecordedWay, poses: Sequence[LimbPose], *, from_s: float, until_s: float
+        self, who: _Reacher, way: UndisturbedMotion, poses: Sequence[LimbPose], *, from_s: float, until_s: float
     ) -> bool:
         passed = way.joints[round(from_s / STEP_S) : round(until_s / STEP_S) + 1]
         return not any(self._nearer(who, pose, passed, than_m=CLEAR_M) for pose in poses)
@@ -192,7 +194,7 @@ class IntrusionDrawer:
 def _reaching(who: _Reacher, place: Array, speed_m_s: float) -> list[LimbPose] | None:
     """Return a person every `STEP_S` of a reach; None where it would lead through the shoulder, there or back."""
     rest, limb = np.array(who.person.hand_rests), who.limb
-    way = hand_way(HandState(xyz=rest, velocity=np.zeros(3)), place, speed_m_s=speed_m_s)
+    way = plan_hand_trajectory(HandMotion(xyz=rest, velocity=np.zeros(3)), place, speed_m_s=speed_m_s)
     if any(limb.away_m(at) < who.person.reach_m[0] for at in way.places()):
         return None
     side = limb.hanging(rest)

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.intrusion_drawing import STEP_S, Intrusion, RecordedWay
+from benchmarks.intrusion_drawing import STEP_S, Intrusion, UndisturbedMotion
 from engine.bus import GoalEnd, GoalHandle, GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import Cell
 from engine.messages import JointState
 from engine.skills.motion import JointTrapVel
@@ -33,7 +33,7 @@ _LONGEST_S = 60.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended:
+class IntrusionResult:
     """How a motion with an intrusion ended.
 
     `end` is `reached`, `waiting` before a hand that stayed, `failed`, or `stuck`: it did not get to its goal within a
@@ -70,7 +70,7 @@ class IntrudedCell:
         assert end.result is not None, end.cause
         return end.result.joints
 
-    async def recorded(self, goal: tuple[float, ...]) -> RecordedWay:
+    async def recorded(self, goal: tuple[float, ...]) -> UndisturbedMotion:
         """Go to a goal with nobody in the way and return how."""
         start = tuple(self._joints().tolist())
         handle = self.bus.send_goal(self._free_goal(MotionTarget(joints=goal)), to=self.arm)
@@ -81,9 +81,9 @@ class IntrudedCell:
             rows.append(self._joints())
         end = await handle.result()
         assert end.status is GoalStatus.SUCCEEDED, end.cause
-        return RecordedWay(start=start, goal=goal, joints=np.array(rows))
+        return UndisturbedMotion(start=start, goal=goal, joints=np.array(rows))
 
-    async def stopping_s(self, way: RecordedWay) -> float:
+    async def stopping_s(self, way: UndisturbedMotion) -> float:
         """Return how long the arm takes to stop from half of a way, from where that way starts; it then goes it."""
         handle = self.bus.send_goal(JointTrapVel(joints=way.goal, speed=self._speed), to=self.arm)
         await self._until_it_moves(handle)
@@ -95,7 +95,7 @@ class IntrudedCell:
         await handle.result()
         return stopped_s - began_s
 
-    async def intruded(self, way: RecordedWay, intrusion: Intrusion, *, adapts: bool) -> Ended:
+    async def intruded(self, way: UndisturbedMotion, intrusion: Intrusion, *, adapts: bool) -> IntrusionResult:
         """Go a way, with or without looking out, while the hand gets into it; the hand is back at the end."""
         before = await self._count()
         handle = self._start(way, adapts=adapts)
@@ -124,7 +124,7 @@ class IntrudedCell:
             watching.cancel()
             await asyncio.wait((watching,))
         after = await self._count()
-        return Ended(
+        return IntrusionResult(
             **ended,
             duration_s=duration_s,
             contacts=after.contacts - before.contacts,
@@ -133,7 +133,7 @@ class IntrudedCell:
             pairs=tuple(pair for pair in after.pairs if pair not in before.pairs),
         )
 
-    def _start(self, way: RecordedWay, *, adapts: bool) -> GoalHandle[Any, Any]:
+    def _start(self, way: UndisturbedMotion, *, adapts: bool) -> GoalHandle[Any, Any]:
         if adapts:
             return self.bus.send_goal(self._free_goal(MotionTarget(joints=way.goal)), to=self.arm)
         return self.bus.send_goal(JointTrapVel(joints=way.goal, speed=self._speed), to=self.arm)

@@ -23,14 +23,14 @@ import msgspec
 import numpy as np
 
 from benchmarks.comparison import machine
-from benchmarks.intrusion_drawing import Intrusion, IntrusionDrawer, RecordedWay
-from benchmarks.intrusion_run import Ended, intruded_cell
+from benchmarks.intrusion_drawing import Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
 from engine.messages import Pose
 from engine.skills.planning import MotionTarget
-from robots.sim.cell_model import build_cell
-from robots.sim.cell_scene import scene_of
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.scene_builder import build_scene
 
 CELL = Path(__file__).resolve().parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
 REACTION_S = 0.25
@@ -50,34 +50,34 @@ class Trial:
     group: str
     number: int
     intrusion: Intrusion
-    ended: Ended
+    ended: IntrusionResult
     cpu_s: float
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ways:
+class UndisturbedMotions:
     """The motion there and that back, undisturbed, and how long the arm takes to stop."""
 
-    there: RecordedWay
-    back: RecordedWay
+    there: UndisturbedMotion
+    back: UndisturbedMotion
     stopping_s: float
 
-    def of(self, number: int) -> RecordedWay:
+    def of(self, number: int) -> UndisturbedMotion:
         """Return the motion of an intrusion: there and back in turns."""
         return self.back if number % 2 else self.there
 
 
-async def _ways(document: Cell, speed: float) -> Ways:
+async def _ways(document: Cell, speed: float) -> UndisturbedMotions:
     async with intruded_cell(document, speed=speed) as cell:
         left = await cell.free(MotionTarget(pose=_ENDS[1]))
         right = await cell.free(MotionTarget(pose=_ENDS[0]))
         there = await cell.recorded(left)
         back = await cell.recorded(right)
-        return Ways(there=there, back=back, stopping_s=await cell.stopping_s(there))
+        return UndisturbedMotions(there=there, back=back, stopping_s=await cell.stopping_s(there))
 
 
 async def _trials(
-    document: Cell, ways: Ways, intrusions: Sequence[Numbered], *, group: str, speed: float
+    document: Cell, ways: UndisturbedMotions, intrusions: Sequence[Numbered], *, group: str, speed: float
 ) -> list[Trial]:
     """Carry out intrusions in a cell until one ends badly."""
     done: list[Trial] = []
@@ -111,7 +111,9 @@ def _with_people_on_both_sides(cell: Cell) -> Cell:
     return replace(cell, document=msgspec.structs.replace(cell.document, people=people))
 
 
-def _group(document: Cell, ways: Ways, drawn: Sequence[Numbered], *, group: str, speed: float) -> list[Trial]:
+def _group(
+    document: Cell, ways: UndisturbedMotions, drawn: Sequence[Numbered], *, group: str, speed: float
+) -> list[Trial]:
     """Carry out all; after one that ended badly the next begins in a new cell."""
     done: list[Trial] = []
     while len(done) < len(drawn):
@@ -163,7 +165,7 @@ def main() -> None:
     options = parser.parse_args()
     document = _with_people_on_both_sides(load_cell(options.cell))
     ways = run_virtual(_ways(document, options.speed))
-    drawer = IntrusionDrawer(build_cell(scene_of(document.document)), stopping_s=REACTION_S + ways.stopping_s)
+    drawer = IntrusionDrawer(build_cell(build_scene(document.document)), stopping_s=REACTION_S + ways.stopping_s)
     random = np.random.default_rng(options.seed)
     drawn = [(number, drawer.draw(ways.of(number), random)) for number in range(options.runs)]
     if options.only:

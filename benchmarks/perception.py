@@ -21,25 +21,25 @@ import numpy as np
 
 from benchmarks.perception_scene import Stage, document, inside, scene_with, sight_of
 from benchmarks.process_cpu import cpu_s
-from benchmarks.punctuality import watch
 from benchmarks.realtime import Reactions
-from benchmarks.swinging import CELL as SWINGING_CELL
-from benchmarks.swinging import swing_for_ever
-from engine.cell import OpenCell
+from benchmarks.swinging_arms import CELL as SWINGING_CELL
+from benchmarks.swinging_arms import swing_for_ever
+from benchmarks.timing_jitter import watch
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
-from engine.sensing import OccupancyState
+from engine.messages.sensing import OccupancyState
 from robots.port import Array
-from robots.sim.process_host import ProcessHost
-from robots.sim.world import SimWorld
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.world.sim_world import SimWorld
 from robots.vision.arm_body import ArmBody
-from robots.vision.depth import VARIABLE
-from robots.vision.eye import Eye
-from robots.vision.known import Posture
-from robots.vision.real_time_watch import RealTimeWatch
-from robots.vision.sight import Seen
+from robots.vision.camera_process import CameraProcess
+from robots.vision.camera_rig import CameraRig
+from robots.vision.depth_renderer import VARIABLE
+from robots.vision.known_geometry import ArmConfiguration
+from robots.vision.occupancy_kernels import INSIDE, NEAR, stamp_balls
+from robots.vision.perception_messages import PerceptionResult
+from robots.vision.real_time_perception import RealTimePerception
 from robots.vision.voxel_box import VoxelBox, occupied_centres
-from robots.vision.voxel_kernels import INSIDE, NEAR, stamp_balls
-from robots.vision.worker import CameraProcess
 
 _WARM_UP_LOOKS = 10
 _WARM_UP_S = 12.0
@@ -70,7 +70,7 @@ async def times(cameras: int, looks: int, kind: str) -> str:
             stage.put_arm(random.uniform(stage.lower, stage.upper) * 0.4)
             stage.put_hand(number // 10)
             order, started_s = stage.look(), time.perf_counter()
-            seen: Seen = await process.ask(order)
+            seen: PerceptionResult = await process.ask(order)
             if number >= _WARM_UP_LOOKS:
                 whole.append(time.perf_counter() - started_s)
                 render.append(seen.render_s)
@@ -87,7 +87,7 @@ def robot_voxels(postures: int) -> str:
     cell = document(cameras=2)
     scene = scene_with(cell, person=False)
     sight = sight_of(cell, scene)
-    stage, eye = Stage(scene, tuple(cell.cameras)), Eye(sight, repeatable=False)
+    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
     body, shells = ArmBody(scene.arms[0]), list[tuple[float, float]]()
     random = np.random.default_rng(1)
     left = [0] * postures
@@ -112,7 +112,7 @@ def arm_seen(cameras: int, postures: int) -> str:
     cell = document(cameras=cameras)
     scene = scene_with(cell, person=True)
     sight = sight_of(cell, scene)
-    stage, eye = Stage(scene, tuple(cell.cameras)), Eye(sight, repeatable=False)
+    stage, eye = Stage(scene, tuple(cell.cameras)), CameraRig(sight, repeatable=False)
     random = np.random.default_rng(2)
     shares: list[float] = []
     extra: list[float] = []
@@ -140,7 +140,7 @@ async def jitter(seconds: float, *, cameras: bool) -> str:
             assert isinstance(world, SimWorld)
             assert isinstance(world.host, ProcessHost)
             for device in world.devices():
-                if isinstance(device, RealTimeWatch):
+                if isinstance(device, RealTimePerception):
                     device.require()
             swinging = [asyncio.create_task(swing_for_ever(world, name)) for name in world.arm_names()]
             await asyncio.sleep(_WARM_UP_S)
@@ -168,7 +168,7 @@ def _shell_l(box: VoxelBox, body: ArmBody, joints: Array) -> tuple[float, float]
     """Return how many litres of voxels an arm takes itself, and how many more its margin does."""
     taken = np.zeros(math.prod(box.shape), dtype=np.uint8)
     corner, shape = np.array(box.corner_m), np.array(box.shape, dtype=np.int32)
-    balls = body.balls(Posture(joints=tuple(joints.tolist())))
+    balls = body.balls(ArmConfiguration(joints=tuple(joints.tolist())))
     stamp_balls(balls, max(box.robot_margin_m, box.reach_m), corner, box.voxel_m, shape, taken)
     litres = 1e3 * box.voxel_m**3
     return litres * int((taken == INSIDE).sum()), litres * int((taken == NEAR).sum())

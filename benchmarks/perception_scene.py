@@ -8,20 +8,20 @@ import msgspec
 import numpy as np
 
 from engine.document.cell import CellDocument, load_cell
-from engine.document.cell_senses import OccupancyMap
+from engine.document.cell_perception import OccupancyMap
 from engine.messages import Vector3
-from engine.shapes import Capsule, Shape, Sphere
-from robots.model.rigid import Rigid
-from robots.planning.solids import convex_solid, to_frame
+from engine.messages.shapes import Capsule, Shape, Sphere
+from robots.model.transform import RigidTransform
+from robots.planning.scene.convex_shapes import convex_solid, to_frame
 from robots.port import Array
-from robots.sim.cell_model import build_cell
-from robots.sim.cell_scene import scene_of
-from robots.sim.people.limb import Limb
-from robots.sim.people.person_spec import FOREARM_SHARE
-from robots.sim.scene import Scene
-from robots.sim.simulation import Simulation
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.physics.limb import Limb
+from robots.sim.physics.person_spec import FOREARM_SHARE
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.scene.sim_scene import SimScene
 from robots.vision.camera import camera_of
-from robots.vision.sight import Look, Sight, state_bytes
+from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup, state_bytes
 from robots.vision.voxel_box import VoxelBox, voxel_box
 
 CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "irb4600_shared.yaml"
@@ -40,23 +40,23 @@ def document(*, cameras: int) -> CellDocument:
     return msgspec.structs.replace(made, cameras=seen_by, occupancy=box)
 
 
-def sight_of(cell: CellDocument, scene: Scene) -> Sight:
+def sight_of(cell: CellDocument, scene: SimScene) -> PerceptionSetup:
     """Return what is looked at."""
     assert cell.occupancy is not None
     named = tuple(camera_of(name, camera) for name, camera in cell.cameras.items())
-    return Sight(scene=scene, cameras=named, box=voxel_box(cell.occupancy))
+    return PerceptionSetup(scene=scene, cameras=named, box=voxel_box(cell.occupancy))
 
 
-def scene_with(cell: CellDocument, *, person: bool) -> Scene:
+def scene_with(cell: CellDocument, *, person: bool) -> SimScene:
     """Return the scene of a cell, with its person or without."""
-    scene = scene_of(cell, resolve=lambda path: (CELL.parent / path).resolve())
+    scene = build_scene(cell, resolve=lambda path: (CELL.parent / path).resolve())
     return scene if person else msgspec.structs.replace(scene, people=())
 
 
 class Stage:
     """A simulated cell that is put where the benchmark wants it, without stepping it."""
 
-    def __init__(self, scene: Scene, cameras: tuple[str, ...]) -> None:
+    def __init__(self, scene: SimScene, cameras: tuple[str, ...]) -> None:
         self.scene = scene
         self._cameras = cameras
         self._cell = build_cell(scene)
@@ -86,14 +86,14 @@ class Stage:
         )
         return np.vstack(
             [
-                to_frame(Rigid.of(xyz, np.roll(wxyz, -1)), convex_solid(shape).surface(0.01))
+                to_frame(RigidTransform.of(xyz, np.roll(wxyz, -1)), convex_solid(shape).surface(0.01))
                 for shape, xyz, wxyz in zip(shapes, pose.xyz, pose.wxyz, strict=True)
             ]
         )
 
-    def look(self, *, forget: bool = False) -> Look:
+    def look(self, *, forget: bool = False) -> PerceptionRequest:
         """Return the order to look at it as it is."""
-        return Look(time_s=0.0, state=state_bytes(self._image), cameras=self._cameras, forget=forget)
+        return PerceptionRequest(time_s=0.0, state=state_bytes(self._image), cameras=self._cameras, forget=forget)
 
 
 def inside(box: VoxelBox, points: Array) -> Array:

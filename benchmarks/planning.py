@@ -24,16 +24,16 @@ import numpy as np
 from benchmarks.comparison import machine
 from benchmarks.peers.roboplan_planner import RoboplanPlanner
 from benchmarks.planning_contacts import NEAR_M, Agreement, compared
-from benchmarks.planning_costs import other_costs, words
+from benchmarks.planning_costs import costs_table, other_costs
 from benchmarks.planning_problems import problem_sets
 from benchmarks.planning_scenes import ARM, Case, cases, random_case
 from engine.messages import Pose
-from robots.planning.exact_checker import ExactChecker
-from robots.planning.planner import ScenePlanner
 from robots.planning.planner_names import PLANNERS
-from robots.planning.request import Plan, PlanRequest
+from robots.planning.request import PathPlan, PlanRequest
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.worker.scene_planner import ScenePlanner
 from robots.port import Array
-from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 
 ROBOPLAN = "RoboPlan"
 Found = tuple[Array | None, float]
@@ -151,7 +151,7 @@ def _asking(planner: str, case: Case, time_s: float) -> Callable[[int], Found]:
 
     def ask(seed: int) -> Found:
         answer = service.plan(_run(case.request, planner, seed, time_s))
-        return (answer.path, answer.stats.search_s * 1e3) if isinstance(answer, Plan) else (None, 0.0)
+        return (answer.path, answer.stats.search_s * 1e3) if isinstance(answer, PathPlan) else (None, 0.0)
 
     return ask
 
@@ -244,7 +244,7 @@ def main() -> None:
             done += lines
     costs = other_costs(options.costs) if options.costs else {}
     if costs:
-        print(words(costs), end="\n\n")
+        print(costs_table(costs), end="\n\n")
     found = agreements(options.configurations) if options.configurations else {}
     for title, agreement in found.items():
         print(f"{title}: {_words(agreement)}")
@@ -285,11 +285,11 @@ def _words(found: Agreement) -> str:
     )
 
 
-def _cell(model: str, x: float, *, gripper: str | None = "own", other: bool = False) -> Scene:
+def _cell(model: str, x: float, *, gripper: str | None = "own", other: bool = False) -> SimScene:
     def arm(name: str, at: float) -> ArmPlacement:
         return ArmPlacement(name=name, model=model, base=Pose(xyz=(at, 0.0, 0.0)), gripper=gripper)
 
-    return Scene(
+    return SimScene(
         arms=(arm(ARM, x), arm("other", -x)) if other else (arm(ARM, x),),
         fixtures=(
             FixtureBody(name="tray", shape="tray", size_m=(0.3, 0.2, 0.02), pose=Pose(xyz=(0.0, 0.3, 0.0))),

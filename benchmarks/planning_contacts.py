@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from robots.planning.cell_scene import planning_scene
-from robots.planning.exact_checker import ExactChecker
-from robots.planning.kernels import blocked_at
-from robots.planning.world_arrays import problem_of
-from robots.sim.cell_model import CellModel, build_cell
-from robots.sim.physics import mujoco
-from robots.sim.scene import Scene
+from robots.planning.scene.cell_planning_scene import planning_scene
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.search.kernels import blocked_at
+from robots.planning.search.problem_compiler import compile_problem
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.physics.physics import mujoco
+from robots.sim.scene.sim_scene import SimScene
 
 NEAR_M = 1e-3
 """Where two things are nearer than this, or less deep in one another, the two libraries may differ."""
@@ -41,7 +41,7 @@ class Agreement:
 
 
 def compared(
-    cell: Scene, arm: str, *, configurations: int, seed: int = 0, left_out: frozenset[str] = frozenset()
+    cell: SimScene, arm: str, *, configurations: int, seed: int = 0, left_out: frozenset[str] = frozenset()
 ) -> Agreement:
     """Return how checker and MuJoCo agree on an arm of a cell; all other arms are at home.
 
@@ -49,7 +49,7 @@ def compared(
     """
     scene = planning_scene(cell)
     checker = ExactChecker(scene, arm)
-    problem, _ = problem_of(scene, arm)
+    problem, _ = compile_problem(scene, arm)
     built = build_cell(cell)
     indices = next(one for one in built.arms if one.name == arm)
     data = mujoco.MjData(built.model)

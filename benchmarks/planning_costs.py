@@ -11,13 +11,13 @@ import numpy as np
 
 from benchmarks.planning_scenes import ARM, box, cases
 from engine.messages import Pose
-from engine.sensing import OccupancyGrid
-from engine.shapes import Cylinder, Obstacle
-from robots.planning.planner import ScenePlanner
-from robots.planning.request import LookRequest, Plan, PlanRequest, WayRequest
-from robots.planning.scene import PlanningScene, SceneArm
-from robots.planning.voxels import voxels_of
-from robots.sim.scene import ArmPlacement
+from engine.messages.sensing import OccupancyGrid
+from engine.messages.shapes import Cylinder, Obstacle
+from robots.planning.request import CollisionRequest, PathCheckRequest, PathPlan, PlanRequest
+from robots.planning.scene.planning_scene import PlanningScene, SceneArm
+from robots.planning.scene.voxels import voxels_of
+from robots.planning.worker.scene_planner import ScenePlanner
+from robots.sim.scene.sim_scene import ArmPlacement
 
 _T = TypeVar("_T")
 _SHAPE, _VOXEL_M = (64, 90, 60), 0.02
@@ -32,10 +32,10 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
     planner.prepared(two, ARM)
     way = _planned(planner, shelf)
     shorter = _planned(planner, cases()[-2].request)
-    look = LookRequest(scene=shelf.scene, arm=ARM, joints_rad=shelf.start_rad)
+    look = CollisionRequest(scene=shelf.scene, arm=ARM, joints_rad=shelf.start_rad)
     grids = [scatter(seed) for seed in range(runs)]
 
-    def seeing(seed: int) -> WayRequest:
+    def seeing(seed: int) -> PathCheckRequest:
         return msgspec.structs.replace(way, occupancy=grids[seed])
 
     def replan(seed: int) -> PlanRequest:
@@ -52,13 +52,15 @@ def other_costs(runs: int) -> dict[str, tuple[float, float]]:
         "answer with trajectory": _spent(runs, lambda k: msgspec.structs.replace(shelf, seed=k), planner.plan),
         "new voxels, 64 x 90 x 60: distances": _spent(runs, lambda k: grids[k], lambda g: voxels_of(g).field),
         "new voxels: octree": _spent(runs, lambda k: voxels_of(grids[k]), lambda v: v.octree),
-        "check of a way, scene and way known": _spent(runs, lambda _: way, planner.check_way),
-        "check of a way, new voxels, distances among it": _spent(runs, seeing, planner.check_way),
-        "check of a way, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_way),
+        "check of a way, scene and way known": _spent(runs, lambda _: way, planner.check_path),
+        "check of a way, new voxels, distances among it": _spent(runs, seeing, planner.check_path),
+        "check of a way, voxels known": _spent(runs, lambda k: _known(planner, seeing(k)), planner.check_path),
         "check of a way, UR10 around a box, voxels known": _spent(
-            runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_way
+            runs, lambda k: _known(planner, msgspec.structs.replace(shorter, occupancy=grids[k])), planner.check_path
         ),
-        "first check of a way that was not planned here": _spent(runs, lambda k: _other_way(way, k), planner.check_way),
+        "first check of a way that was not planned here": _spent(
+            runs, lambda k: _other_way(way, k), planner.check_path
+        ),
         "answer with trajectory, new voxels, all of it": _spent(runs, replan, planner.plan),
         "look": _spent(runs, lambda _: look, planner.look),
     }
@@ -103,29 +105,29 @@ def scatter(seed: int) -> OccupancyGrid:
     )
 
 
-def words(costs: dict[str, tuple[float, float]]) -> str:
+def costs_table(costs: dict[str, tuple[float, float]]) -> str:
     """Return costs as Markdown."""
     rows = [f"| {what} | {p50:.2f} | {p95:.2f} |" for what, (p50, p95) in costs.items()]
     return "\n".join(["### Besides the search", "", "| | CPU ms, p50 | p95 |", "|---|---:|---:|", *rows])
 
 
-def _planned(planner: ScenePlanner, request: PlanRequest) -> WayRequest:
+def _planned(planner: ScenePlanner, request: PlanRequest) -> PathCheckRequest:
     answer = planner.plan(msgspec.structs.replace(request, speed=1.0))
-    assert isinstance(answer, Plan)
+    assert isinstance(answer, PathPlan)
     assert answer.timed is not None
-    return WayRequest(scene=request.scene, arm=ARM, way=answer.timed, from_s=0.0)
+    return PathCheckRequest(scene=request.scene, arm=ARM, way=answer.timed, from_s=0.0)
 
 
 def _prepare(scene: PlanningScene) -> Callable[[ScenePlanner], object]:
     return lambda planner: planner.prepared(scene, ARM)
 
 
-def _known(planner: ScenePlanner, request: WayRequest) -> WayRequest:
-    planner.check_way(request)
+def _known(planner: ScenePlanner, request: PathCheckRequest) -> PathCheckRequest:
+    planner.check_path(request)
     return request
 
 
-def _other_way(request: WayRequest, number: int) -> WayRequest:
+def _other_way(request: PathCheckRequest, number: int) -> PathCheckRequest:
     rows = np.frombuffer(request.way.position_rad) + 1e-9 * (number + 1)
     return msgspec.structs.replace(request, way=msgspec.structs.replace(request.way, position_rad=rows.tobytes()))
 

@@ -23,11 +23,11 @@ import numpy as np
 from benchmarks.planning_scenes import ARM, Case, alone
 from engine.document.yaml_source import parse_source
 from engine.messages import Pose
-from engine.shapes import Box, Cylinder, Obstacle, Shape, Solid, Sphere
-from robots.model.rigid import Rigid
-from robots.planning.exact_checker import ExactChecker
+from engine.messages.shapes import Box, Cylinder, Obstacle, Shape, Solid, Sphere
+from robots.model.transform import RigidTransform
 from robots.planning.request import JointGoal, PlanRequest
-from robots.planning.scene import PlanningScene
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.scene.planning_scene import PlanningScene
 
 _INNER = "resources/panda/problems.tar.bz2"
 _MODEL = """\
@@ -204,7 +204,7 @@ def _case(folder: str, number: str, scene: bytes, request: bytes, arm: PlanningS
 
 
 def _obstacle(thing: _Thing) -> Obstacle:
-    at = _rigid(thing.pose) if thing.pose is not None else Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+    at = _rigid(thing.pose) if thing.pose is not None else RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
     solids = tuple(
         Solid(shape=_shape(one), pose=at.then(_rigid(place)).to_pose("world"))
         for one, place in zip(thing.primitives, thing.primitive_poses, strict=True)
@@ -212,9 +212,9 @@ def _obstacle(thing: _Thing) -> Obstacle:
     return Obstacle(name=thing.id, solids=solids, pose=Pose(xyz=(0.0, 0.0, 0.0)))
 
 
-def _rigid(place: _Place) -> Rigid:
+def _rigid(place: _Place) -> RigidTransform:
     turn = np.array(place.orientation)
-    return Rigid.of(place.position, turn / np.linalg.norm(turn))
+    return RigidTransform.of(place.position, turn / np.linalg.norm(turn))
 
 
 def _shape(primitive: _Primitive) -> Shape:

@@ -9,15 +9,15 @@ import numpy as np
 
 from engine.errors import RobotError
 from engine.messages import Pose
-from engine.shapes import Box, Cylinder, Obstacle, Sphere
-from robots.model.inverse_kinematics import InverseKinematics
+from engine.messages.shapes import Box, Cylinder, Obstacle, Sphere
+from robots.model.inverse_kinematics import InverseKinematicsSolver
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
-from robots.planning.exact_checker import ExactChecker
+from robots.model.transform import RigidTransform
 from robots.planning.request import JointGoal, PlanRequest
-from robots.planning.scene import PlanningScene, SceneArm
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.scene.planning_scene import PlanningScene, SceneArm
 from robots.port import Array
-from robots.sim.scene import ArmPlacement
+from robots.sim.scene.sim_scene import ArmPlacement
 
 ARM = "arm"
 DOWN = (1.0, 0.0, 0.0, 0.0)
@@ -122,11 +122,11 @@ def _free_end(
         if in_shelf:
             height = floor_m + gap_m * (0.5 + float(random.integers(2))) + float(random.uniform(-0.04, 0.04))
             across = float(random.uniform(-0.3, 0.3))
-            goal = Rigid.of((depth_m - float(random.uniform(0.0, 0.12)), across, height), FORWARD)
+            goal = RigidTransform.of((depth_m - float(random.uniform(0.0, 0.12)), across, height), FORWARD)
         else:
             turn, reach = float(random.uniform(-2.0, 2.0)), float(random.uniform(0.35, 0.6))
             place = (reach * float(np.cos(turn)), reach * float(np.sin(turn)), float(random.uniform(0.08, 0.4)))
-            goal = Rigid.of(place, DOWN)
+            goal = RigidTransform.of(place, DOWN)
         try:
             found = inverse.all_solutions(goal).joints
         except RobotError:
@@ -138,14 +138,14 @@ def _free_end(
 
 
 @lru_cache(maxsize=1)
-def _inverse() -> InverseKinematics:
+def _inverse() -> InverseKinematicsSolver:
     model = alone("panda").arms[0].placement.robot()
-    return InverseKinematics(ArmKinematics(model, base=Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))))
+    return InverseKinematicsSolver(ArmKinematics(model, base=RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))))
 
 
 def _tool_at(scene: PlanningScene, xyz: tuple[float, float, float], xyzw: tuple[float, float, float, float]) -> Array:
     checker = ExactChecker(scene, ARM)
-    found = _inverse().all_solutions(Rigid.of(xyz, xyzw)).joints
+    found = _inverse().all_solutions(RigidTransform.of(xyz, xyzw)).joints
     return next(joints for joints in found if not checker.in_collision(joints))
 
 

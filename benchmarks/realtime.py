@@ -24,15 +24,15 @@ import numpy as np
 
 from benchmarks.busy_cell import busy_cell
 from benchmarks.process_cpu import cpu_s, descendants
-from benchmarks.punctuality import Punctuality, watch
-from benchmarks.swinging import CELL, swing_for_ever
+from benchmarks.swinging_arms import CELL, swing_for_ever
+from benchmarks.timing_jitter import Punctuality, watch
 from engine.bus import SkillBus
 from engine.document.cell import load_cell
 from robots.port import ArmSettings, ControllerName
-from robots.sim.cell_scene import scene_of
-from robots.sim.process_host import ProcessHost
-from robots.sim.timing import Timing
-from robots.sim.world import SimWorld
+from robots.sim.host.loop_timing import LoopTiming
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.world.sim_world import SimWorld
 
 # Models are compiled and caches filled at first; that is no part of the work of every day.
 _WARM_UP_S = 4.0
@@ -91,7 +91,7 @@ async def measure(row: Row, host: ProcessHost, seconds: float, *, viewer: int | 
 async def alone(controller: ControllerName, seconds: float) -> Row:
     """The world with both arms swinging, commanded directly."""
     row = Row(name=f"{_words(controller)}, nothing else")
-    scene = scene_of(load_cell(CELL).document)
+    scene = build_scene(load_cell(CELL).document)
     host = ProcessHost(scene)
     async with SimWorld(scene, host=host) as world:
         for name in world.arm_names():
@@ -162,7 +162,7 @@ def _ratios(rows: list[Row]) -> list[str]:
     return lines
 
 
-def _overruns(timing: Timing) -> str:
+def _overruns(timing: LoopTiming) -> str:
     return f"{100 * timing.overruns / max(timing.steps, 1):.2f} % of {timing.steps}"
 
 

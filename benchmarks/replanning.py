@@ -23,25 +23,25 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.punctuality import Punctuality, watch
 from benchmarks.realtime import Reactions
+from benchmarks.timing_jitter import Punctuality, watch
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
 from engine.document.cell import load_cell
 from engine.messages import Vector3
-from engine.sensing import OccupancyGrid
+from engine.messages.sensing import OccupancyGrid
 from engine.skills.planning import FreeMotionFeedback, MotionTarget, MoveFree, PathPreview, PlanOptions
 from robots.arm.arm_server import ArmServer
-from robots.planning.cell_scene import planning_scene
-from robots.planning.request import PlanAnswer, PlanRequest, WayCheck, WayRequest
-from robots.planning.scene import PlanningScene
-from robots.sim.cell_scene import scene_of
-from robots.sim.process_host import ProcessHost
-from robots.sim.world import SimRobot, SimWorld
+from robots.planning.request import PathCheck, PathCheckRequest, PlanAnswer, PlanRequest
+from robots.planning.scene.cell_planning_scene import planning_scene
+from robots.planning.scene.planning_scene import PlanningScene
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.world.sim_world import SimRobot, SimWorld
 from robots.workspace.live_scene import LiveScene
-from robots.workspace.planners import Planners
+from robots.workspace.planning_services import PlanningServices
 from robots.workspace.workspace import Workspace
-from robots.workspace.world_look import WorldLook
+from robots.workspace.world_snapshot import WorldPoseReader
 
 CELL = Path(__file__).parents[1] / "behaviors" / "cells" / "dual_panda.yaml"
 THERE = (1.1, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8)
@@ -114,23 +114,23 @@ class Cameras:
             tell()
 
 
-class TimedPlanners(Planners):
+class TimedPlanners(PlanningServices):
     """Notes when answers came: of checks, and of ways that were confirmed."""
 
     checked: list[tuple[float, float]]
     planned: list[tuple[float, float]]
 
-    async def check_way(self, request: WayRequest) -> WayCheck:
+    async def check_path(self, request: PathCheckRequest) -> PathCheck:
         """Return where a way is blocked."""
         began_s = time.perf_counter()
-        answer = await super().check_way(request)
+        answer = await super().check_path(request)
         self.checked.append((began_s, time.perf_counter()))
         return answer
 
-    async def confirm_way(self, request: WayRequest) -> WayCheck:
+    async def confirm_path(self, request: PathCheckRequest) -> PathCheck:
         """Return where a new way is blocked."""
         began_s = time.perf_counter()
-        answer = await super().confirm_way(request)
+        answer = await super().confirm_path(request)
         self.checked.append((began_s, time.perf_counter()))
         return answer
 
@@ -143,7 +143,7 @@ class TimedPlanners(Planners):
 
 
 @dataclass
-class Bench:
+class ReplanningRig:
     """The open cell and what is measured in it."""
 
     bus: SkillBus
@@ -208,14 +208,16 @@ def _arm_across(point: Vector3) -> np.ndarray:
 
 async def bench(rounds: int) -> tuple[list[Round], list[tuple[str, Punctuality, list[float]]]]:
     """Measure the rounds, and how punctual the world and the engine are without maps and meanwhile."""
-    scene = scene_of(load_cell(CELL).document)
+    scene = build_scene(load_cell(CELL).document)
     clock, cameras, host = new_clock(), Cameras(), ProcessHost(scene)
     planners = TimedPlanners(clock)
     planners.checked, planners.planned = [], []
 
     def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
         def live() -> LiveScene:
-            return LiveScene(planning_scene(scene), parts=[p.name for p in scene.parts], look=WorldLook(world, scene))
+            return LiveScene(
+                planning_scene(scene), parts=[p.name for p in scene.parts], look=WorldPoseReader(world, scene)
+            )
 
         workspace = Workspace(live, planners=planners, clock=clock, occupancy=cameras)
         arms = tuple(
@@ -241,7 +243,7 @@ async def bench(rounds: int) -> tuple[list[Round], list[tuple[str, Punctuality, 
         for robot in world.robots():
             await stack.enter_async_context(robot)
             robot.register(bus)
-        cell = Bench(bus, host, cameras, planners)
+        cell = ReplanningRig(bus, host, cameras, planners)
         cameras.see()
         await cell.move(THERE, intrude_after_s=None)
         rows = [await _watched("to and fro, no maps", cell, partial(_to_and_fro, cell, _QUIET_S))]
@@ -260,14 +262,14 @@ async def _see_on(cameras: Cameras) -> None:
         cameras.see()
 
 
-async def _to_and_fro(cell: Bench, seconds: float) -> None:
+async def _to_and_fro(cell: ReplanningRig, seconds: float) -> None:
     end_s = time.monotonic() + seconds
     while time.monotonic() < end_s:
         await cell.move(ACROSS, intrude_after_s=None)
         await cell.move(THERE, intrude_after_s=None)
 
 
-async def _intrusions(cell: Bench, rounds: int) -> None:
+async def _intrusions(cell: ReplanningRig, rounds: int) -> None:
     moments = random.Random(7)
     for number in range(rounds):
         goal = ACROSS if number % 2 == 0 else THERE
@@ -276,7 +278,7 @@ async def _intrusions(cell: Bench, rounds: int) -> None:
             cell.rounds.append(found)
 
 
-async def _watched(name: str, cell: Bench, work: Callable[[], object]) -> tuple[str, Punctuality, list[float]]:
+async def _watched(name: str, cell: ReplanningRig, work: Callable[[], object]) -> tuple[str, Punctuality, list[float]]:
     reactions = Reactions(cell.bus)
     try:
         working = asyncio.ensure_future(work())  # type: ignore[arg-type]

@@ -21,26 +21,26 @@ from typing import get_args
 from msgspec.structs import replace
 
 from benchmarks.step_cost import step_cost
-from benchmarks.swinging import CELL, Swinging, swing_for_ever
+from benchmarks.swinging_arms import CELL, Swinging, swing_for_ever
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, PartPoses, Pose
 from robots.port import ArmSettings, ControllerName
-from robots.sim.arm_commands import Configure
-from robots.sim.cell_model import build_cell
-from robots.sim.cell_scene import scene_of
-from robots.sim.physics import Physics
-from robots.sim.process_host import ProcessHost
-from robots.sim.scene import PartBody, Scene
-from robots.sim.scene_description import describe_scene
-from robots.sim.simulation import Simulation
-from robots.sim.snapshot import Snapshot
-from robots.sim.timing import Timing
-from robots.sim.world import SimWorld
+from robots.sim.commands.arm_commands import ConfigureArm
+from robots.sim.host.loop_timing import LoopTiming
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.loop.simulation import Simulation
+from robots.sim.loop.snapshot import SimSnapshot
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.physics.physics import Physics
+from robots.sim.physics.scene_description import describe_scene
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.scene.sim_scene import PartBody, SimScene
+from robots.sim.world.sim_world import SimWorld
 
 _SHAPES = (("box", (0.05, 0.03, 0.04), 0.1), ("cylinder", (0.03, 0.04), 0.05))
 
 
-def filled(scene: Scene, parts: int, step_s: float) -> Scene:
+def filled(scene: SimScene, parts: int, step_s: float) -> SimScene:
     """Return the scene with another step and so many more parts on the table, boxes and cylinders in rows."""
     more: list[PartBody] = []
     for number in range(parts):
@@ -58,7 +58,7 @@ def timed(work: Callable[[], object], count: int) -> tuple[float, float]:
     return (time.perf_counter() - wall) / count, (time.process_time() - cpu) / count
 
 
-def lockstep(scene: Scene, seconds: float, settings: ArmSettings) -> None:
+def lockstep(scene: SimScene, seconds: float, settings: ArmSettings) -> None:
     """Measure stepping in this process."""
     start = time.perf_counter()
     cell = build_cell(scene)
@@ -69,7 +69,7 @@ def lockstep(scene: Scene, seconds: float, settings: ArmSettings) -> None:
     row("scene description", f"{time.perf_counter() - start:.3f} s")
 
     for arm in simulation.summary.arms:
-        simulation.apply(Configure(arm=arm.name, settings=settings))
+        simulation.apply(ConfigureArm(arm=arm.name, settings=settings))
     moving = Swinging(simulation)
     count = round(seconds / simulation.step_s)
     wall, cpu = timed(moving.step, count)
@@ -89,7 +89,7 @@ def lockstep(scene: Scene, seconds: float, settings: ArmSettings) -> None:
     _, snapshot_cpu = timed(snapshot, 2000)
 
     def messages() -> None:
-        xyz, xyzw = Snapshot(simulation.layout, values).frames()
+        xyz, xyzw = SimSnapshot(simulation.layout, values).frames()
         FramePoses(time_s=0.0, names=simulation.summary.frames, xyz=xyz, xyzw=xyzw)
         PartPoses(time_s=0.0, poses={})
 
@@ -102,7 +102,7 @@ def lockstep(scene: Scene, seconds: float, settings: ArmSettings) -> None:
     row("one frame message (30 Hz)", f"{messages_cpu * 1e6:.1f} us")
 
 
-async def real_time(scene: Scene, seconds: float, settings: ArmSettings) -> None:
+async def real_time(scene: SimScene, seconds: float, settings: ArmSettings) -> None:
     """Measure the world's own process beside a parent that is busy with JSON all the time."""
     start = time.perf_counter()
     host = ProcessHost(scene)
@@ -122,7 +122,7 @@ async def real_time(scene: Scene, seconds: float, settings: ArmSettings) -> None
         await asyncio.wait(swingers)
 
 
-def _print_timing(timing: Timing, *, fifo: bool) -> None:
+def _print_timing(timing: LoopTiming, *, fifo: bool) -> None:
     steps, overruns = timing.steps, timing.overruns
     row("real-time schedule (SCHED_FIFO)", "yes" if fifo else "not permitted")
     late = (timing.late_p50_s, timing.late_p99_s, timing.late_max_s)
@@ -131,7 +131,7 @@ def _print_timing(timing: Timing, *, fifo: bool) -> None:
     row("world time given up", f"{timing.slipped_s:.3f} s")
 
 
-def virtual_time(scene: Scene, seconds: float) -> None:
+def virtual_time(scene: SimScene, seconds: float) -> None:
     """Print a Markdown table of how fast virtual time passes."""
     print("| | CPU × | wall × | µs CPU a step | physics | set points | law | rest | contacts |")
     print("|---|" + "---:|" * 8)
@@ -160,7 +160,7 @@ def main() -> None:
     parser.add_argument("--step-ms", type=float, default=1.0, help="step of the physics (default 1)")
     parser.add_argument("--virtual", action="store_true", help="print how fast virtual time passes, nothing else")
     options = parser.parse_args()
-    drawn = scene_of(load_cell(options.cell).document, seed=0)
+    drawn = build_scene(load_cell(options.cell).document, seed=0)
     if options.virtual:
         print(f"{platform.machine()}, load {os.getloadavg()[0]:.1f} before, Python {platform.python_version()}\n")
         virtual_time(drawn, options.seconds)

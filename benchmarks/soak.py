@@ -30,12 +30,12 @@ from websockets.typing import Subprotocol
 from benchmarks.process_cpu import descendants, memory_mb, threads
 from benchmarks.viewers import BEHAVIOR, copied_behavior
 from editor_web.server import Dashboard, dashboard
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.cli.inputs import read_behavior, read_cell
 from engine.journal import Journal
+from engine.project.session import Session
+from engine.project.session_recordings import SessionRecordings
 from engine.registry import load_states
-from engine.session import Session
-from engine.session_recordings import SessionRecordings
 
 _LONGEST_RUN_S = 6.0
 # The server closes what was idle for some seconds; an order that is sent at that very moment would be lost.

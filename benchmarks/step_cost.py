@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.swinging import Swinging
+from benchmarks.swinging_arms import Swinging
 from robots.port import ArmSettings, ControllerName
-from robots.sim.arm_commands import Configure
-from robots.sim.arm_in_loop import ArmInLoop
-from robots.sim.cell_model import build_cell
-from robots.sim.physics import Physics
-from robots.sim.scene import Scene
-from robots.sim.simulation import Simulation
+from robots.sim.commands.arm_commands import ConfigureArm
+from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.physics.physics import Physics
+from robots.sim.scene.sim_scene import SimScene
 
 _SETTLE_S = 0.5
 # Neighbours on a shared machine make many steps dearer, none cheaper: costs are medians of blocks.
@@ -42,11 +42,11 @@ class StepCost:
     contacts: int
 
 
-def step_cost(scene: Scene, controller: ControllerName, seconds: float) -> StepCost:
+def step_cost(scene: SimScene, controller: ControllerName, seconds: float) -> StepCost:
     """Build a world, let its parts settle, and step it for so long (simulated)."""
     simulation = Simulation(build_cell(scene))
     for arm in simulation.summary.arms:
-        simulation.apply(Configure(arm=arm.name, settings=ArmSettings(controller=controller)))
+        simulation.apply(ConfigureArm(arm=arm.name, settings=ArmSettings(controller=controller)))
     swinging = Swinging(simulation)
     for _ in range(round(_SETTLE_S / simulation.step_s)):
         swinging.step()
@@ -74,7 +74,7 @@ def step_cost(scene: Scene, controller: ControllerName, seconds: float) -> StepC
 
 def _parts(swinging: Swinging, count: int) -> tuple[float, ...]:
     """Return the median CPU seconds that a step spends in physics, set points, control laws, and the rest."""
-    clocks = (_Clock(Physics, "start_step", "finish_step"), _Clock(ArmInLoop, "move"), _Clock(ArmInLoop, "drive"))
+    clocks = (_Clock(Physics, "start_step", "finish_step"), _Clock(SimArmLoop, "move"), _Clock(SimArmLoop, "drive"))
     blocks: list[tuple[float, ...]] = []
     with clocks[0].on(), clocks[1].on(), clocks[2].on():
         for _ in range(count // _BLOCK):
@@ -121,7 +121,7 @@ class _Clock:
         return call
 
 
-def _settled(scene: Scene) -> Physics:
+def _settled(scene: SimScene) -> Physics:
     """Return the world without control at the moment when its parts have met what they lie on."""
     physics = Physics(build_cell(scene).model)
     for _ in range(20):

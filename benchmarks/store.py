@@ -17,7 +17,7 @@ from pathlib import Path
 from engine.errors import EntryNotFound
 from engine.skills.entries import EntryRecord
 from engine.store import SqliteStore, Store
-from engine.store.mongo import MongoStore
+from engine.store.mongo.mongo_store import MongoStore
 from tests.engine.store.mongod import Mongod
 
 BATCH = 2000

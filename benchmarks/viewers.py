@@ -27,12 +27,12 @@ from websockets.typing import Subprotocol
 from benchmarks.process_cpu import cpu_s, memory_mb
 from benchmarks.realtime import Reactions
 from editor_web.server import dashboard
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.cli.inputs import read_behavior, read_cell
 from engine.journal import Journal
+from engine.project.session import Session
+from engine.project.session_recordings import SessionRecordings
 from engine.registry import load_states
-from engine.session import Session
-from engine.session_recordings import SessionRecordings
 
 BEHAVIOR = Path(__file__).with_name("two_arms_for_ever.yaml")
 _ROOT = Path(__file__).parents[1]
@@ -42,7 +42,7 @@ _ALONE_S = 60.0
 
 
 @dataclass(kw_only=True)
-class Watched:
+class ViewerLoad:
     """What was measured while so many watched."""
 
     viewers: int
@@ -105,8 +105,8 @@ def copied_behavior(folder: Path) -> Path:
     return copy
 
 
-async def _while_watched(cell: OpenCell, viewers: int, seconds: float, watching: Process | None) -> Watched:
-    row = Watched(viewers=viewers)
+async def _while_watched(cell: OpenCell, viewers: int, seconds: float, watching: Process | None) -> ViewerLoad:
+    row = ViewerLoad(viewers=viewers)
     reactions = Reactions(cell.bus)
     began_s, began_cpu_s = time.monotonic(), cpu_s(os.getpid())
     while time.monotonic() < began_s + seconds:
@@ -183,7 +183,7 @@ async def _one(
             got["lost"] += socket.close_code is not None
 
 
-def _print(row: Watched) -> None:
+def _print(row: ViewerLoad) -> None:
     memory, reactions = row.memory_mb, np.array(row.reactions_s) * 1e3
     print(f"{row.viewers} viewers, {len(memory) * _SAMPLE_S:.0f} s", flush=True)
     tenth = max(1, len(memory) // 10)

@@ -21,15 +21,15 @@ from playwright.sync_api import Page, sync_playwright
 
 from benchmarks.login_link import login_link
 from benchmarks.process_cpu import cpu_s
-from editor_web.cell_view.lock import new_server
-from editor_web.cell_view.newest import Newest
-from editor_web.cell_view.occupancy import PERIOD_S, Voxels
+from editor_web.cell_view.layers.occupancy import PERIOD_S, VoxelLayer
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.viser_gateway import new_viser_server
 from editor_web.server import dashboard
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.journal import Journal
 from engine.messages import SceneDescription, VisualGeometry
-from engine.sensing import OccupancyGrid
-from engine.session import Session
+from engine.messages.sensing import OccupancyGrid
+from engine.project.session import Session
 from tests.editor_web.browsing import browser_program
 
 SHAPE = (64, 90, 60)
@@ -71,9 +71,9 @@ def new_grids(voxels: int) -> list[OccupancyGrid]:
 
 def draw_times_ms(grids: list[OccupancyGrid]) -> list[float]:
     """Return the CPU time that the drawing thread spends on each grid, without anybody who looks."""
-    server = new_server("key")
+    server = new_viser_server("key")
     try:
-        voxels, newest, spent = Voxels(server), Newest(), list[float]()
+        voxels, newest, spent = VoxelLayer(server), LatestMessages(), list[float]()
         for number, grid in enumerate(grids * 4):
             newest.put("cell", grid)
             began_s = time.thread_time()

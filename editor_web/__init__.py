@@ -5,7 +5,7 @@ It stands on `engine` alone: `backend` names what it asks for, `app` serves it, 
 """
 
 from editor_web.app import new_app
-from editor_web.backend import Backend
+from editor_web.contracts.backend import Backend
 from editor_web.server import Dashboard, dashboard, serve
 
 __all__ = ["Backend", "Dashboard", "dashboard", "new_app", "serve"]

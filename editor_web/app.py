@@ -20,42 +20,42 @@ from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
 
-from editor_web.access import Access, AttemptLimit
-from editor_web.backend import Backend
-from editor_web.capacity import MAX_CONNECTIONS
 from editor_web.cell_view import CellView
-from editor_web.live import LiveHub
-from editor_web.past import Pasts
+from editor_web.contracts.backend import Backend
+from editor_web.http_bodies.common_bodies import ErrorBody, QuestionBody, ResumeQuestionsBody
+from editor_web.live.hub import LiveHub
+from editor_web.past import OpenRunCache
 from editor_web.routes import (
     behaviors,
     breakpoints,
     bus,
     catalogue,
-    cell,
-    cell_grip,
-    cell_past,
-    connection,
     control,
-    data,
     demonstration,
     documents,
-    halt,
-    live,
     page,
-    past,
-    relations,
     runs,
     session,
-    teaching,
 )
+from editor_web.routes import cell_connection as connection
+from editor_web.routes import cell_stop as halt
+from editor_web.routes import past_runs as past
+from editor_web.routes import references as relations
 from editor_web.routes.services import Services
-from editor_web.security import Gate
-from editor_web.sessions import LoginSessions
+from editor_web.security.authentication import AccessTokens, AttemptLimiter
+from editor_web.security.login_sessions import LoginSessions
+from editor_web.security.middleware import SecurityMiddleware
+from editor_web.sockets import cell_handle as cell_grip
+from editor_web.sockets import cell_past_view as cell_past
+from editor_web.sockets import cell_proxy as cell
+from editor_web.sockets import data_stream as data
+from editor_web.sockets import live_stream as live
+from editor_web.sockets import teaching_stream as teaching
 from editor_web.teaching.jogging import Jogger
-from editor_web.wire import AskBody, ErrorBody, QuestionBody
+from editor_web.transport.capacity import MAX_CONNECTIONS
 from engine.editing.target_checks import TargetChecks
 from engine.errors import ControlError, FlexcellError
-from engine.resume import NeedsAnswers
+from engine.runtime.history.resume import ResumeDecisionRequired
 from engine.stop import StopEndpoint
 
 _TITLE = "flexcell"
@@ -71,7 +71,7 @@ _REFUSALS: dict[int | str, dict[str, Any]] = dict.fromkeys(
 def new_app(
     backend: Backend,
     *,
-    access: Access,
+    access: AccessTokens,
     hosts: frozenset[str],
     port: int,
     cell_view: CellView | None = None,
@@ -97,7 +97,7 @@ def new_app(
     """
     if sessions is None:
         sessions = LoginSessions(file=None, tokens=access.fingerprint())
-    limit = AttemptLimit(now_s=time.monotonic)
+    limit = AttemptLimiter(now_s=time.monotonic)
     app = api()
     app.state.services = Services(
         backend=backend,
@@ -113,9 +113,9 @@ def new_app(
         stop=stop,
     )
     app.state.started = OrderedDict[str, str]()
-    app.state.pasts = Pasts(backend)
+    app.state.pasts = OpenRunCache(backend)
     app.state.joggers = dict[str, Jogger]()
-    return Gate(
+    return SecurityMiddleware(
         app,
         access=access,
         sessions=sessions,
@@ -227,9 +227,9 @@ async def _refused(request: Request, error: Exception) -> JSONResponse:
     # A command that the run does not allow now is no mistake in the request.
     status = 409 if isinstance(error, ControlError) else 422
     hint = error.hint or ""
-    if isinstance(error, NeedsAnswers):
+    if isinstance(error, ResumeDecisionRequired):
         questions = tuple(QuestionBody(path=each.path, outcomes=each.outcomes) for each in error.questions)
-        body = AskBody(message=error.message, where=where, hint=hint, questions=questions)
+        body = ResumeQuestionsBody(message=error.message, where=where, hint=hint, questions=questions)
         return JSONResponse(body.model_dump(), status_code=status)
     return _answer(status, error.message, where=where, hint=hint)
 

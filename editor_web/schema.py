@@ -14,10 +14,20 @@ from typing import Any, cast, get_args
 import msgspec
 
 from editor_web import app
-from editor_web.live_frames import Delta, DocumentsChanged, Hello, Operate, Ping, Pong, Show, Snapshot, Watch
-from editor_web.past import Failure, Moment, Timeline
-from editor_web.teaching_wire import SCHEMAS as TEACHING
-from engine.document.parameter import any_value
+from editor_web.live.live_frames import (
+    DocumentsChanged,
+    Hello,
+    LiveDelta,
+    LiveSnapshot,
+    OperateRun,
+    Ping,
+    Pong,
+    ShowLayers,
+    WatchRun,
+)
+from editor_web.past import PastRunState, RunFailure, Timeline
+from editor_web.teaching.teaching_messages import SCHEMAS as TEACHING
+from engine.document.parameter_spec import any_value
 from engine.editing import AnyEdit
 
 HERE = Path(__file__).parent
@@ -42,7 +52,7 @@ def typescript() -> str:
     parts = ["// Made by `python -m editor_web.schema`; edit the Python models instead.\n"]
     parts.append("import type { Dict } from '../document/dict'\n")
     parts += [_interface(name, schemas[name]) for name in sorted(schemas)]
-    parts.append("export type Frame = Hello | Snapshot | Delta | DocumentsChanged | Ping\n")
+    parts.append("export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping\n")
     parts.append(f"export type Edit = {' | '.join(_EDITS)}\n")
     return "\n".join(parts)
 
@@ -56,17 +66,17 @@ def _live_schemas() -> dict[str, Schema]:
     _, components = msgspec.json.schema_components(
         [
             Hello,
-            Snapshot,
-            Delta,
+            LiveSnapshot,
+            LiveDelta,
             DocumentsChanged,
             Ping,
             Pong,
-            Watch,
-            Operate,
-            Show,
+            WatchRun,
+            OperateRun,
+            ShowLayers,
             Timeline,
-            Moment,
-            Failure,
+            PastRunState,
+            RunFailure,
             *TEACHING,
         ],
         ref_template="#/components/schemas/{name}",
@@ -103,15 +113,15 @@ _SENT = {
     "DemonstrationBody",
     "NewDocumentBody",
     "BreakpointBody",
-    "MomentBody",
-    "Operate",
+    "RunPositionBody",
+    "OperateRun",
     "ResumeBody",
     "StartBody",
     "StepBody",
     "StopBody",
-    "TaughtStepBody",
+    "DemonstrationStepBody",
     "SupervisionBody",
-    "Watch",
+    "WatchRun",
 }
 
 

@@ -11,17 +11,17 @@ from pathlib import Path
 
 import uvicorn
 
-from editor_web.acceptor import Acceptor
-from editor_web.access import OPERATOR, Role, load_access
 from editor_web.app import STATIC, new_app
-from editor_web.backend import Backend
-from editor_web.capacity import COMMAND_RESERVE, connection_limit, raise_descriptor_limit
 from editor_web.cell_view import CellView
-from editor_web.connection import PageSocket, TimedConnection, WaitingConnections
-from editor_web.repeated_log import repeats_left_out
-from editor_web.sessions import LoginSessions
+from editor_web.contracts.backend import Backend
+from editor_web.security.authentication import OPERATOR, Role, load_access_tokens
+from editor_web.security.login_sessions import LoginSessions
+from editor_web.transport.acceptor import Acceptor
+from editor_web.transport.capacity import COMMAND_RESERVE, connection_limit, raise_descriptor_limit
+from editor_web.transport.log_throttle import throttle_library_logs
+from editor_web.transport.timed_connection import PageWebSocket, PendingConnections, TimedConnection
 from engine.errors import FlexcellError
-from engine.loopback import bound_socket, host_in_url
+from engine.host.loopback import bound_socket, host_in_url
 from engine.stop import StopRelay
 
 STOP_LIMIT_S = 3
@@ -63,7 +63,7 @@ class _Server(uvicorn.Server):
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             raise FlexcellError("the dashboard ended while it was starting", hint="see the log above")
-        waiting = WaitingConnections()
+        waiting = PendingConnections()
         acceptors = [
             Acceptor(
                 listener,
@@ -113,7 +113,7 @@ async def dashboard(
     Raises:
         FlexcellError: The host is not loopback, the port is taken, or the token file cannot be used.
     """
-    access = load_access(token_file)
+    access = load_access_tokens(token_file)
     sessions = LoginSessions(file=token_file.with_name("sessions"), tokens=access.fingerprint())
     sessions.load()
     listeners = [bound_socket(host, port, option="--port")]
@@ -146,7 +146,7 @@ async def dashboard(
         log_config=None,
         access_log=False,
         server_header=False,
-        ws=PageSocket,
+        ws=PageWebSocket,
         ws_max_size=1_000_000,
         ws_per_message_deflate=False,
         ws_ping_interval=PING_S,
@@ -154,7 +154,7 @@ async def dashboard(
         timeout_graceful_shutdown=STOP_LIMIT_S,
     )
     server = _Server(config, listeners, limit=limit)
-    with repeats_left_out():
+    with throttle_library_logs():
         serving = asyncio.create_task(server.serve(), name="dashboard")
         try:
             await _started(server, serving)

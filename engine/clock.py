@@ -41,7 +41,7 @@ class Clock(Protocol):
         ...
 
 
-class Lockstep(Protocol):
+class LockstepSimulation(Protocol):
     """A simulation that advances only when the virtual loop lets time pass."""
 
     @property
@@ -65,7 +65,7 @@ _LEAP_S = 0.25
 """How far a simulation is stepped at a time before the loop looks outside again."""
 
 
-class NothingCanWake(FlexcellError):
+class VirtualTimeDeadlock(FlexcellError):
     """Virtual time cannot pass: no timer is set, no simulation is busy, no thread works."""
 
 
@@ -171,7 +171,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         super().__init__(self._jumping)
         self._jumping.pass_time = self._pass_time
         self._now_s = 0.0
-        self._stepped: list[Lockstep] = []
+        self._stepped: list[LockstepSimulation] = []
         self._timers = 0
         self._working = 0
         self._outside = 0
@@ -189,11 +189,11 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         instant.order = self._timers = self._timers + 1
         return super().call_at(instant, callback, *args, context=context)
 
-    def attach(self, simulation: Lockstep) -> None:
+    def attach(self, simulation: LockstepSimulation) -> None:
         """Step `simulation` along with time from now on."""
         self._stepped.append(simulation)
 
-    def detach(self, simulation: Lockstep) -> None:
+    def detach(self, simulation: LockstepSimulation) -> None:
         """Stop stepping it."""
         self._stepped.remove(simulation)
 
@@ -258,7 +258,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
 
     def _nothing_can_wake(self) -> None:
         waiting = sorted(task.get_name() for task in asyncio.all_tasks(self) if not task.done())
-        error = NothingCanWake(
+        error = VirtualTimeDeadlock(
             f"nothing can happen any more at t={self._now_s:.3f} s",
             hint=f"waiting for ever: {', '.join(waiting)}",
         )
@@ -274,15 +274,15 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             self.stop()
 
     _main_task: asyncio.Task[Any] | None = None
-    stuck: NothingCanWake | None = None
-    when_stuck: Callable[[NothingCanWake], None] | None = None
+    stuck: VirtualTimeDeadlock | None = None
+    when_stuck: Callable[[VirtualTimeDeadlock], None] | None = None
     """Called the first time that nothing can wake, instead of cancelling the main task."""
 
     def run_main(self, main: Coroutine[Any, Any, T]) -> T:
         """Run `main` to its end, then cancel what it left behind; what takes no notice of that is named in the log.
 
         Raises:
-            NothingCanWake: everything waits and nothing is due.
+            VirtualTimeDeadlock: everything waits and nothing is due.
         """
         asyncio.set_event_loop(self)
         try:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import msgspec
 
+CONNECT_AGAIN = "connect the cell again: `flexcell cell connect`, or Connect on the page"
+"""What to do about a lost device."""
+
 
 class Position(msgspec.Struct, frozen=True, kw_only=True, gc=False):
     """A place in a source file; lines and columns count from 1."""
@@ -83,7 +86,7 @@ class HandlerNotTyped(BusError):
 
 
 class NoSuchSkill(BusError):
-    """Nobody answers at this bus address."""
+    """No skill is registered at this bus address."""
 
 
 class LeaseRefused(BusError):

@@ -50,7 +50,7 @@ class RunStarted(Event, frozen=True, kw_only=True, tag="run_started"):
     inputs: dict[str, object] = {}
 
 
-class Entered(Event, frozen=True, kw_only=True, tag="entered"):
+class NodeEntered(Event, frozen=True, kw_only=True, tag="entered"):
     """A node became active."""
 
     path: str
@@ -59,7 +59,7 @@ class Entered(Event, frozen=True, kw_only=True, tag="entered"):
     inputs: dict[str, object]
 
 
-class Exited(Event, frozen=True, kw_only=True, tag="exited", omit_defaults=True):
+class NodeExited(Event, frozen=True, kw_only=True, tag="exited", omit_defaults=True):
     """A node finished with an outcome; `preempted` when it was told to stop instead."""
 
     path: str
@@ -88,7 +88,7 @@ class UserdataAppended(Event, frozen=True, kw_only=True, tag="userdata_appended"
     value: object
 
 
-class Transitioned(Event, frozen=True, kw_only=True, tag="transition"):
+class TransitionTaken(Event, frozen=True, kw_only=True, tag="transition"):
     """Machine `path` follows the outcome of `source` to `target`, a child or an own outcome."""
 
     path: str
@@ -130,7 +130,7 @@ class GoalResumed(Event, frozen=True, kw_only=True, tag="goal_resumed"):
     goal: str
 
 
-class Called(Event, frozen=True, kw_only=True, tag="call"):
+class ServiceCalled(Event, frozen=True, kw_only=True, tag="call"):
     """A state asked a service; `call` numbers the calls of one activation, from 1."""
 
     path: str
@@ -139,7 +139,7 @@ class Called(Event, frozen=True, kw_only=True, tag="call"):
     request: dict[str, object]
 
 
-class Answered(Event, frozen=True, kw_only=True, tag="answer", omit_defaults=True):
+class ServiceAnswered(Event, frozen=True, kw_only=True, tag="answer", omit_defaults=True):
     """The service answered, or failed with `cause`."""
 
     path: str
@@ -148,7 +148,7 @@ class Answered(Event, frozen=True, kw_only=True, tag="answer", omit_defaults=Tru
     cause: Cause | None = None
 
 
-class Received(Event, frozen=True, kw_only=True, tag="received"):
+class MessageReceived(Event, frozen=True, kw_only=True, tag="received"):
     """A state read a message of a topic."""
 
     path: str
@@ -156,7 +156,7 @@ class Received(Event, frozen=True, kw_only=True, tag="received"):
     message: object
 
 
-class Diverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=True):
+class NodeDiverted(Event, frozen=True, kw_only=True, tag="diverted", omit_defaults=True):
     """A node was left for `target` without an outcome: by timeout, guard or on_error (`by`)."""
 
     path: str
@@ -188,8 +188,8 @@ class StatusChanged(Event, frozen=True, kw_only=True, tag="status"):
     status: str
 
 
-class Commanded(Event, frozen=True, kw_only=True, tag="command"):
-    """The operator commanded something; `command` is a name of `engine.control.Control`."""
+class OperatorCommanded(Event, frozen=True, kw_only=True, tag="command"):
+    """The operator commanded something; `command` is a name of `engine.runtime.control.Control`."""
 
     command: str
     path: str
@@ -262,7 +262,7 @@ class BehaviorChanged(Event, frozen=True, kw_only=True, tag="behavior_changed", 
     documents: dict[str, str] = {}
 
 
-class UndoBegan(Event, frozen=True, kw_only=True, tag="undo_began"):
+class UndoStarted(Event, frozen=True, kw_only=True, tag="undo_began"):
     """A step back began to undo a state: what its activation `undoes` had done; `visit` numbers the undoing."""
 
     path: str
@@ -289,7 +289,7 @@ class FormerValue(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     defined: bool = True
 
 
-class SteppedBack(Event, frozen=True, kw_only=True, tag="stepped_back", omit_defaults=True):
+class RunSteppedBack(Event, frozen=True, kw_only=True, tag="stepped_back", omit_defaults=True):
     """The run stands before the entry of `path` again, `source` having been given up for that.
 
     `values` are in userdata again. `went_wrong` and `reason` are what the container knew then of the course of its
@@ -329,14 +329,14 @@ class LoopBlocked(Event, frozen=True, kw_only=True, tag="loop_blocked"):
     where: str
 
 
-class Abandoned(Event, frozen=True, kw_only=True, tag="abandoned"):
+class NodeAbandoned(Event, frozen=True, kw_only=True, tag="abandoned"):
     """A node did not confirm in time that it stopped; the run goes on without it."""
 
     path: str
     waited_s: float
 
 
-class Logged(Event, frozen=True, kw_only=True, tag="log"):
+class MessageLogged(Event, frozen=True, kw_only=True, tag="log"):
     """A state or the runner says something; `level` is debug, info, warning or error."""
 
     path: str
@@ -344,7 +344,7 @@ class Logged(Event, frozen=True, kw_only=True, tag="log"):
     message: str
 
 
-class Retried(Event, frozen=True, kw_only=True, tag="retry"):
+class NodeRetried(Event, frozen=True, kw_only=True, tag="retry"):
     """A node is run again after a failure; `attempt` counts from 2."""
 
     path: str
@@ -370,37 +370,37 @@ class RunEnded(Event, frozen=True, kw_only=True, tag="run_ended", omit_defaults=
 AnyEvent = (
     RunStarted
     | RunResumed
-    | Entered
-    | Exited
+    | NodeEntered
+    | NodeExited
     | UserdataAppended
     | UserdataWritten
-    | Transitioned
-    | Diverted
+    | TransitionTaken
+    | NodeDiverted
     | BranchesPreempted
-    | Retried
+    | NodeRetried
     | StatusChanged
     | GoalSent
     | GoalFinished
     | GoalHeld
     | GoalResumed
-    | Called
-    | Answered
-    | Received
-    | Logged
-    | Commanded
+    | ServiceCalled
+    | ServiceAnswered
+    | MessageReceived
+    | MessageLogged
+    | OperatorCommanded
     | GateReached
     | GatePassed
     | OutcomeRequested
     | OutcomeWithdrawn
     | PauseConfirmed
     | OperatorChanged
-    | UndoBegan
+    | UndoStarted
     | UndoEnded
-    | SteppedBack
+    | RunSteppedBack
     | BehaviorChanged
     | FaultInjected
     | LoopBlocked
-    | Abandoned
+    | NodeAbandoned
     | StopRequested
     | RunEnded
 )

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 
-def inside(outer: str, path: str) -> bool:
+def is_inside(outer: str, path: str) -> bool:
     """Tell whether `path` is `outer` or lies in it."""
     return path == outer or path.startswith(f"{outer}/")

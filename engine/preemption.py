@@ -20,7 +20,7 @@ OVERDUE_S = 5.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Overdue:
+class OverduePolicy:
     """What becomes of tasks that take their time: `tell` names them, `abandon` says that they are given up.
 
     Time in which a task `stands_still`, as in a pause, is not counted.
@@ -54,18 +54,18 @@ def is_preempted(task: asyncio.Task[Any]) -> bool:
 
 
 def preempt_for_order(task: asyncio.Task[Any]) -> None:
-    """Ask a task to clean up for an order, unless it does already; `goes_on` says whether it may go on then."""
+    """Ask a task to clean up for an order, unless it does already; see `take_order_preemption`."""
     if _ask(task):
         _FOR_ORDERS.add(task)
 
 
-def preempt_for_good(task: asyncio.Task[Any]) -> None:
+def preempt_finally(task: asyncio.Task[Any]) -> None:
     """Ask a task to clean up and end; a clean-up for an order is the one that it ends with."""
     _ask(task)
     _FOR_ORDERS.discard(task)
 
 
-def goes_on() -> bool:
+def take_order_preemption() -> bool:
     """Tell, once and after its clean-up, whether the running branch was preempted by an order and by nothing else."""
     task = asyncio.current_task()
     if task is None or task not in _FOR_ORDERS:
@@ -91,7 +91,7 @@ def _forget(task: asyncio.Task[Any]) -> None:
     _FOR_ORDERS.discard(task)
 
 
-async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
+async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: OverduePolicy) -> None:
     """Cancel the unfinished tasks once, in the order given, and wait for all of them to end.
 
     Args:
@@ -105,7 +105,7 @@ async def preempt(tasks: Iterable[asyncio.Task[Any]], overdue: Overdue) -> None:
     asked = tuple(tasks)
     unfinished = {task for task in asked if not task.done()}
     for task in asked:
-        preempt_for_good(task)
+        preempt_finally(task)
     cancelled: asyncio.CancelledError | None = None
     waited_s = 0.0
     while unfinished and waited_s < overdue.abandon_after_s:
@@ -145,7 +145,7 @@ class BackgroundPreemptions:
         on_failure: Called when a task was abandoned; `raise_failure` raises what it is about.
     """
 
-    def __init__(self, overdue: Overdue, on_failure: Callable[[], None]) -> None:
+    def __init__(self, overdue: OverduePolicy, on_failure: Callable[[], None]) -> None:
         self._overdue = overdue
         self._on_failure = on_failure
         self._waits: dict[asyncio.Task[Any], asyncio.Task[None]] = {}
@@ -158,7 +158,7 @@ class BackgroundPreemptions:
         """Ask a task to clean up and end, unless it was asked before."""
         if task in self._waits:
             return
-        preempt_for_good(task)
+        preempt_finally(task)
         wait = asyncio.create_task(preempt((task,), self._overdue), name=f"preempt {task.get_name()}")
         wait.add_done_callback(self._ended)
         self._waits[task] = wait

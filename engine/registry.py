@@ -2,7 +2,7 @@
 
 Groups: `flexcell.states` (a mapping of state name → class), `flexcell.worlds` and
 `flexcell.drivers` (a maker per `kind`), `flexcell.servers`, `flexcell.models` (see
-`engine.robot_models`). A user's own states stand in modules that the project file allows, and are
+`engine.cell.robot_models`). A user's own states stand in modules that the project file allows, and are
 found as `module:Class`. `load_states` is the one place where such modules are imported: at the
 start of a command or server, never because a document names them.
 """
@@ -18,13 +18,13 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
 
-from engine.contained_load import LoadFailure, load_contained
-from engine.document.collection_pause import without_collection
 from engine.document.project import Project, find_project
 from engine.errors import RegistryError
-from engine.nearness import near_names
+from engine.host.gc_pause import pause_gc
+from engine.host.isolated_loading import LoadFailure, load_isolated
 from engine.state import State
 from engine.state_catalogue import StateCatalogue
+from engine.suggestions import did_you_mean
 from engine.type_preparation import prepare_types
 
 STATES = "flexcell.states"
@@ -34,7 +34,7 @@ SERVERS = "flexcell.servers"
 MODELS = "flexcell.models"
 
 
-@without_collection
+@pause_gc
 def load_states(start: Path | None = None) -> StateCatalogue:
     """Load the states of installed packages, and those of the modules that a project allows.
 
@@ -64,22 +64,22 @@ def state_by_path(name: str) -> type[State]:
         RegistryError: the module or class does not exist or is not a state.
     """
     module_name, _, class_name = name.partition(":")
-    module = load_contained(module_name, partial(importlib.import_module, module_name))
+    module = load_isolated(module_name, partial(importlib.import_module, module_name))
     if isinstance(module, LoadFailure):
         raise RegistryError(str(module), where=name, hint="write it as package.module:Class")
     found: object = vars(module).get(class_name)
     if not (isinstance(found, type) and issubclass(found, State)):
-        hint = near_names(class_name, _states_of(module))
+        hint = did_you_mean(class_name, _states_of(module))
         raise RegistryError("this is not a subclass of engine.state.State", where=name, hint=hint)
     return found
 
 
-def registered(group: str) -> tuple[str, ...]:
+def registered_names(group: str) -> tuple[str, ...]:
     """Return the names that installed packages register in a group, sorted; nothing is loaded."""
     return tuple(sorted(point.name for point in entry_points(group=group)))
 
 
-def load_maker(group: str, kind: str) -> Any:
+def load_factory(group: str, kind: str) -> Any:
     """Return what is registered as `kind` in `group`.
 
     Raises:
@@ -88,9 +88,9 @@ def load_maker(group: str, kind: str) -> Any:
     points = {point.name: point for point in entry_points(group=group)}
     if kind not in points:
         raise RegistryError(
-            f"no {group.removeprefix('flexcell.')[:-1]} is named {kind!r}", hint=near_names(kind, points)
+            f"no {group.removeprefix('flexcell.')[:-1]} is named {kind!r}", hint=did_you_mean(kind, points)
         )
-    found = load_contained(kind, points[kind].load)
+    found = load_isolated(kind, points[kind].load)
     if isinstance(found, LoadFailure):
         raise _broken_point(points[kind], found)
     return found
@@ -105,7 +105,7 @@ class _Loading:
         self.broken: dict[str, RegistryError] = {}
 
     def add_entry_point(self, point: EntryPoint) -> None:
-        offered = load_contained(point.name, partial(_offered, point))
+        offered = load_isolated(point.name, partial(_offered, point))
         if isinstance(offered, LoadFailure):
             self.broken[point.name] = _broken_point(point, offered)
             return
@@ -119,7 +119,7 @@ class _Loading:
             sys.path.append(folder)
         importlib.invalidate_caches()
         for index, name in enumerate(project.document.states):
-            loaded = load_contained(name, partial(_own_module, name, project.folder))
+            loaded = load_isolated(name, partial(_own_module, name, project.folder))
             if isinstance(loaded, LoadFailure):
                 where = project.position(index)
                 self.broken[name] = RegistryError(str(loaded), where=where, hint="mend the module and start again")

@@ -25,10 +25,10 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import msgspec
 
-from engine.arm_target import ArmTarget, StoredTargets, ToolChange
 from engine.clock import Clock
 from engine.event import Cause
 from engine.skill import Action, Service
+from engine.skills.arm_target import ArmTarget, StoredTargets, ToolChange
 
 R = TypeVar("R")
 F = TypeVar("F")

@@ -12,8 +12,8 @@ from types import MappingProxyType, ModuleType
 
 from engine.document.project import PROJECT_FILE
 from engine.errors import ModuleNotAllowed, RegistryError
-from engine.nearness import near_names
 from engine.state import State
+from engine.suggestions import did_you_mean
 
 Catalogue = Mapping[str, type[State]]
 
@@ -68,7 +68,7 @@ class StateCatalogue(Mapping[str, type[State]]):
         if module and module not in self.modules:
             return not_allowed(module, self._project_file)
         missing = "; ".join(map(str, self.broken.values()))
-        hint = near_names(name, self._states)
+        hint = did_you_mean(name, self._states)
         return RegistryError(f"there is no state `{name}`", hint=f"{hint}; {missing}" if missing else hint)
 
     def module(self, name: str) -> ModuleType:
@@ -135,4 +135,4 @@ def _missing(catalogue: Catalogue, name: str) -> RegistryError:
         return catalogue.missing(name)
     if ":" in name:
         return not_allowed(name.rpartition(":")[0])
-    return RegistryError(f"there is no state `{name}`", hint=near_names(name, catalogue))
+    return RegistryError(f"there is no state `{name}`", hint=did_you_mean(name, catalogue))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from engine.arm_target import DrawnCell
+from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind
 from engine.document.cell import Cell
-from engine.robot_models import RobotModels, RobotSummary, ToolKind
+from engine.skills.arm_target import StaticCell
 from robots.model.link_names import link_names
 from robots.model.registry import model_of_entry, robot_names, tool_names
 from robots.model.tool_model import MagnetModel, SynergyModel, ToolModel
@@ -37,12 +37,12 @@ class InstalledModels:
             digital_outputs=model.digital_outputs,
         )
 
-    def drawn(self, cell: Cell) -> DrawnCell:
+    def drawn(self, cell: Cell) -> StaticCell:
         """Return the cell as it is drawn, in which arms can be put to targets."""
         # A check that has no target needs no collision library.
-        from robots.planning.drawn_cell import FixturesOnly
+        from robots.planning.search.reachability import ReachabilityChecker
 
-        return FixturesOnly(cell)
+        return ReachabilityChecker(cell)
 
 
 def _kind(tool: ToolModel | None) -> ToolKind | None:

@@ -26,11 +26,11 @@ from states.magnet.off import Off as MagnetOff
 from states.magnet.on import On as MagnetOn
 from states.manipulation.pick_part import PickPart
 from states.manipulation.place_part import PlacePart
-from states.motion.cart_dmp import FollowCartDmp
 from states.motion.execute_plan import ExecutePlan
+from states.motion.follow_cart_dmp import FollowCartDmp
+from states.motion.follow_joint_dmp import FollowJointDmp
 from states.motion.follow_recording import FollowRecording
 from states.motion.guide import Guide
-from states.motion.joint_dmp import FollowJointDmp
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
 from states.motion.move_free import MoveFree
 from states.motion.move_joints import MoveJoints

@@ -5,8 +5,8 @@ from __future__ import annotations
 from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import FramePoses, PartPoses, Pose
-from engine.nearness import near_names
 from engine.state import Context
+from engine.suggestions import did_you_mean
 
 WORLD = "world"
 PARTS_TOPIC = "cell/parts"
@@ -18,7 +18,7 @@ async def part_in_world(ctx: Context, part: str) -> Pose | Cause:
     poses = (await ctx.latest(PARTS_TOPIC, PartPoses)).poses
     if part in poses:
         return poses[part]
-    return Cause(message=f"no such part is in the cell; {near_names(part, poses)}", where=PARTS_TOPIC)
+    return Cause(message=f"no such part is in the cell; {did_you_mean(part, poses)}", where=PARTS_TOPIC)
 
 
 async def frame_in_world(ctx: Context, frame: str) -> Pose:
@@ -31,6 +31,6 @@ async def frame_in_world(ctx: Context, frame: str) -> Pose:
         return Pose(xyz=(0.0, 0.0, 0.0))
     frames = await ctx.latest(FRAMES_TOPIC, FramePoses)
     if frame not in frames.names:
-        raise StateError(f"the cell shows no frame {frame}", where=ctx.path, hint=near_names(frame, frames.names))
+        raise StateError(f"the cell shows no frame {frame}", where=ctx.path, hint=did_you_mean(frame, frames.names))
     row = frames.names.index(frame)
     return Pose(xyz=frames.xyz[row], xyzw=frames.xyzw[row])

@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from pathlib import Path
 
-from robots.planning.planner import ScenePlanner
-from robots.planning.worker_main import _warm  # pyright: ignore[reportPrivateUsage] - as a planning process starts
+from robots.planning.worker.planning_worker_main import _warm  # pyright: ignore[reportPrivateUsage] - as a planning process starts
+from robots.planning.worker.scene_planner import ScenePlanner
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -15,13 +15,13 @@ KINDS = {
     "playwright": "browser",
     "subprocess": "process",
     "multiprocessing": "process",
-    "robots.planning.worker": "process",
+    "robots.planning.worker.planning_worker": "process",
     "benchmarks": "process",
     "mujoco": "physics",
     "robots.sim": "physics",
     # Cells name their world; these open whatever is named.
-    "engine.cell": "physics",
-    "engine.session": "physics",
+    "engine.cell.open_cell": "physics",
+    "engine.project.session": "physics",
 }
 FOLDERS = {
     "tests/behaviors": "physics",

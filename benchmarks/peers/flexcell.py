@@ -18,9 +18,9 @@ from engine.clock import new_clock
 from engine.document import parse_behavior
 from engine.event import Event
 from engine.journal import Journal, RunJournal
-from engine.plan import Plan, new_plan
-from engine.resume import read_history
-from engine.run import Run
+from engine.runtime.history.resume import read_history
+from engine.runtime.plan import Plan, new_plan
+from engine.runtime.run import Run
 from engine.state import Context, Outcome, State
 
 _REACTIONS: list[Reactions] = []

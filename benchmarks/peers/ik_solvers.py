@@ -10,24 +10,24 @@ from typing import Any
 import numpy as np
 
 from engine.errors import RobotError
-from robots.model.inverse_kinematics import InverseKinematics, pose_error, weighted_step
+from robots.model.inverse_kinematics import InverseKinematicsSolver, pose_error, weighted_step
 from robots.model.inverse_kinematics.chain import chain_of, matrix_of
 from robots.model.kinematics import ArmKinematics
 from robots.model.pinocchio_model import arm_model, pin
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
-Solver = Callable[[Rigid, Array], "Array | None"]
+Solver = Callable[[RigidTransform, Array], "Array | None"]
 
 _METRES, _RADIANS = 1e-5, 1e-4
 
 
 def flexcell(kinematics: ArmKinematics) -> Solver:
     """Return this project's solver: the nearest solution."""
-    inverse = InverseKinematics(kinematics)
+    inverse = InverseKinematicsSolver(kinematics)
     inverse.prepare()
 
-    def solve(target: Rigid, seed: Array) -> Array | None:
+    def solve(target: RigidTransform, seed: Array) -> Array | None:
         try:
             return inverse.nearest(target, seed=seed)
         except RobotError:
@@ -52,7 +52,7 @@ def eaik(kinematics: ArmKinematics) -> Solver | None:
     lower, upper = chain.bounds[:2]
     pose = np.eye(4)
 
-    def solve(target: Rigid, seed: Array) -> Array | None:
+    def solve(target: RigidTransform, seed: Array) -> Array | None:
         pose[:3] = matrix_of(target)
         found = robot.calculate_IK(pose)
         for joints, only_near in zip(found.Q, found.is_LS, strict=True):
@@ -78,7 +78,7 @@ def pink(kinematics: ArmKinematics) -> Solver | None:
     limits = [library.limits.ConfigurationLimit(model)]
     to_base = kinematics.base.inverse()
 
-    def solve(target: Rigid, seed: Array) -> Array | None:
+    def solve(target: RigidTransform, seed: Array) -> Array | None:
         configuration = library.Configuration(model, model.createData(), seed)
         task = tasks.FrameTask(kinematics.model.tool_link, position_cost=1.0, orientation_cost=1.0, lm_damping=1e-3)
         in_base = to_base.then(target)
@@ -100,7 +100,7 @@ def damped_least_squares(kinematics: ArmKinematics) -> Solver:
     """Return the textbook method in numpy and pinocchio: fixed damping, joints clipped, 200 steps from the seed."""
     lower, upper = np.array(kinematics.limits.lower_rad), np.array(kinematics.limits.upper_rad)
 
-    def solve(target: Rigid, seed: Array) -> Array | None:
+    def solve(target: RigidTransform, seed: Array) -> Array | None:
         joints = seed
         for _ in range(200):
             pose, jacobian = kinematics.tool_pose_and_jacobian(joints)

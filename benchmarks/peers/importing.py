@@ -7,7 +7,7 @@ import time
 
 from benchmarks.sample import Sample, Stopwatch
 
-_RUNNING = ("engine.document", "engine.plan", "engine.run", "engine.bus", "engine.journal")
+_RUNNING = ("engine.document", "engine.runtime.plan", "engine.runtime.run", "engine.bus", "engine.journal")
 
 
 def flexcell(watch: Stopwatch) -> Sample:

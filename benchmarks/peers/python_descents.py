@@ -9,7 +9,7 @@ import numpy as np
 
 from robots.model.inverse_kinematics import ANGLE_TOLERANCE_RAD, POSITION_TOLERANCE_M, pose_error, weighted_step
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 _ITERATIONS = 60
@@ -38,7 +38,7 @@ class PythonDescents:
         self._lower, self._upper = np.array(limits.lower_rad), np.array(limits.upper_rad)
         self._speed = np.array(limits.velocity_rad_s)
 
-    def nearest(self, target: Rigid, *, seed: Array) -> Array | None:
+    def nearest(self, target: RigidTransform, *, seed: Array) -> Array | None:
         """Return the configuration for `target` (world) that is soonest reached from `seed`; None if none was found."""
         first = self._solve(target, np.clip(seed, self._lower, self._upper), near=seed)
         if first.solved and float(np.abs(first.joints - seed).max()) < _NEAR_RAD:
@@ -63,7 +63,7 @@ class PythonDescents:
         share = 1.0 if tries % 2 else 0.35
         return np.clip(seed + share * (anywhere - seed), self._lower, self._upper)
 
-    def _solve(self, target: Rigid, start: Array, *, near: Array) -> _Attempt:
+    def _solve(self, target: RigidTransform, start: Array, *, near: Array) -> _Attempt:
         """Levenberg-Marquardt with joints kept at their limits."""
         joints, damping = start, 1e-3
         pose, jacobian = self._kinematics.tool_pose_and_jacobian(joints)
@@ -102,5 +102,5 @@ class PythonDescents:
         return step if longest <= 0.6 else step * (0.6 / longest)
 
 
-def _request_seed(target: Rigid, seed: Array) -> int:
+def _request_seed(target: RigidTransform, seed: Array) -> int:
     return zlib.crc32(np.concatenate((target.xyz, target.xyzw, seed)).round(9).tobytes())

@@ -10,12 +10,12 @@ import numpy as np
 
 from benchmarks.planning_scenes import ARM
 from engine.errors import CellError
-from engine.shapes import Box, Cylinder, Sphere
-from robots.model.rigid import Rigid
-from robots.planning.arm_shapes import arm_shapes
+from engine.messages.shapes import Box, Cylinder, Sphere
+from robots.model.transform import RigidTransform
 from robots.planning.request import JointGoal, PlanRequest
-from robots.planning.scene import PlanningScene
-from robots.planning.surroundings import surroundings
+from robots.planning.scene.arm_shapes import arm_shapes
+from robots.planning.scene.planning_scene import PlanningScene
+from robots.planning.scene.static_scene import static_solids
 from robots.port import Array
 
 _STEP_RAD = 0.05
@@ -69,9 +69,9 @@ class RoboplanPlanner:
     def _add_solids(self, scene: PlanningScene) -> None:
         colour = np.ones(4)
         self._solids: dict[str, str] = {}
-        for index, solid in enumerate(surroundings(scene, ARM)):
+        for index, solid in enumerate(static_solids(scene, ARM)):
             at = np.eye(4)
-            pose: Rigid = solid.pose
+            pose: RigidTransform = solid.pose
             at[:3, :3], at[:3, 3] = pose.rotation, pose.xyz
             name = f"solid_{index}"
             self._solids[name] = solid.name

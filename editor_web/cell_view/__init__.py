@@ -5,21 +5,21 @@ of the bus. Each kind of thing is drawn by a module of its own; `groups` says wh
 for single pages what was at another time, `handles` are what somebody pulls at with the mouse.
 """
 
-from editor_web.cell_view.groups import GROUPS, Group
-from editor_web.cell_view.handles import Handle, Pull
-from editor_web.cell_view.lock import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, page
-from editor_web.cell_view.past_pages import PastState
+from editor_web.cell_view.handles import DragHandle, HandlePull
+from editor_web.cell_view.past_view import PastViewState
+from editor_web.cell_view.rendering.layer_groups import LAYER_GROUPS, LayerGroup
+from editor_web.cell_view.rendering.viser_gateway import KEY_HEADER, PAGE_HEADER, ROLE_HEADER, viser_page
 from editor_web.cell_view.view import CellView
 
 __all__ = [
-    "GROUPS",
     "KEY_HEADER",
+    "LAYER_GROUPS",
     "PAGE_HEADER",
     "ROLE_HEADER",
     "CellView",
-    "Group",
-    "Handle",
-    "PastState",
-    "Pull",
-    "page",
+    "DragHandle",
+    "HandlePull",
+    "LayerGroup",
+    "PastViewState",
+    "viser_page",
 ]

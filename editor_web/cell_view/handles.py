@@ -12,10 +12,10 @@ from typing import Literal
 
 import viser
 
-from editor_web.access import OPERATOR
-from editor_web.cell_view.lock import PAGE, ROLE
-from editor_web.cell_view.newest import Newest
-from editor_web.cell_view.placement import Placed, by_name
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
+from editor_web.cell_view.rendering.viser_gateway import PAGE, ROLE
+from editor_web.security.authentication import OPERATOR
 from engine.messages import FramePoses
 
 _NODE = "/handle"
@@ -25,20 +25,20 @@ _COLOUR = (37, 99, 235)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pull:
+class HandlePull:
     """How a handle is pulled: `pose` is where the mouse has it, in the world."""
 
     phase: Literal["start", "update", "end"]
-    pose: Placed
+    pose: WorldPose
 
 
 @dataclass(frozen=True, kw_only=True)
-class Handle:
+class DragHandle:
     """A handle at a frame; `turns` where it can be turned too. `pulled` is called on viser's thread."""
 
     frame: str
     turns: bool
-    pulled: Callable[[Pull], None]
+    pulled: Callable[[HandlePull], None]
 
 
 @dataclass(kw_only=True)
@@ -46,13 +46,13 @@ class _Client:
     handle: viser.ClientHandle
     page: str
     may_operate: bool
-    given: Handle | None = None
+    given: DragHandle | None = None
     control: viser.TransformControlsHandle | None = None
     is_held: bool = False
-    placed: Placed | None = None
+    placed: WorldPose | None = None
 
 
-class Handles:
+class DragHandles:
     """The handles of all pages.
 
     Args:
@@ -63,21 +63,21 @@ class Handles:
     def __init__(self, server: viser.ViserServer, *, changed: Callable[[], None]) -> None:
         self._changed = changed
         self._lock = threading.Lock()
-        self._given: dict[str, Handle] = {}
+        self._given: dict[str, DragHandle] = {}
         self._clients: dict[int, _Client] = {}
         self._frames: FramePoses | None = None
         # Coroutines, because these run in the context of the connection, where `PAGE` and `ROLE` are.
         server.on_client_connect(self._connected)
         server.on_client_disconnect(self._disconnected)
 
-    def give(self, page: str, handle: Handle) -> None:
+    def give(self, page: str, handle: DragHandle) -> None:
         """Give a page this handle, instead of the one that it has."""
         with self._lock:
             self._given[page] = handle
             self._frames = None
         self._changed()
 
-    def take(self, page: str, handle: Handle) -> None:
+    def take(self, page: str, handle: DragHandle) -> None:
         """Take this handle away from a page, which may have got another one since."""
         with self._lock:
             if self._given.get(page) is not handle:
@@ -86,18 +86,18 @@ class Handles:
             self._frames = None
         self._changed()
 
-    def draw(self, newest: Newest) -> None:
+    def draw(self, newest: LatestMessages) -> None:
         """Place the handles that nobody holds where their frames are."""
         with self._lock:
             if newest.frames is None or newest.frames is self._frames:
                 return
             self._frames = newest.frames
             clients = [client for client in self._clients.values() if client.may_operate]
-            poses = by_name(newest.frames)
+            poses = poses_by_frame(newest.frames)
             for client in clients:
                 self._draw(client, poses.get(given.frame) if (given := self._given.get(client.page)) else None)
 
-    def _draw(self, client: _Client, pose: Placed | None) -> None:
+    def _draw(self, client: _Client, pose: WorldPose | None) -> None:
         given = self._given.get(client.page)
         if client.control is not None and (client.given is not given or pose is None):
             client.control.remove()
@@ -113,7 +113,7 @@ class Handles:
             client.control.position, client.control.wxyz = pose.xyz, pose.wxyz
         client.placed = pose
 
-    def _pulled(self, client: _Client, given: Handle, pull: Pull) -> None:
+    def _pulled(self, client: _Client, given: DragHandle, pull: HandlePull) -> None:
         """On viser's thread."""
         with self._lock:
             if client.given is not given:
@@ -140,7 +140,7 @@ class Handles:
 
 
 def _new_control(
-    client: _Client, given: Handle, pose: Placed, pulled: Callable[[_Client, Handle, Pull], None]
+    client: _Client, given: DragHandle, pose: WorldPose, pulled: Callable[[_Client, DragHandle, HandlePull], None]
 ) -> viser.TransformControlsHandle:
     scene = client.handle.scene
     control = scene.add_transform_controls(
@@ -158,7 +158,7 @@ def _new_control(
     async def on_update(event: viser.TransformControlsEvent) -> None:
         x, y, z = (float(value) for value in event.target.position)
         w, a, b, c = (float(value) for value in event.target.wxyz)
-        pulled(client, given, Pull(phase=event.phase, pose=Placed(xyz=(x, y, z), xyzw=(a, b, c, w))))
+        pulled(client, given, HandlePull(phase=event.phase, pose=WorldPose(xyz=(x, y, z), xyzw=(a, b, c, w))))
 
     control.on_update(on_update)
     # Whoever can see it can pull at it.

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import viser
 
-from editor_web.cell_view.lock import PAGE
-from editor_web.cell_view.newest import Newest
-from editor_web.cell_view.ways import Ghosts, GhostsShown
+from editor_web.cell_view.layers.path_view import GhostLayer, GhostPreviews
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.viser_gateway import PAGE
 from engine.skills.planning import PathPreview
 
-_NOTHING: GhostsShown = {}
+_NOTHING: GhostPreviews = {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,7 +21,7 @@ class _Client:
     """One connected page, with a drawing of its own."""
 
     page: str
-    ghosts: Ghosts
+    ghosts: GhostLayer
 
 
 class PageGhosts:
@@ -35,7 +35,7 @@ class PageGhosts:
     def __init__(self, server: viser.ViserServer, *, changed: Callable[[], None]) -> None:
         self._changed = changed
         self._lock = threading.Lock()
-        self._shown: dict[str, GhostsShown] = {}
+        self._shown: dict[str, GhostPreviews] = {}
         self._clients: dict[int, _Client] = {}
         # Coroutines, because these run in the context of the connection, where `PAGE` is.
         server.on_client_connect(self._connected)
@@ -48,7 +48,7 @@ class PageGhosts:
             self._forget(page)
         self._changed()
 
-    def draw(self, newest: Newest, now_s: float) -> float | None:
+    def draw(self, newest: LatestMessages, now_s: float) -> float | None:
         """Draw what has changed; returns when to call again where a ghost moves."""
         with self._lock:
             due = [(client.ghosts, self._shown.get(client.page, _NOTHING)) for client in self._clients.values()]
@@ -65,7 +65,7 @@ class PageGhosts:
 
     async def _connected(self, client: viser.ClientHandle) -> None:
         with self._lock:
-            self._clients[client.client_id] = _Client(page=PAGE.get(), ghosts=Ghosts(client))
+            self._clients[client.client_id] = _Client(page=PAGE.get(), ghosts=GhostLayer(client))
         self._changed()
 
     async def _disconnected(self, client: viser.ClientHandle) -> None:

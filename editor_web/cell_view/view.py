@@ -10,14 +10,14 @@ import time
 
 import viser
 
-from editor_web.cell_view.drawing import Drawing
-from editor_web.cell_view.follow import Follower, Topics
-from editor_web.cell_view.groups import ClientGroups, Group
-from editor_web.cell_view.handles import Handle, Handles
-from editor_web.cell_view.lock import new_server
-from editor_web.cell_view.newest import Newest
+from editor_web.cell_view.handles import DragHandle, DragHandles
+from editor_web.cell_view.layers.scene_layers import SceneLayers
 from editor_web.cell_view.page_ghosts import PageGhosts
-from editor_web.cell_view.past_pages import PastPages, Tell
+from editor_web.cell_view.past_view import PastViews, Tell
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import ClientLayerGroups, LayerGroup
+from editor_web.cell_view.rendering.viser_gateway import new_viser_server
+from editor_web.cell_view.topic_subscriptions import TopicSource, TopicSubscriptions
 from engine.errors import FlexcellError
 from engine.skills.planning import PathPreview
 
@@ -35,20 +35,20 @@ class CellView:
         shadows: Whether lights cast shadows; slow without a graphics card.
     """
 
-    def __init__(self, backend: Topics, *, shadows: bool = True) -> None:
+    def __init__(self, backend: TopicSource, *, shadows: bool = True) -> None:
         self._shadows = shadows
         self.key = secrets.token_urlsafe(32)
         self._server: viser.ViserServer | None = None
-        self._groups: ClientGroups | None = None
-        self._past: PastPages | None = None
-        self._handles: Handles | None = None
+        self._groups: ClientLayerGroups | None = None
+        self._past: PastViews | None = None
+        self._handles: DragHandles | None = None
         self._ghosts: PageGhosts | None = None
         self._backend = backend
         self._thread: threading.Thread | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._ending = threading.Event()
-        self._newest = Newest()
-        self._follower = Follower(backend, self._newest, shown=lambda: self.shown)
+        self._newest = LatestMessages()
+        self._follower = TopicSubscriptions(backend, self._newest, shown=lambda: self.shown)
 
     @property
     def port(self) -> int:
@@ -58,18 +58,18 @@ class CellView:
         return self._server.get_port()
 
     @property
-    def shown(self) -> frozenset[Group]:
+    def shown(self) -> frozenset[LayerGroup]:
         """What at least one connected page shows now."""
         return self._groups.shown if self._groups is not None else frozenset()
 
     def open(self) -> None:
         """Start viser and the thread that draws; takes some 20 ms, call it off the event loop."""
-        server = self._server = new_server(self.key)
+        server = self._server = new_viser_server(self.key)
         server.scene.set_up_direction("+z")
         server.scene.configure_default_lights(cast_shadow=self._shadows)
-        self._groups = ClientGroups(server, changed=self._on_shown)
-        self._past = PastPages(server, self._groups, find=self._backend.recording_files)
-        handles = self._handles = Handles(server, changed=self._newest.arrived.set)
+        self._groups = ClientLayerGroups(server, changed=self._on_shown)
+        self._past = PastViews(server, self._groups, find=self._backend.recording_files)
+        handles = self._handles = DragHandles(server, changed=self._newest.arrived.set)
         ghosts = self._ghosts = PageGhosts(server, changed=self._newest.arrived.set)
         self._thread = threading.Thread(
             target=self._write, args=(server, handles, ghosts), name="cell-view", daemon=True
@@ -80,7 +80,7 @@ class CellView:
         """Return what viser answers to a page that asks to be published: always None."""
         return self._server.request_share_url() if self._server else None
 
-    def show(self, page: str, groups: frozenset[Group]) -> None:
+    def show(self, page: str, groups: frozenset[LayerGroup]) -> None:
         """Let a page show these groups and no others; the page's name is in the path that it loads the view from."""
         if self._groups is not None:
             self._groups.show(page, groups)
@@ -95,12 +95,12 @@ class CellView:
         if self._past is not None:
             self._past.leave(page)
 
-    def give_handle(self, page: str, handle: Handle) -> None:
+    def give_handle(self, page: str, handle: DragHandle) -> None:
         """Give a page, where an operator looks at it, this handle to pull at."""
         if self._handles is not None:
             self._handles.give(page, handle)
 
-    def take_handle(self, page: str, handle: Handle) -> None:
+    def take_handle(self, page: str, handle: DragHandle) -> None:
         """Take this handle away from a page, which may have got another one since."""
         if self._handles is not None:
             self._handles.take(page, handle)
@@ -145,8 +145,8 @@ class CellView:
                 # The loop has just been closed: nothing is followed any more.
                 _log.debug("the last page left after the event loop had ended")
 
-    def _write(self, server: viser.ViserServer, handles: Handles, ghosts: PageGhosts) -> None:
-        draw = Drawing(server)
+    def _write(self, server: viser.ViserServer, handles: DragHandles, ghosts: PageGhosts) -> None:
+        draw = SceneLayers(server)
         wait_s: float | None = None
         while not self._ending.is_set():
             self._newest.arrived.wait(wait_s)

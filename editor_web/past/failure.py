@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Sequence
 
 import msgspec
 
-from editor_web.event_words import LogLine, log_line
-from engine.cause import outwards
+from editor_web.live.event_log import LogLine, log_line
+from engine.cause_chain import links_from_root
 from engine.errors import FlexcellError
-from engine.event import Cause, Diverted, Entered, Event, Exited, RunEnded
+from engine.event import Cause, Event, NodeDiverted, NodeEntered, NodeExited, RunEnded
 
 AROUND = 20
 _AROUND_KINDS = frozenset(
@@ -35,7 +35,7 @@ class FailureStep(msgspec.Struct, frozen=True, kw_only=True):
     text: str
 
 
-class Failure(msgspec.Struct, frozen=True, kw_only=True):
+class RunFailure(msgspec.Struct, frozen=True, kw_only=True):
     """A run that failed: it began at event `seq`, at node `path` (empty where no node did it).
 
     `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote.
@@ -51,16 +51,16 @@ class Failure(msgspec.Struct, frozen=True, kw_only=True):
     around: tuple[LogLine, ...]
 
 
-def failure_of(events: Sequence[Event], *, is_failed: bool) -> Failure | None:
+def failure_of(events: Sequence[Event], *, is_failed: bool) -> RunFailure | None:
     """Return how a run failed; None for one that did not, or is not over."""
     end = events[-1] if events else None
     if not isinstance(end, RunEnded) or not is_failed:
         return None
-    links = tuple(map(_link, outwards(end.cause)))
+    links = tuple(map(_link, links_from_root(end.cause)))
     origin = _origin(events, end)
     path = _path(origin)
     first = links[0] if links else None
-    return Failure(
+    return RunFailure(
         seq=origin.seq,
         time_s=origin.time_s,
         path=path,
@@ -88,7 +88,7 @@ def _innermost(events: Sequence[Event], fits: Callable[[Event], bool]) -> Event 
     origin: Event | None = None
     for event in reversed(events):
         path = _path(event)
-        if origin is not None and isinstance(event, Entered) and path == _path(origin):
+        if origin is not None and isinstance(event, NodeEntered) and path == _path(origin):
             break
         inside = origin is None or path == _path(origin) or path.startswith(f"{_path(origin)}/")
         if path and inside and fits(event):
@@ -97,7 +97,7 @@ def _innermost(events: Sequence[Event], fits: Callable[[Event], bool]) -> Event 
 
 
 def _is_end_of_node(event: Event) -> bool:
-    return isinstance(event, Exited) and not event.preempted
+    return isinstance(event, NodeExited) and not event.preempted
 
 
 def _root_of(event: Event) -> Cause | None:
@@ -111,19 +111,27 @@ def _path(event: Event) -> str:
 
 def _steps(events: Sequence[Event], path: str, since_seq: int) -> Iterator[FailureStep]:
     """Tell how the containers around the origin ended after it, outermost first."""
-    ends = {_path(event): event for event in events if event.seq >= since_seq and isinstance(event, Exited | Diverted)}
+    ends = {
+        _path(event): event
+        for event in events
+        if event.seq >= since_seq and isinstance(event, NodeExited | NodeDiverted)
+    }
     parts = path.split("/") if path else []
     for depth in range(1, len(parts) + 1):
         here = "/".join(parts[:depth])
         event = ends.get(here)
         if event is not None:
-            text = f"ended with {event.outcome or 'an error'}" if isinstance(event, Exited) else f"left by {event.by}"
+            text = (
+                f"ended with {event.outcome or 'an error'}" if isinstance(event, NodeExited) else f"left by {event.by}"
+            )
             yield FailureStep(path=here, seq=event.seq, time_s=event.time_s, text=text)
 
 
 def _around(events: Sequence[Event], path: str, seq: int) -> tuple[LogLine, ...]:
     """Return the last lines of the node's last visit, and how it ended."""
-    begun = next((e for e in reversed(events) if e.seq <= seq and isinstance(e, Entered) and e.path == path), events[0])
+    begun = next(
+        (e for e in reversed(events) if e.seq <= seq and isinstance(e, NodeEntered) and e.path == path), events[0]
+    )
     lines = [
         log_line(event, duration_s=event.time_s - begun.time_s)
         for event in events

@@ -6,9 +6,9 @@ import math
 
 import msgspec
 
-from editor_web.past.marks import TimeMark, bounded, mark_of
-from editor_web.past.moments import Moments
-from editor_web.past.spans import MOST_SPANS, Span, Spans, merged
+from editor_web.past.intervals import MAX_INTERVALS, ActivationInterval, ActivationIntervals, merge_intervals
+from editor_web.past.markers import TimelineMarker, limit_markers, marker_of
+from editor_web.past.state_history import RunStateHistory
 from engine.event import Event
 
 
@@ -16,13 +16,13 @@ class TimelineRow(msgspec.Struct, frozen=True, kw_only=True):
     """The spans of one node, in order; its depth is in its path."""
 
     path: str
-    spans: tuple[Span, ...]
+    spans: tuple[ActivationInterval, ...]
 
 
 class Timeline(msgspec.Struct, frozen=True, kw_only=True):
     """A run up to event `seq`, or what of it was begun or ended after the event that was asked for.
 
-    `merged` says that spans which lie close together became one: ask for a part of the time to see it exactly.
+    `merge_intervals` says that spans which lie close together became one: ask for a part of the time to see it exactly.
     `left_out` marks are not in it.
     """
 
@@ -32,18 +32,18 @@ class Timeline(msgspec.Struct, frozen=True, kw_only=True):
     ended: bool
     merged: bool
     rows: tuple[TimelineRow, ...]
-    marks: tuple[TimeMark, ...]
+    marks: tuple[TimelineMarker, ...]
     left_out: int
 
 
-class Course:
+class RunHistory:
     """A run followed from its first event: its moments, spans and marks; not to be used by two threads at once."""
 
     def __init__(self, run_id: str) -> None:
         self.run_id = run_id
-        self.moments = Moments(run_id)
-        self._spans = Spans()
-        self._marks: list[TimeMark] = []
+        self.moments = RunStateHistory(run_id)
+        self._spans = ActivationIntervals()
+        self._marks: list[TimelineMarker] = []
 
     def follow(self, event: Event) -> None:
         """Take the next event; one that was taken already does nothing."""
@@ -52,12 +52,12 @@ class Course:
             return
         if changed:
             self._spans.take(event, changed)
-        mark = mark_of(event)
+        mark = marker_of(event)
         if mark is not None:
             self._marks.append(mark)
 
     def timeline(
-        self, *, from_s: float = 0.0, until_s: float = math.inf, after_seq: int = 0, most: int = MOST_SPANS
+        self, *, from_s: float = 0.0, until_s: float = math.inf, after_seq: int = 0, most: int = MAX_INTERVALS
     ) -> Timeline:
         """Return what of the run touches a time, and is newer than an event; all of it where spans are merged."""
         now = self.moments.now
@@ -66,8 +66,8 @@ class Course:
         rows = self._spans.of(from_s=from_s, until_s=until_s, after_seq=after_seq)
         count = sum(map(len, rows.values()))
         if count > most:
-            rows = merged(rows, span_s=min(until_s, now.time_s) - max(from_s, 0.0), most=most)
-        marks, left_out = bounded(
+            rows = merge_intervals(rows, span_s=min(until_s, now.time_s) - max(from_s, 0.0), most=most)
+        marks, left_out = limit_markers(
             mark for mark in self._marks if from_s <= mark.time_s <= until_s and mark.seq > after_seq
         )
         return Timeline(

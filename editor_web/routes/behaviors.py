@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, HTTPException
 
+from editor_web.http_bodies.common_bodies import BehaviorBody, BehaviorSummaryBody, ErrorBody
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import BehaviorBody, BehaviorSummaryBody, ErrorBody
 from engine.errors import FlexcellError
 
 router = APIRouter(prefix="/api/v1/behaviors", tags=["behaviors"])

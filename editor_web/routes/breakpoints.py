@@ -5,11 +5,11 @@ from __future__ import annotations
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.control_wire import BreakpointBody, BreakpointsBody
+from editor_web.http_bodies.common_bodies import ErrorBody
+from editor_web.http_bodies.control_bodies import BreakpointBody, BreakpointsBody
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import ErrorBody
-from engine.control import Breakpoint
 from engine.errors import ExpressionError
+from engine.runtime.control import Breakpoint
 
 router = APIRouter(prefix="/api/v1/breakpoints", tags=["control"], responses={422: {"model": ErrorBody}})
 
@@ -17,7 +17,7 @@ router = APIRouter(prefix="/api/v1/breakpoints", tags=["control"], responses={42
 MAX_BREAKPOINTS = 200
 
 
-def made_breakpoints(body: BreakpointsBody) -> tuple[Breakpoint, ...]:
+def to_breakpoints(body: BreakpointsBody) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of a request; raises ExpressionError where a condition does not compile."""
     if len(body.breakpoints) > MAX_BREAKPOINTS:
         raise ExpressionError(f"more than {MAX_BREAKPOINTS} breakpoints", hint="use wildcards in `path`")
@@ -37,5 +37,5 @@ def get_breakpoints(behavior_id: str, services: ServicesOf) -> BreakpointsBody:
 @router.put("/{behavior_id:path}")
 async def keep_breakpoints(behavior_id: str, body: BreakpointsBody, services: ServicesOf) -> BreakpointsBody:
     """Write all breakpoints beside the behavior; without any, there is no file."""
-    services.backend.keep_breakpoints(behavior_id, await run_in_threadpool(made_breakpoints, body))
+    services.backend.keep_breakpoints(behavior_id, await run_in_threadpool(to_breakpoints, body))
     return get_breakpoints(behavior_id, services)

@@ -11,14 +11,14 @@ import msgspec
 from fastapi import APIRouter, Request, Response
 from fastapi.responses import StreamingResponse
 
-from editor_web.bus_wire import BusBoard, BusFields, BusForm, BusParameterBody, TopicFields
-from editor_web.goal_stream import GoalStream, until_gone
-from editor_web.pruned import pruned
-from editor_web.routes.answers import json_answer
+from editor_web.http_bodies.common_bodies import BusMessageBody, BusRequestBody, ErrorBody
+from editor_web.routes.responses import json_response
 from editor_web.routes.services import ServicesOf
-from editor_web.signals import signal_fields
-from editor_web.traffic import shape_of
-from editor_web.wire import BusMessageBody, BusRequestBody, ErrorBody
+from editor_web.telemetry.bus_bodies import BusFields, BusForm, BusListing, BusParameterBody, TopicFields
+from editor_web.telemetry.bus_metrics import bus_fingerprint
+from editor_web.telemetry.goal_stream import GoalStream, wait_for_disconnect
+from editor_web.telemetry.plot_signals import signal_fields
+from editor_web.telemetry.truncate import truncate_value
 
 router = APIRouter(prefix="/api/v1/bus", tags=["bus"], responses={422: {"model": ErrorBody}})
 CLIENT_CLOSED_REQUEST = 499
@@ -28,7 +28,7 @@ R = TypeVar("R")
 @router.get("")
 async def list_bus(services: ServicesOf) -> Response:
     """List topics, services, actions, parameters and leases."""
-    return json_answer(await services.backend.bus.listing())
+    return json_response(await services.backend.bus.listing())
 
 
 @router.get("/echo")
@@ -64,19 +64,21 @@ async def call_service(body: BusRequestBody, services: ServicesOf) -> Response:
 async def perform_goal(body: BusRequestBody, services: ServicesOf, request: Request) -> Response:
     """Send a goal and return its end; it is cancelled when the client goes. This moves the robot."""
     work = services.backend.bus.perform(body.address, body.request)
-    end = await while_there(work, request, name=f"goal {body.address}")
+    end = await run_while_connected(work, request, name=f"goal {body.address}")
     if end is None:
         return Response(status_code=CLIENT_CLOSED_REQUEST)
-    return json_answer({"status": end.status.value, "result": end.result, "cause": end.cause})
+    return json_response({"status": end.status.value, "result": end.result, "cause": end.cause})
 
 
 @router.get("/board")
 async def get_board(services: ServicesOf) -> Response:
     """Return topics, services, actions and parameters with what they are for; `shape` tells when to ask again."""
     desk = services.backend.desk
-    parameters = (msgspec.structs.replace(each, value=pruned(each.value)) for each in desk.parameters())
-    return json_answer(
-        BusBoard(shape=shape_of(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters))
+    parameters = (msgspec.structs.replace(each, value=truncate_value(each.value)) for each in desk.parameters())
+    return json_response(
+        BusListing(
+            shape=bus_fingerprint(desk), topics=desk.topics(), skills=desk.skills(), parameters=tuple(parameters)
+        )
     )
 
 
@@ -85,7 +87,7 @@ async def get_form(services: ServicesOf, address: str = "", topic: str = "") -> 
     """Return the JSON Schema of the request at an address, or of the messages of a topic."""
     desk = services.backend.desk
     schema = desk.message_schema(topic) if topic else desk.request_schema(address)
-    return json_answer(BusForm(name=topic or address, schema=schema))
+    return json_response(BusForm(name=topic or address, schema=schema))
 
 
 @router.get("/fields")
@@ -93,7 +95,7 @@ async def get_fields(services: ServicesOf) -> Response:
     """Return the numbers of the newest message of every topic, to be plotted."""
     desk = services.backend.desk
     topics = ((facts, signal_fields(desk.latest(facts.name))) for facts in desk.topics())
-    return json_answer(
+    return json_response(
         BusFields(
             topics=tuple(
                 TopicFields(topic=each.name, type=each.type, fields=fields) for each, fields in topics if fields
@@ -105,7 +107,7 @@ async def get_fields(services: ServicesOf) -> Response:
 @router.put("/parameter")
 async def set_parameter(body: BusParameterBody, services: ServicesOf) -> Response:
     """Set a parameter and return its value then. This may change what a robot does."""
-    return json_answer(pruned(services.backend.desk.set_parameter(body.name, body.value)))
+    return json_response(truncate_value(services.backend.desk.set_parameter(body.name, body.value)))
 
 
 @router.post("/goals")
@@ -121,10 +123,10 @@ async def cancel_goal(goal: str, services: ServicesOf) -> None:
     services.backend.desk.cancel(goal)
 
 
-async def while_there(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:
+async def run_while_connected(work: Coroutine[Any, Any, R], request: Request, *, name: str) -> R | None:
     """Return what `work` returns; it is cancelled, and None returned, when the client goes before."""
     goal = asyncio.create_task(work, name=name)
-    gone = asyncio.create_task(until_gone(request.receive), name="goal-client")
+    gone = asyncio.create_task(wait_for_disconnect(request.receive), name="goal-client")
     try:
         await asyncio.wait({goal, gone}, return_when=asyncio.FIRST_COMPLETED)
         return goal.result() if goal.done() else None

@@ -8,7 +8,13 @@ from typing import Any, cast
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.document_wire import CatalogueBody, ContainerBody, EntryBody, ReferableBody, StateBody
+from editor_web.http_bodies.document_bodies import (
+    CatalogueBody,
+    ContainerBody,
+    EntryBody,
+    ReferableBehaviorBody,
+    StateBody,
+)
 from editor_web.routes.services import Services, ServicesOf
 from engine.editing.catalogue import container_views, state_views
 from engine.errors import FlexcellError
@@ -27,7 +33,7 @@ def _catalogue(services: Services, entries: tuple[EntryBody, ...]) -> CatalogueB
     return CatalogueBody(
         states=tuple(StateBody.model_validate(each) for each in state_views(services.documents.catalogue)),
         containers=tuple(ContainerBody.model_validate(each) for each in container_views()),
-        behaviors=tuple(ReferableBody.model_validate(each) for each in services.documents.referable()),
+        behaviors=tuple(ReferableBehaviorBody.model_validate(each) for each in services.documents.referable()),
         entries=entries,
         names={str(kind): names for kind, names in services.documents.offered().items()},
     )

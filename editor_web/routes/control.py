@@ -7,25 +7,25 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, HTTPException
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.control_wire import (
+from editor_web.http_bodies.common_bodies import ErrorBody, ResumeQuestionsBody, StartResultBody
+from editor_web.http_bodies.control_bodies import (
     AutonomyBody,
     BreakpointsBody,
-    ChangeBody,
     ControlBody,
     ForceBody,
-    InterruptedBody,
+    HotChangeBody,
+    HotChangeResultBody,
+    InterruptedRunBody,
     LockBody,
-    NodeBody,
+    NodeCommandBody,
     ResumeBody,
     StepBackBody,
     StepBody,
-    TakeFileBody,
 )
-from editor_web.routes.breakpoints import made_breakpoints
+from editor_web.routes.breakpoints import to_breakpoints
 from editor_web.routes.services import ServicesOf
-from editor_web.wire import AskBody, ErrorBody, StartedBody
-from engine.control import Control
 from engine.errors import ControlError, FlexcellError
+from engine.runtime.control import Control
 
 router = APIRouter(
     prefix="/api/v1/runs",
@@ -96,7 +96,7 @@ async def lock(control: ControlOf, body: LockBody) -> ControlBody:
 
 
 @router.post("/{run_id}/control/unlock")
-async def unlock(control: ControlOf, body: NodeBody) -> ControlBody:
+async def unlock(control: ControlOf, body: NodeCommandBody) -> ControlBody:
     """Let the outcome of a locked node pass."""
     control.unlock(body.path)
     return await _seen(control)
@@ -110,14 +110,14 @@ async def force(control: ControlOf, body: ForceBody) -> ControlBody:
 
 
 @router.post("/{run_id}/control/repeat")
-async def repeat(control: ControlOf, body: NodeBody) -> ControlBody:
+async def repeat(control: ControlOf, body: NodeCommandBody) -> ControlBody:
     """Run a node again; what runs in it is preempted first."""
     control.repeat(body.path)
     return await _seen(control)
 
 
 @router.post("/{run_id}/control/answer")
-async def answer(control: ControlOf, body: NodeBody) -> ControlBody:
+async def answer(control: ControlOf, body: NodeCommandBody) -> ControlBody:
     """Agree to the outcome that a node has requested."""
     control.answer(body.path)
     return await _seen(control)
@@ -133,24 +133,30 @@ async def set_autonomy(control: ControlOf, body: AutonomyBody) -> ControlBody:
 @router.post("/{run_id}/control/breakpoints")
 async def set_breakpoints(control: ControlOf, body: BreakpointsBody) -> ControlBody:
     """Replace all breakpoints of a run."""
-    control.set_breakpoints(await run_in_threadpool(made_breakpoints, body))
+    control.set_breakpoints(await run_in_threadpool(to_breakpoints, body))
     return await _seen(control)
 
 
 @router.post("/{run_id}/control/change")
-async def change(run_id: str, control: ControlOf, services: ServicesOf, body: TakeFileBody | None = None) -> ChangeBody:
+async def change(
+    run_id: str, control: ControlOf, services: ServicesOf, body: HotChangeBody | None = None
+) -> HotChangeResultBody:
     """Let the behavior as its file is now take the place of the one that a paused run executes."""
     del control
-    return ChangeBody.model_validate(await services.backend.change(run_id, preempt=body is not None and body.preempt))
+    return HotChangeResultBody.model_validate(
+        await services.backend.change(run_id, preempt=body is not None and body.preempt)
+    )
 
 
 @interrupted_router.get("")
-async def list_interrupted(services: ServicesOf) -> list[InterruptedBody]:
+async def list_interrupted(services: ServicesOf) -> list[InterruptedRunBody]:
     """List the runs of the journal whose engine died, oldest first."""
-    return [InterruptedBody.model_validate(run) for run in services.backend.interrupted()]
+    return [InterruptedRunBody.model_validate(run) for run in services.backend.interrupted()]
 
 
-@interrupted_router.post("/{run_id}/resume", status_code=201, responses={409: {"model": AskBody | ErrorBody}})
-async def resume_interrupted(run_id: str, body: ResumeBody, services: ServicesOf) -> StartedBody:
+@interrupted_router.post(
+    "/{run_id}/resume", status_code=201, responses={409: {"model": ResumeQuestionsBody | ErrorBody}}
+)
+async def resume_interrupted(run_id: str, body: ResumeBody, services: ServicesOf) -> StartResultBody:
     """Go on with an interrupted run; 409 says which states that were in mid-work need an answer."""
-    return StartedBody(run=await services.backend.resume(run_id, answers=body.answers, changed=body.changed))
+    return StartResultBody(run=await services.backend.resume(run_id, answers=body.answers, changed=body.changed))

@@ -6,11 +6,11 @@ import msgspec
 from fastapi import APIRouter
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.demonstration_wire import DecidedStepBody, DemonstrationBody, ProposalBody
+from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody
+from editor_web.http_bodies.demonstration_bodies import DemonstrationBody, ProposalBody, ProposedStepBody
 from editor_web.routes.document_route import DocumentRoute
 from editor_web.routes.services import Services, ServicesOf
-from editor_web.wire import ErrorBody, FindingBody
-from engine.editing.cells import cell_reference
+from engine.editing.cell_references import cell_reference
 from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, TaughtStep
 
 router = APIRouter(
@@ -49,7 +49,7 @@ def _answer(services: Services, body: DemonstrationBody, made: Proposal) -> Prop
     examined = services.documents.examine(body.id or UNNAMED, made.text)
     return ProposalBody(
         text=made.text,
-        steps=tuple(DecidedStepBody.model_validate(step) for step in made.steps),
+        steps=tuple(ProposedStepBody.model_validate(step) for step in made.steps),
         words=made.words,
         remarks=made.remarks,
         arm=made.arm,

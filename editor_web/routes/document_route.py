@@ -9,8 +9,8 @@ from fastapi import Request, Response
 from fastapi.responses import JSONResponse
 from fastapi.routing import APIRoute
 
-from editor_web.document_wire import ConflictBody, MergeConflictBody
-from editor_web.wire import ErrorBody
+from editor_web.http_bodies.common_bodies import ErrorBody
+from editor_web.http_bodies.document_bodies import ConflictBody, MergeConflictBody
 from engine.editing import DocumentConflict, NoSuchDocument
 
 

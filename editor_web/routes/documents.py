@@ -9,21 +9,22 @@ import msgspec
 from fastapi import APIRouter, HTTPException, Query, Response
 from starlette.concurrency import run_in_threadpool
 
-from editor_web.document_wire import (
+from editor_web.http_bodies.common_bodies import ErrorBody, FindingBody
+from editor_web.http_bodies.document_bodies import (
     ConflictBody,
-    CopiedBody,
     CopyBody,
+    CopyResultBody,
     DifferenceBody,
     DocumentBody,
     DraftBody,
-    DraftedBody,
-    EditedBody,
+    DraftResultBody,
+    EditResultBody,
     EditsBody,
     KeyFlowBody,
     NewDocumentBody,
     NewIdBody,
     SaveBody,
-    SavedBody,
+    SaveResultBody,
     TargetFindingsBody,
     TargetsBody,
     TextBody,
@@ -32,9 +33,8 @@ from editor_web.document_wire import (
 )
 from editor_web.routes.document_route import DocumentRoute
 from editor_web.routes.services import Services, ServicesOf
-from editor_web.wire import ErrorBody, FindingBody
-from engine.editing import Examination, Opened, copy_nodes, read_edits
-from engine.editing.comparison import compare_texts
+from engine.editing import DocumentAnalysis, StoredDocument, copy_nodes, read_edits
+from engine.editing.document_diff import compare_texts
 
 router = APIRouter(
     prefix="/api/v1/documents",
@@ -51,7 +51,7 @@ def create_document(body: NewDocumentBody, services: ServicesOf) -> DocumentBody
     return _document(services, made)
 
 
-@router.post("/{document_id:path}/draft", response_model=DraftedBody)
+@router.post("/{document_id:path}/draft", response_model=DraftResultBody)
 def draft(document_id: str, body: DraftBody, services: ServicesOf) -> Response:
     """Draw and check a text as if it were the document's; text that cannot be read has findings and no graph."""
     documents = services.documents
@@ -85,7 +85,7 @@ def find_names(document_id: str, body: TextBody, services: ServicesOf) -> dict[s
     return {str(kind): names for kind, names in services.documents.offered_to(document_id, body.text).items()}
 
 
-@router.post("/{document_id:path}/edits", response_model=EditedBody)
+@router.post("/{document_id:path}/edits", response_model=EditResultBody)
 def edit(document_id: str, body: EditsBody, services: ServicesOf) -> Response:
     """Make edits in a text, all or none; nothing is saved."""
     documents = services.documents
@@ -103,10 +103,10 @@ def get_data_flow(document_id: str, body: TextBody, services: ServicesOf) -> lis
 
 
 @router.post("/{document_id:path}/copy")
-def copy(document_id: str, body: CopyBody, services: ServicesOf) -> CopiedBody:
+def copy(document_id: str, body: CopyBody, services: ServicesOf) -> CopyResultBody:
     """Return nodes of a text as YAML with their comments, to be pasted anywhere."""
-    knowledge = services.documents.knowledge(document_id)
-    return CopiedBody(yaml=copy_nodes(body.text, body.paths, file=document_id, knowledge=knowledge))
+    context = services.documents.context(document_id)
+    return CopyResultBody(yaml=copy_nodes(body.text, body.paths, file=document_id, context=context))
 
 
 @router.post("/{document_id:path}/rename")
@@ -164,10 +164,10 @@ def get_document(document_id: str, services: ServicesOf, check: bool = True) -> 
 
 
 @router.put("/{document_id:path}", responses={409: {"model": ConflictBody}})
-def save_document(document_id: str, body: SaveBody, services: ServicesOf) -> SavedBody:
+def save_document(document_id: str, body: SaveBody, services: ServicesOf) -> SaveResultBody:
     """Write a document that is as it was when it was read; 409 with both texts, and their merge, where it is not."""
     saved = services.documents.save(document_id, body.text, base_hash=body.base_hash)
-    return SavedBody(hash=saved.hash, saved_at=saved.saved_at_s)
+    return SaveResultBody(hash=saved.hash, saved_at=saved.saved_at_s)
 
 
 @router.delete("/{document_id:path}", status_code=204)
@@ -176,12 +176,12 @@ def delete_document(document_id: str, services: ServicesOf) -> None:
     services.documents.delete(document_id)
 
 
-def _packed(found: Examination, **beside: object) -> Response:
+def _packed(found: DocumentAnalysis, **beside: object) -> Response:
     """Return an answer of a wire's model without making one of each node: its fields are the same."""
     body = {each.name: getattr(found, each.name) for each in fields(found)} | beside
     return Response(msgspec.json.encode(body), media_type="application/json")
 
 
-def _document(services: Services, opened: Opened) -> DocumentBody:
-    drafted = DraftedBody.model_validate(services.documents.examine(opened.id, opened.text))
+def _document(services: Services, opened: StoredDocument) -> DocumentBody:
+    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
     return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))

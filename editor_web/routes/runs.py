@@ -9,12 +9,12 @@ from typing import Annotated
 import msgspec
 from fastapi import APIRouter, Header, HTTPException, Query, Request, Response
 
+from editor_web.http_bodies.common_bodies import ErrorBody, EventsBody, RunBody, StartResultBody, StopBody
+from editor_web.http_bodies.start_bodies import StartBody
 from editor_web.routes.services import ServicesOf
-from editor_web.start_wire import StartBody
-from editor_web.wire import ErrorBody, EventsBody, RunBody, StartedBody, StopBody
 from engine.errors import FlexcellError
-from engine.launch import Moment
-from engine.supervision import Supervision
+from engine.project.run_factory import RunPosition
+from engine.runtime.run_options import RunOptions
 
 router = APIRouter(prefix="/api/v1/runs", tags=["runs"])
 KEPT_KEYS = 200
@@ -35,19 +35,19 @@ def get_run(run_id: str, services: ServicesOf) -> RunBody:
         raise HTTPException(404, error.message) from error
 
 
-@router.post("", status_code=201, responses={200: {"model": StartedBody}, 422: {"model": ErrorBody}})
+@router.post("", status_code=201, responses={200: {"model": StartResultBody}, 422: {"model": ErrorBody}})
 async def start_run(
     body: StartBody,
     services: ServicesOf,
     request: Request,
     response: Response,
     idempotency_key: Annotated[str | None, Header(max_length=100)] = None,
-) -> StartedBody:
+) -> StartResultBody:
     """Start a run; the same Idempotency-Key again returns the run it started and starts nothing."""
     started: OrderedDict[str, str] = request.app.state.started
     if idempotency_key is not None and idempotency_key in started:
         response.status_code = 200
-        return StartedBody(run=started[idempotency_key])
+        return StartResultBody(run=started[idempotency_key])
     seed = secrets.randbelow(2**31) if body.seed is None else body.seed
     watched = body.supervision
     run_id = await services.backend.start(
@@ -55,15 +55,15 @@ async def start_run(
         parameters=body.parameters,
         seed=seed,
         inputs=body.inputs,
-        supervision=Supervision(**watched.model_dump(exclude={"breakpoints"})),
+        supervision=RunOptions(**watched.model_dump(exclude={"breakpoints"})),
         breakpoints=watched.breakpoints,
-        begin=Moment(**body.begin.model_dump()) if body.begin is not None else None,
+        begin=RunPosition(**body.begin.model_dump()) if body.begin is not None else None,
     )
     if idempotency_key is not None:
         started[idempotency_key] = run_id
         while len(started) > KEPT_KEYS:
             started.popitem(last=False)
-    return StartedBody(run=run_id)
+    return StartResultBody(run=run_id)
 
 
 @router.post("/{run_id}/stop", status_code=202, responses={422: {"model": ErrorBody}})

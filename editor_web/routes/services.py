@@ -9,12 +9,12 @@ from typing import Annotated, cast
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from editor_web.access import Access, AttemptLimit
-from editor_web.backend import Backend
 from editor_web.cell_view import CellView
-from editor_web.live import LiveHub
-from editor_web.sessions import LoginSessions
-from engine.editing import Documents
+from editor_web.contracts.backend import Backend
+from editor_web.live.hub import LiveHub
+from editor_web.security.authentication import AccessTokens, AttemptLimiter
+from editor_web.security.login_sessions import LoginSessions
+from engine.editing import DocumentRepository
 from engine.editing.target_checks import TargetChecks
 from engine.stop import StopEndpoint
 
@@ -25,9 +25,9 @@ class Services:
 
     backend: Backend
     hub: LiveHub
-    access: Access
+    access: AccessTokens
     sessions: LoginSessions
-    limit: AttemptLimit
+    limit: AttemptLimiter
     targets: TargetChecks
     cell_view: CellView | None
     static: Path
@@ -36,7 +36,7 @@ class Services:
     stop: StopEndpoint | None = None
 
     @property
-    def documents(self) -> Documents:
+    def documents(self) -> DocumentRepository:
         """The behaviors of the project as files to be edited."""
         return self.backend.documents
 

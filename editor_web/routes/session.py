@@ -9,11 +9,17 @@ from urllib.parse import parse_qs
 from fastapi import APIRouter, HTTPException, Request, Response
 from fastapi.responses import HTMLResponse, RedirectResponse
 
-from editor_web.access import OPERATOR, Role
+from editor_web.http_bodies.common_bodies import (
+    ConnectionBody,
+    LoginLinkBody,
+    LoginLinkRequest,
+    SessionBody,
+    StopEndpointBody,
+)
 from editor_web.routes.services import Services, ServicesOf, role_of
-from editor_web.security import LOG_OUT, cookie_name, peer_of
-from editor_web.sessions import ABSOLUTE_LIMIT_S, LINK_LIMIT_S, LoginSession
-from editor_web.wire import ConnectionBody, LoginLinkBody, LoginLinkRequest, SessionBody, StopEndpointBody
+from editor_web.security.authentication import OPERATOR, Role
+from editor_web.security.login_sessions import ABSOLUTE_LIMIT_S, LINK_LIMIT_S, LoginSession
+from editor_web.security.middleware import LOG_OUT, cookie_name, peer_of
 
 router = APIRouter(tags=["session"])
 MAX_FORM_BYTES = 1000

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from editor_web.teaching_wire import Button, Refused
-from engine.bus.access import BusAccess
+from editor_web.teaching.teaching_messages import ButtonInput, RefusedFrame
+from engine.bus.json_bus import JsonBus
 from engine.errors import BusError
 
 MOST_BUTTONS = 64
 
 
-class Buttons:
+class PressedButtons:
     """The buttons of one page that are down."""
 
-    def __init__(self, bus: BusAccess, *, tell: Callable[[Refused], None]) -> None:
+    def __init__(self, bus: JsonBus, *, tell: Callable[[RefusedFrame], None]) -> None:
         self._bus = bus
         self._tell = tell
         self._down: set[str] = set()
 
-    async def take(self, button: Button) -> None:
+    async def take(self, button: ButtonInput) -> None:
         """Tell the bus of a button; a topic that no trigger listens to is refused in words."""
         topic = f"buttons/{button.source}/{button.button}"
         if button.value and len(self._down) >= MOST_BUTTONS:
@@ -28,7 +28,7 @@ class Buttons:
             await self._bus.publish(topic, {"value": button.value})
         except BusError as error:
             if button.value:
-                self._tell(Refused(what="button", message=f"no trigger listens to {topic}", hint=error.hint or ""))
+                self._tell(RefusedFrame(what="button", message=f"no trigger listens to {topic}", hint=error.hint or ""))
             return
         (self._down.add if button.value else self._down.discard)(topic)
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from editor_web.teaching.goal_words import words_of
-from editor_web.teaching_wire import Jog, Jogging, Refused
-from engine.bus.access import BusAccess
+from editor_web.teaching.goal_failure_text import goal_failure_text
+from editor_web.teaching.teaching_messages import JogStatus, RefusedFrame, StartJog
 from engine.bus.action import GoalStatus
+from engine.bus.json_bus import JsonBus
 from engine.errors import FlexcellError
 
 WATCHDOG_S = 0.12
@@ -31,11 +31,13 @@ class Jogger:
         tell: Takes what the page is to know.
     """
 
-    def __init__(self, bus: BusAccess, *, taken: dict[str, Jogger], tell: Callable[[Jogging | Refused], None]) -> None:
+    def __init__(
+        self, bus: JsonBus, *, taken: dict[str, Jogger], tell: Callable[[JogStatus | RefusedFrame], None]
+    ) -> None:
         self._bus = bus
         self._taken = taken
         self._tell = tell
-        self._jog: Jog | None = None
+        self._jog: StartJog | None = None
         self._task: asyncio.Task[None] | None = None
 
     @property
@@ -43,7 +45,7 @@ class Jogger:
         """The arm that is jogged; empty for none."""
         return self._jog.arm if self._jog is not None else ""
 
-    async def begin(self, jog: Jog) -> None:
+    async def begin(self, jog: StartJog) -> None:
         """Make ready to jog; what was jogged before comes to rest first."""
         await self.rest()
         other = self._taken.get(jog.arm)
@@ -87,27 +89,27 @@ class Jogger:
         jog, self._jog = self._jog, None
         if jog is not None:
             self._taken.pop(jog.arm, None)
-            self._tell(Jogging(arm=""))
+            self._tell(JogStatus(arm=""))
 
     def _refuse(self, message: str, hint: str) -> None:
-        self._tell(Refused(what="jog", message=message, hint=hint))
+        self._tell(RefusedFrame(what="jog", message=message, hint=hint))
 
-    async def _carry_out(self, jog: Jog) -> None:
+    async def _carry_out(self, jog: StartJog) -> None:
         goal: dict[str, object] = {"watchdog_s": WATCHDOG_S, "idle_s": IDLE_S}
         if jog.space == "tool":
             goal["frame"] = jog.frame
-        self._tell(Jogging(arm=jog.arm))
+        self._tell(JogStatus(arm=jog.arm))
         try:
             end = await self._bus.perform(f"{jog.arm}/jog_{jog.space}", goal)
             if end.status not in (GoalStatus.SUCCEEDED, GoalStatus.CANCELED):
-                self._refuse(words_of(end), "")
+                self._refuse(goal_failure_text(end), "")
         except FlexcellError as error:
             self._refuse(error.message, error.hint or "")
         finally:
             self._let_go()
 
 
-def _too_fast(jog: Jog, velocity: tuple[float, ...]) -> str:
+def _too_fast(jog: StartJog, velocity: tuple[float, ...]) -> str:
     """Say which limit of jogging is exceeded; empty for none."""
     if jog.space == "joints":
         limits = [MOST_JOINT_RAD_S] * len(velocity)

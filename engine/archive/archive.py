@@ -10,15 +10,15 @@ import msgspec
 
 from engine.archive.past_runs import PastRun, PastRuns, is_success
 from engine.archive.recording_files import RecordingFile, recording_files, recording_path
-from engine.cause import describe
+from engine.cause_chain import describe_cause
 from engine.document import Behavior
 from engine.errors import FlexcellError, JournalError
 from engine.event import AnyEvent, RunEnded
-from engine.graph import new_graph
 from engine.journal import journal_path, read_events, read_origin
-from engine.library import BehaviorView
-from engine.plan import Catalogue, Plan, new_plan
-from engine.recording import Documents, load_recording, recorded_behavior
+from engine.library.behavior_graph import new_graph
+from engine.library.behavior_library import BehaviorView
+from engine.recording import RecordedDocuments, load_recording, recorded_behavior
+from engine.runtime.plan import Catalogue, Plan, new_plan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,7 +123,9 @@ class Archive:
                 status=ended.status if ended is not None else "running",
                 outcome=ended.outcome if ended is not None else None,
                 success=success,
-                cause=describe(ended.cause) if ended is not None and ended.cause is not None and not success else "",
+                cause=describe_cause(ended.cause)
+                if ended is not None and ended.cause is not None and not success
+                else "",
                 started_at_s=told.started_unix_s,
                 duration_s=last.time_s if last is not None else 0.0,
                 events=last.seq if last is not None else 0,
@@ -147,7 +149,7 @@ class Archive:
         if origin is None or not origin.documents:
             return _Executed(view=_unknown(""))
         texts = {name: text.encode() for name, text in origin.documents.items()}
-        executed = self._read(Documents(behavior=origin.document, texts=texts), origin.behavior)
+        executed = self._read(RecordedDocuments(behavior=origin.document, texts=texts), origin.behavior)
         file = Path(origin.behavior)
         if file.is_relative_to(self.project):
             view = msgspec.structs.replace(executed.view, id=file.relative_to(self.project).as_posix())
@@ -156,7 +158,7 @@ class Archive:
             self._executed[document] = executed
         return executed
 
-    def _read(self, documents: Documents, name: str) -> _Executed:
+    def _read(self, documents: RecordedDocuments, name: str) -> _Executed:
         try:
             behavior = recorded_behavior(documents)
             view = self._drawn(behavior, documents.behavior)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from engine.cause import describe
+from engine.cause_chain import describe_cause
 from engine.errors import JournalError
 from engine.event import RunEnded
 from engine.journal import JournalSnapshot, RunRecord, journal_path, open_snapshot
@@ -92,7 +92,7 @@ class PastRuns:
             status=last.status,
             outcome=last.outcome,
             success=success,
-            cause=describe(last.cause) if last.cause is not None and not success else "",
+            cause=describe_cause(last.cause) if last.cause is not None and not success else "",
             duration_s=last.time_s,
         )
 

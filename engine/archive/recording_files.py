@@ -11,12 +11,12 @@ import msgspec
 from mcap.records import Chunk, Metadata
 
 from engine.errors import RecordingError
-from engine.recording.description import RECORD_NAME, Description, from_metadata
+from engine.recording.description import RECORD_NAME, RecordingDescription, from_metadata
 from engine.recording.file_content import open_records
-from engine.recording.finished_file import PART
+from engine.recording.finalization import PART
 
 SUFFIX = ".mcap"
-MOST = 500
+MAX_RECORDINGS = 500
 _KEEP_OUT = frozenset({"node_modules", "site-packages", "__pycache__"})
 _OPENED = frozenset({".flexcell"})
 _FIRST_RECORDS = 64
@@ -38,9 +38,11 @@ class RecordingFile(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def recording_files(project: Path) -> tuple[RecordingFile, ...]:
-    """Return the recordings below a folder, newest first, at most `MOST`."""
-    found = sorted(islice(_files(project.resolve()), MOST * 4), key=lambda pair: pair[1].st_mtime, reverse=True)
-    return tuple(_described(project.resolve(), file, status) for file, status in found[:MOST])
+    """Return the recordings below a folder, newest first, at most `MAX_RECORDINGS`."""
+    found = sorted(
+        islice(_files(project.resolve()), MAX_RECORDINGS * 4), key=lambda pair: pair[1].st_mtime, reverse=True
+    )
+    return tuple(_described(project.resolve(), file, status) for file, status in found[:MAX_RECORDINGS])
 
 
 def recording_path(project: Path, name: str) -> Path:
@@ -64,7 +66,7 @@ def recording_path(project: Path, name: str) -> Path:
     return file
 
 
-def read_description(path: Path) -> Description:
+def read_description(path: Path) -> RecordingDescription:
     """Read what a recording says at its beginning, and no more of it.
 
     Raises:

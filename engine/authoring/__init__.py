@@ -16,15 +16,14 @@
 What comes out is an `engine.document.Behavior`: check it, plan it, run it, write it with `to_yaml`.
 """
 
-from engine.authoring.behavior import behavior
-from engine.authoring.container import Preempt, concurrency, foreach, machine, priority, tree
-from engine.authoring.export import is_made_in_python, to_yaml, write_behavior
-from engine.authoring.expression import Param, expr
-from engine.authoring.leaf import behaviour, reference, state
-from engine.authoring.parameter import parameter
+from engine.authoring.behavior_builder import behavior
+from engine.authoring.container_steps import Preempt, concurrency, foreach, machine, priority, tree
+from engine.authoring.expression_values import Param, expr
+from engine.authoring.leaf_steps import behaviour, reference, state
+from engine.authoring.parameter_declaration import parameter
 from engine.authoring.python_file import load_python_behavior
-from engine.authoring.step import PartKeys, Step, StepKeys, TreePart
-from engine.authoring.tree_part import (
+from engine.authoring.steps import PartKeys, Step, StepKeys, TreePart
+from engine.authoring.tree_steps import (
     condition,
     cooldown,
     guard,
@@ -40,8 +39,11 @@ from engine.authoring.tree_part import (
     timeout,
     while_do_else,
 )
-from engine.document.node import Guard, Retry, Timeout
-from engine.document.node_kind import Post
+from engine.authoring.yaml_export import is_made_in_python, to_yaml, write_behavior
+from engine.document.node_kind import PostConditionsSpec as Post
+from engine.document.node_spec import GuardSpec as Guard
+from engine.document.node_spec import RetrySpec as Retry
+from engine.document.node_spec import TimeoutSpec as Timeout
 
 __all__ = [
     "Guard",

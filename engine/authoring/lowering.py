@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
 
-from engine.authoring.expression import Param
-from engine.authoring.step import TreePart
+from engine.authoring.expression_values import Param
+from engine.authoring.steps import TreePart
 from engine.document.behavior import Behavior
-from engine.document.yaml_source import MAX_DEPTH, Place
+from engine.document.yaml_source import MAX_DEPTH, PositionTree
 from engine.errors import DocumentError, Position
 
 
@@ -23,7 +23,7 @@ class Lowering:
     references: dict[str, Behavior] = field(default_factory=dict[str, Behavior])
     """The behaviors referred to as objects, by the path written for each."""
 
-    def lower(self, value: object, place: Place, depth: int = 0) -> object:
+    def lower(self, value: object, place: PositionTree, depth: int = 0) -> object:
         """Return plain data for a value with steps in it; their places are added inside `place`."""
         match value:
             case TreePart():
@@ -44,12 +44,12 @@ class Lowering:
             case _:
                 return value
 
-    def _children(self, keys: Mapping[str, object], place: Place, depth: int) -> dict[str, object]:
+    def _children(self, keys: Mapping[str, object], place: PositionTree, depth: int) -> dict[str, object]:
         return {key: self._inside(item, place, key, depth) for key, item in keys.items()}
 
-    def _inside(self, value: object, place: Place, key: str | int, depth: int) -> object:
+    def _inside(self, value: object, place: PositionTree, key: str | int, depth: int) -> object:
         """Lower a value inside another; only what stands elsewhere than around it has a place of its own."""
-        inner = Place(place.key_line, place.key_column, place.line, place.column, file=place.file)
+        inner = PositionTree(place.key_line, place.key_column, place.line, place.column, file=place.file)
         lowered = self.lower(value, inner, depth + 1)
         if isinstance(value, TreePart | Param) or inner.children is not None:
             if place.children is None:
@@ -57,7 +57,7 @@ class Lowering:
             place.children[key] = inner
         return lowered
 
-    def _written(self, target: Behavior, place: Place) -> str:
+    def _written(self, target: Behavior, place: PositionTree) -> str:
         """Return the path of another behavior as this document writes it."""
         written = Path(os.path.relpath(target.file.resolve(), self.file.resolve().parent)).as_posix()
         known = self.references.setdefault(written, target)
@@ -70,17 +70,17 @@ class Lowering:
         return written
 
 
-def new_place(where: Position) -> Place:
+def new_source_location(where: Position) -> PositionTree:
     """Return the place of a value, itself and its key, at a position."""
     line, column = where.line - 1, where.column - 1
-    return Place(line, column, line, column, file=where.file)
+    return PositionTree(line, column, line, column, file=where.file)
 
 
-def _position_of(place: Place) -> Position:
+def _position_of(place: PositionTree) -> Position:
     return Position(file=place.file or "", line=place.line + 1, column=place.column + 1)
 
 
-def _move(place: Place, where: Position) -> None:
+def _move(place: PositionTree, where: Position) -> None:
     place.key_line = place.line = where.line - 1
     place.key_column = place.column = where.column - 1
     place.file = where.file

@@ -10,10 +10,10 @@ from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
-from engine.cause import cause_of, describe
+from engine.cause_chain import cause_of, describe_cause
 from engine.document.behavior import Behavior
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 from engine.type_preparation import prepare_types
 
 
@@ -38,7 +38,7 @@ def load_python_behavior(name: str) -> Behavior:
     if wanted in found:
         return found[wanted]
     if wanted:
-        hint = near_names(wanted, found)
+        hint = did_you_mean(wanted, found)
         raise DocumentError(f"this file makes no behavior named `{wanted}`", where=start, hint=hint)
     if len(found) != 1:
         names = ", ".join(found) or "none"
@@ -72,7 +72,7 @@ def _module(file: Path, start: Position) -> ModuleType:
         except (Exception, SystemExit) as error:
             # The user's file may raise anything; what matters is which of its lines did.
             del sys.modules[file.stem]
-            raise DocumentError(describe(cause_of(error)), where=_raised_at(error, file)) from error
+            raise DocumentError(describe_cause(cause_of(error)), where=_raised_at(error, file)) from error
     return module
 
 

@@ -1,26 +1,26 @@
 """The skill bus: typed topics, services, preemptable actions, parameters and leases."""
 
 from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, GoalStatus
-from engine.bus.bus import NOBODY, BusEntry, SkillBus
-from engine.bus.handler import expected_signature
+from engine.bus.bus import ANONYMOUS_HOLDER, BusEntry, SkillBus
+from engine.bus.handler_signature import expected_signature
 from engine.bus.lease import Holder, LeaseTable
-from engine.bus.parameter import Parameter, ParameterServer
-from engine.bus.topic import Stream, Subscription, Topic
+from engine.bus.parameter_server import BusParameter, ParameterServer
+from engine.bus.topic import Subscription, Topic, TopicStream
 
 __all__ = [
-    "NOBODY",
+    "ANONYMOUS_HOLDER",
     "ActiveGoal",
     "BusEntry",
+    "BusParameter",
     "GoalEnd",
     "GoalHandle",
     "GoalStatus",
     "Holder",
     "LeaseTable",
-    "Parameter",
     "ParameterServer",
     "SkillBus",
-    "Stream",
     "Subscription",
     "Topic",
+    "TopicStream",
     "expected_signature",
 ]

@@ -15,7 +15,7 @@ from enum import Enum
 from typing import Any, Generic, TypeVar
 
 from engine.bus.lease import Holder
-from engine.cause import cause_of
+from engine.cause_chain import cause_of
 from engine.errors import BusError, FlexcellError, GoalRejected, SkillFailed
 from engine.event import Cause
 
@@ -209,7 +209,7 @@ class GoalHandle(Generic[R, F]):
             waiter.cancel()
 
 
-async def carry_out(
+async def execute_goal(
     handler: Callable[[Any, ActiveGoal[Any]], Awaitable[Any]], request: object, goal: ActiveGoal[Any]
 ) -> GoalEnd[Any]:
     """Run a handler to its end and say how that was; never raises but for the bus closing."""

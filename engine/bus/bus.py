@@ -12,15 +12,15 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self, TypeVar, cast
 
-from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, carry_out
-from engine.bus.handler import verify_handler
+from engine.bus.action import ActiveGoal, GoalEnd, GoalHandle, execute_goal
+from engine.bus.handler_signature import verify_handler
 from engine.bus.lease import Holder, LeaseTable
-from engine.bus.parameter import ParameterServer
+from engine.bus.parameter_server import ParameterServer
 from engine.bus.topic import Topic
 from engine.clock import Clock
 from engine.errors import BusError, FlexcellError, GoalRejected, NoSuchSkill, SkillFailed
-from engine.nearness import near_names
 from engine.skill import Action, Service, Skill
+from engine.suggestions import did_you_mean
 
 R = TypeVar("R")
 F = TypeVar("F")
@@ -28,7 +28,7 @@ M = TypeVar("M")
 A = TypeVar("A", bound=Action[Any, Any])
 Q = TypeVar("Q", bound=Service[Any])
 
-NOBODY = Holder("nobody")
+ANONYMOUS_HOLDER = Holder("nobody")
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class SkillBus:
     def find_topic(self, name: str) -> Topic[Any]:
         """Return an existing topic of whatever type."""
         if name not in self._topics:
-            raise BusError("no such topic", where=name, hint=near_names(name, self._topics))
+            raise BusError("no such topic", where=name, hint=did_you_mean(name, self._topics))
         return self._topics[name]
 
     def topics(self) -> tuple[Topic[Any], ...]:
@@ -175,11 +175,11 @@ class SkillBus:
             for address in [a for a in table if a == namespace or a.startswith(namespace + "/")]:
                 del table[address]
 
-    async def call(self, request: Service[R], *, to: str, holder: Holder = NOBODY) -> R:
+    async def call(self, request: Service[R], *, to: str, holder: Holder = ANONYMOUS_HOLDER) -> R:
         """Ask a service and return its answer.
 
         Raises:
-            NoSuchSkill: nobody answers at this address.
+            NoSuchSkill: no such service.
             LeaseRefused: it commands a resource that somebody else than `holder` holds.
             SkillFailed: the handler failed; its error is the cause.
         """
@@ -198,13 +198,15 @@ class SkillBus:
             # Whatever a handler raises must reach the caller as one kind of error with its cause.
             raise SkillFailed(f"the service raised {type(error).__name__}: {error}", where=address) from error
 
-    def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder = NOBODY, goal_id: str = "") -> GoalHandle[R, F]:
+    def send_goal(
+        self, goal: Action[R, F], *, to: str, holder: Holder = ANONYMOUS_HOLDER, goal_id: str = ""
+    ) -> GoalHandle[R, F]:
         """Start an action; returns at once, `accepted` and `result` of the handle tell the rest.
 
         The goal leases `to` for `holder` until it ends.
 
         Raises:
-            NoSuchSkill: nobody carries out this skill there.
+            NoSuchSkill: there is no such action.
             LeaseRefused: somebody else commands the resource.
         """
         address = f"{to}/{goal.skill_name()}"
@@ -226,15 +228,15 @@ class SkillBus:
         other = self._running.get(server.exclusive)
         try:
             if other is not None:
-                return await carry_out(_refuser(other), goal, active)
+                return await execute_goal(_refuser(other), goal, active)
             self._running[server.exclusive] = active
-            return await carry_out(server.handler, goal, active)
+            return await execute_goal(server.handler, goal, active)
         finally:
             if self._running.get(server.exclusive) is active:
                 del self._running[server.exclusive]
             self.leases.release((to,), active.holder)
-            if active.holder.run == NOBODY.run and len(self.goals(NOBODY.run)) <= 1:
-                self.leases.release_run(NOBODY.run)
+            if active.holder.run == ANONYMOUS_HOLDER.run and len(self.goals(ANONYMOUS_HOLDER.run)) <= 1:
+                self.leases.release_run(ANONYMOUS_HOLDER.run)
 
     def request_type(self, address: str) -> type[Skill[Any]]:
         """Return the skill answered at a full bus address."""
@@ -264,12 +266,12 @@ class SkillBus:
     def _free_address(self, skill: type[Skill[Any]], namespace: str) -> str:
         address = f"{namespace}/{skill.skill_name()}"
         if address in self._services or address in self._actions:
-            raise BusError("somebody answers at this address already", where=address)
+            raise BusError("this address is already served", where=address)
         return address
 
     def _nobody(self, address: str) -> NoSuchSkill:
         known = [*self._services, *self._actions]
-        return NoSuchSkill("nobody answers at this address", where=address, hint=near_names(address, known))
+        return NoSuchSkill("no such service", where=address, hint=did_you_mean(address, known))
 
 
 def _refuser(other: ActiveGoal[Any]) -> Callable[[Any, ActiveGoal[Any]], Awaitable[Any]]:

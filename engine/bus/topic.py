@@ -33,7 +33,7 @@ class Subscription(Generic[M]):
         self._topic.remove(self)
 
 
-class Stream(Generic[M]):
+class TopicStream(Generic[M]):
     """The messages since it was opened, for `async for`; keeps at most `size`, dropping the oldest."""
 
     def __init__(self, topic: Topic[M], size: int) -> None:
@@ -143,13 +143,13 @@ class Topic(Generic[M]):
         self._subscriptions = (*self._subscriptions, subscription)
         return subscription
 
-    def overhear(self, callback: Callable[[M], None]) -> Subscription[M]:
+    def subscribe_passively(self, callback: Callable[[M], None]) -> Subscription[M]:
         """Call `callback` on the loop thread with what is published anyway; nothing is made for it."""
         subscription = Subscription(self, callback, asks=False)
         self._subscriptions = (*self._subscriptions, subscription)
         return subscription
 
-    def obey(self, callback: Callable[[M], None]) -> Subscription[M]:
+    def subscribe_commands(self, callback: Callable[[M], None]) -> Subscription[M]:
         """Subscribe as the server that does what is published here; people may publish on such a topic."""
         self.takes_commands = True
         return self.subscribe(callback)
@@ -158,6 +158,6 @@ class Topic(Generic[M]):
         """Forget a subscriber; unknown ones are ignored."""
         self._subscriptions = tuple(s for s in self._subscriptions if s is not subscription)
 
-    def stream(self, *, size: int = 1000) -> Stream[M]:
+    def stream(self, *, size: int = 1000) -> TopicStream[M]:
         """Return an awaitable stream of the messages from now on; `size=1` conflates."""
-        return Stream(self, size)
+        return TopicStream(self, size)

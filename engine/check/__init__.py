@@ -1,12 +1,12 @@
 """The static check: findings about a behavior before it runs, each with node path and file position."""
 
+from engine.check.arm_target_checks import check_targets
+from engine.check.behavior_check import check_behavior, check_file, check_given, check_survey, read_beside
 from engine.check.cell_check import check_cell, check_entries_document
 from engine.check.cell_context import CellContext, cell_context
-from engine.check.check import check_behavior, check_file, check_given, check_survey, read_beside
-from engine.check.drawn_targets import check_targets
-from engine.check.finding import CODES, Finding, Severity, invalid, place_of, require_sound
-from engine.check.page import page_name, page_text
-from engine.check.stored import check_stored, names_by_kind
+from engine.check.entry_checks import check_stored, names_by_kind
+from engine.check.finding import CODES, Finding, Severity, finding_sort_key, invalid_document_finding, require_no_errors
+from engine.check.finding_pages import page_name, page_text
 
 __all__ = [
     "CODES",
@@ -22,11 +22,11 @@ __all__ = [
     "check_stored",
     "check_survey",
     "check_targets",
-    "invalid",
+    "finding_sort_key",
+    "invalid_document_finding",
     "names_by_kind",
     "page_name",
     "page_text",
-    "place_of",
     "read_beside",
-    "require_sound",
+    "require_no_errors",
 ]

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from engine.cell_names import CellNameKind, CellNames, cell_names
-from engine.check.finding import Finding, new_finding, place_of
-from engine.check.magnitude import Suspicion, suspicion_of, suspicions
-from engine.document.cell import Cell, CellDocument, RobotEntry
-from engine.document.entries import Entries, EntriesDocument, load_entries
-from engine.document.yaml_source import DataPath, Source
+from engine.cell.cell_names import CellNameKind, CellNames, cell_names
+from engine.cell.robot_models import RobotModels, robot_models
+from engine.check.finding import Finding, finding_sort_key, new_finding
+from engine.check.magnitude import UnitSuspicion, unit_suspicion, unit_suspicions
+from engine.document.cell import Cell, CellDocument, RobotSpec
+from engine.document.entries_document import Entries, EntriesDocument, load_entries
+from engine.document.yaml_source import DataPath, DocumentSource
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.nearness import near_names
-from engine.registry import DRIVERS, registered
-from engine.robot_models import RobotModels, robot_models
+from engine.registry import DRIVERS, registered_names
+from engine.suggestions import did_you_mean
 
 _PART_FRAME = "part"
 """The frame of whatever part a pose is used for."""
@@ -34,32 +34,32 @@ def check_cell(cell: Cell) -> tuple[Finding, ...]:
             path: DataPath = ("cameras", camera, "detect", "labels", part)
             findings += _missing(names, "part", part, cell.source.position(path, of_key=True))
     findings += _check_seed(cell, names)
-    return tuple(sorted(findings, key=place_of))
+    return tuple(sorted(findings, key=finding_sort_key))
 
 
 def check_entries_document(entries: Entries, names: CellNames | None = None) -> tuple[Finding, ...]:
     """Return what is wrong with entries: numbers in another unit and, with the names of a cell, frames it has not."""
     findings = list(_suspect(entries.source, EntriesDocument))
     for name, pose in entries.document.poses.items():
-        suspicion = suspicion_of("xyz", pose.xyz, "m", steps=("poses", name, "xyz"))
+        suspicion = unit_suspicion("xyz", pose.xyz, "m", steps=("poses", name, "xyz"))
         findings += [_suspected(entries.source, suspicion)] if suspicion is not None else []
         # An arm takes its base, a state that handles parts any body that the cell shows.
         if names is not None and pose.frame != _PART_FRAME:
             findings += _missing(names, "frame", pose.frame, entries.source.position(("poses", name, "frame")))
-    return tuple(sorted(findings, key=place_of))
+    return tuple(sorted(findings, key=finding_sort_key))
 
 
-def _check_driver(cell: Cell, robot: str, entry: RobotEntry) -> Iterator[Finding]:
-    known = registered(DRIVERS)
+def _check_driver(cell: Cell, robot: str, entry: RobotSpec) -> Iterator[Finding]:
+    known = registered_names(DRIVERS)
     if not entry.simulated and entry.driver_kind not in known:
         position = cell.source.position(("robots", robot, "driver", "kind"))
-        hint = near_names(entry.driver_kind, known) if known else "none is installed; `driver: sim` simulates it"
+        hint = did_you_mean(entry.driver_kind, known) if known else "none is installed; `driver: sim` simulates it"
         yield new_finding(
             "unknown-driver", f"no driver is called {entry.driver_kind}", path="", position=position, hint=hint
         )
 
 
-def _check_models(cell: Cell, robot: str, entry: RobotEntry, models: RobotModels) -> Iterator[Finding]:
+def _check_models(cell: Cell, robot: str, entry: RobotSpec, models: RobotModels) -> Iterator[Finding]:
     here: DataPath = ("robots", robot)
     named: list[tuple[str, str, DataPath, tuple[str, ...]]] = [
         ("robot", entry.model, (*here, "model"), models.robots())
@@ -68,7 +68,7 @@ def _check_models(cell: Cell, robot: str, entry: RobotEntry, models: RobotModels
         named.append(("gripper", entry.gripper.model, (*here, "gripper", "model"), models.tools()))
     unknown = [each for each in named if not _is_folder(each[1]) and each[1] not in each[3]]
     for what, model, path, known in unknown:
-        message, hint = f"no {what} model is called {model}", near_names(model, known)
+        message, hint = f"no {what} model is called {model}", did_you_mean(model, known)
         yield new_finding("unknown-model", message, path="", position=cell.source.position(path), hint=hint)
     if unknown:
         return
@@ -106,11 +106,11 @@ def _missing(names: CellNames, kind: CellNameKind, name: str, position: Position
         yield new_finding("unknown-in-cell", message, path="", position=position, hint=hint)
 
 
-def _suspect(source: Source, model: Any) -> Iterator[Finding]:
-    yield from (_suspected(source, found) for found in suspicions(model, source.data))
+def _suspect(source: DocumentSource, model: Any) -> Iterator[Finding]:
+    yield from (_suspected(source, found) for found in unit_suspicions(model, source.data))
 
 
-def _suspected(source: Source, found: Suspicion) -> Finding:
+def _suspected(source: DocumentSource, found: UnitSuspicion) -> Finding:
     position = source.position(found.steps)
     return new_finding("suspect-unit", found.message, path="", position=position, hint=found.hint)
 

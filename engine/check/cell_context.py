@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from engine.cell_names import CellNames, cell_names
+from engine.cell.cell_names import CellNames, cell_names
 from engine.document.behavior import Behavior
 from engine.document.cell import Cell, load_cell
-from engine.document.entries import Entries, load_entries
+from engine.document.entries_document import Entries, load_entries
 from engine.errors import DocumentError
 
 

@@ -7,17 +7,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.check.subject import Placed, Subject
-from engine.document.condition import PREEMPT, WHEN, Condition, deciding, preemptable, preempting
-from engine.nearness import near_names
+from engine.document.concurrency_condition import PREEMPT, WHEN, ConcurrencyCondition, deciding, preemptable, preempting
+from engine.suggestions import did_you_mean
 
 MAX_STEPS = 20_000
 _SHOWN = 3
 _PREEMPTED = ""
 
 
-def check_conditions(subject: Subject) -> Iterator[Finding]:
+def check_conditions(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find unknown children and outcomes in conditions, who cannot be preempted, and what no condition covers."""
     for placed in subject.nodes.values():
         if placed.node.concurrency is not None:
@@ -27,26 +27,26 @@ def check_conditions(subject: Subject) -> Iterator[Finding]:
                 yield from _check_coverage(subject, placed)
 
 
-def _check_names(subject: Subject, placed: Placed) -> Iterator[Finding]:
+def _check_names(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     container = placed.node.concurrency
     children = placed.node.children
     for index, rule in enumerate(container.rules if container else ()):
         for name, outcome in rule.when.items():
             keys = ("concurrency", "conditions", index, rule.outcome or WHEN, name)
             if name not in children:
-                hint = near_names(name, children)
+                hint = did_you_mean(name, children)
                 message = f"there is no child `{name}` here"
                 yield subject.finding("unknown-child", message, placed.path, *keys, hint=hint, at_key=True)
                 continue
             outcomes = subject.outcomes.get(f"{placed.path}/{name}")
             if outcomes is not None and outcome not in outcomes:
-                hint = near_names(outcome, outcomes)
+                hint = did_you_mean(outcome, outcomes)
                 message = f"`{name}` has no outcome `{outcome}`"
                 yield subject.finding("unknown-outcome", message, placed.path, *keys, hint=hint)
         for place, name in enumerate(rule.preempt):
             keys = ("concurrency", "conditions", index, PREEMPT, place)
             if name not in children:
-                hint = near_names(name, children)
+                hint = did_you_mean(name, children)
                 yield subject.finding(
                     "unknown-child", f"there is no child `{name}` here", placed.path, *keys, hint=hint
                 )
@@ -56,7 +56,7 @@ def _check_names(subject: Subject, placed: Placed) -> Iterator[Finding]:
                 yield subject.finding("preempts-itself", message, placed.path, *keys, hint=hint)
 
 
-def _check_coverage(subject: Subject, placed: Placed) -> Iterator[Finding]:
+def _check_coverage(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
     container = placed.node.concurrency
     outcomes = {child.name: subject.possible(child) for child in subject.children(placed)}
     known = {name: found for name, found in outcomes.items() if found is not None}
@@ -96,8 +96,8 @@ class _Search:
     condition may preempt can end so as well, with `_PREEMPTED` for an outcome, where that condition holds.
     """
 
-    rules: Sequence[Condition]
-    preempting: Sequence[Condition]
+    rules: Sequence[ConcurrencyCondition]
+    preempting: Sequence[ConcurrencyCondition]
     outcomes: Mapping[str, tuple[str, ...]]
     steps: int = 0
     exhausted: bool = False

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 
+from engine.check.analyzed_behavior import AnalyzedBehavior, targets
 from engine.check.finding import Finding, new_finding
-from engine.check.subject import Subject, targets
-from engine.document.parameter import Parameter
-from engine.nearness import near_names
+from engine.document.parameter_spec import ParameterSpec
+from engine.suggestions import did_you_mean
 
 _NUMERIC = ("number", "integer")
 
 
-def check_unused(subject: Subject, used: Collection[str]) -> Iterator[Finding]:
+def check_unused(subject: AnalyzedBehavior, used: Collection[str]) -> Iterator[Finding]:
     """Find parameters that nobody reads; `used` are the names that somebody does."""
     for name in subject.behavior.parameters:
         if name not in used:
@@ -22,7 +22,7 @@ def check_unused(subject: Subject, used: Collection[str]) -> Iterator[Finding]:
             yield new_finding("unused-parameter", message, path=subject.base, position=position, hint=hint)
 
 
-def check_declarations(subject: Subject) -> Iterator[Finding]:
+def check_declarations(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find contradictions in parameters, `success` and `outcomes`."""
     for name, parameter in subject.behavior.parameters.items():
         yield from _check_parameter(subject, name, parameter)
@@ -31,7 +31,7 @@ def check_declarations(subject: Subject) -> Iterator[Finding]:
         if outcome not in declared:
             position = subject.behavior.source.position(("success", index))
             message = f"`success` names `{outcome}`, which is not in `outcomes`"
-            hint = near_names(outcome, declared)
+            hint = did_you_mean(outcome, declared)
             yield new_finding("unknown-success", message, path=subject.base, position=position, hint=hint)
     reached = subject.possible(subject.nodes["root"])
     if reached is None:
@@ -45,7 +45,7 @@ def check_declarations(subject: Subject) -> Iterator[Finding]:
             yield new_finding("unused-outcome", message, path=subject.base, position=position, hint=hint)
 
 
-def _check_parameter(subject: Subject, name: str, parameter: Parameter) -> Iterator[Finding]:
+def _check_parameter(subject: AnalyzedBehavior, name: str, parameter: ParameterSpec) -> Iterator[Finding]:
     def found(code: str, message: str, *keys: str | int, hint: str = "") -> Finding:
         position = subject.behavior.source.position(("parameters", name, *keys), of_key=not keys)
         return new_finding(code, message, path=subject.base, position=position, hint=hint)

@@ -92,7 +92,7 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True, gc=False):
         return f"{self.position}: {self.severity}: {self.message}{advice} [{self.code}]"
 
 
-def place_of(finding: Finding) -> tuple[str, int, int]:
+def finding_sort_key(finding: Finding) -> tuple[str, int, int]:
     """Return what sorts findings by where they are."""
     return finding.position.file, finding.position.line, finding.position.column
 
@@ -102,13 +102,13 @@ def new_finding(code: str, message: str, *, path: str, position: Position, hint:
     return Finding(severity=CODES[code][0], code=code, message=message, path=path, position=position, hint=hint)
 
 
-def invalid(error: DocumentError, path: Path | str) -> Finding:
+def invalid_document_finding(error: DocumentError, path: Path | str) -> Finding:
     """Make the finding of a mistake in the document at `path`."""
     position = error.where if isinstance(error.where, Position) else Position(file=str(path), line=1, column=1)
     return new_finding("invalid-document", error.message, path="", position=position, hint=error.hint or "")
 
 
-def require_sound(findings: Iterable[Finding]) -> None:
+def require_no_errors(findings: Iterable[Finding]) -> None:
     """Refuse a document that has errors.
 
     Raises:

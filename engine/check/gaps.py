@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 
 from engine.check.finding import Finding
 from engine.document.behavior import Behavior
-from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
-from engine.document.partial import ANYTHING
+from engine.document.node_spec import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.partial_behavior import ANY_KEY
 
 _LEADING = ("transitions", "guard", "timeout", "on_error")
 _CONTAINING = (*KINDS, *TREE_KINDS, *WRAPPERS)
@@ -27,7 +27,7 @@ _OF_REFERENCES = frozenset(
 )
 
 
-class Gaps:
+class DocumentGaps:
     """The gaps of one behavior, and what they hide."""
 
     def __init__(self, behavior: Behavior) -> None:
@@ -79,4 +79,4 @@ def _is_open(referred: Behavior | None) -> bool:
 
 
 def _has(gap: Collection[str], *keys: str) -> bool:
-    return ANYTHING in gap or any(key in gap for key in keys)
+    return ANY_KEY in gap or any(key in gap for key in keys)

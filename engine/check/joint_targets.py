@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import cast
 
-from engine.check.annotated import is_annotated, lists
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.annotated_values import annotated_lists, is_annotated
 from engine.check.finding import Finding
+from engine.check.known_values import known_part
 from engine.check.magnitude import MOST_TURNS_RAD
-from engine.check.settled import settled
-from engine.check.subject import Placed, Subject
 from engine.document.signature import StateSignature
 
-Ranges = Mapping[str, tuple[tuple[float, float], ...]]
+JointRanges = Mapping[str, tuple[tuple[float, float], ...]]
 """The least and the greatest angle of each joint, radians, by the name of the robot."""
 _NEARLY_RAD = 1e-6
 
 
-def check_joint_targets(subject: Subject, ranges: Ranges, known: Mapping[str, object]) -> Iterator[Finding]:
+def check_joint_targets(
+    subject: AnalyzedBehavior, ranges: JointRanges, known: Mapping[str, object]
+) -> Iterator[Finding]:
     """Find joint angles in a behavior that the arm they are for cannot have.
 
     Args:
@@ -32,16 +34,20 @@ def check_joint_targets(subject: Subject, ranges: Ranges, known: Mapping[str, ob
 
 
 def _check_state(
-    subject: Subject, placed: Placed, signature: StateSignature, ranges: Ranges, known: Mapping[str, object]
+    subject: AnalyzedBehavior,
+    placed: NodeAt,
+    signature: StateSignature,
+    ranges: JointRanges,
+    known: Mapping[str, object],
 ) -> Iterator[Finding]:
     given = subject.given_to(placed)
     for name, found in given.items():
         declared = signature.parameters.get(name)
         if declared is None or not is_annotated(declared.type):
             continue
-        for steps, listed in lists(declared.type, settled(found, known)):
+        for steps, listed in annotated_lists(declared.type, known_part(found, known)):
             of = listed[0].says.get("joints_of")
-            robot = settled(given[str(of)], known) if of in given else None
+            robot = known_part(given[str(of)], known) if of in given else None
             angles = [each.value for each in listed]
             if (
                 not isinstance(robot, str)

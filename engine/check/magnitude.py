@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from engine.check.annotated import is_annotated, lists
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.annotated_values import annotated_lists, is_annotated
 from engine.check.finding import Finding, new_finding
-from engine.check.settled import settled
-from engine.check.subject import Placed, Subject
-from engine.document.parameter import Parameter
+from engine.check.known_values import known_part
+from engine.document.parameter_spec import ParameterSpec
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +35,7 @@ _UNITS: Mapping[str, _Unit] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Suspicion:
+class UnitSuspicion:
     """A number, or a list of numbers, that seems to be in another unit; `steps` lead to it."""
 
     steps: tuple[str | int, ...]
@@ -43,7 +43,7 @@ class Suspicion:
     hint: str
 
 
-def suspicions(annotation: Any, value: object, *, name: str = "") -> Iterator[Suspicion]:
+def unit_suspicions(annotation: Any, value: object, *, name: str = "") -> Iterator[UnitSuspicion]:
     """Go through what seems to be in another unit than the annotations inside a type say, once for each list.
 
     Args:
@@ -51,16 +51,16 @@ def suspicions(annotation: Any, value: object, *, name: str = "") -> Iterator[Su
         value: Plain data.
         name: What the whole value is called.
     """
-    for steps, found in lists(annotation, value):
+    for steps, found in annotated_lists(annotation, value):
         inner = next((step for step in reversed(steps) if isinstance(step, str)), name)
-        suspicion = suspicion_of(inner, [each.value for each in found], found[0].says.get("unit"), steps=steps)
+        suspicion = unit_suspicion(inner, [each.value for each in found], found[0].says.get("unit"), steps=steps)
         if suspicion is not None:
             yield suspicion
 
 
-def suspicion_of(
+def unit_suspicion(
     name: str, values: Sequence[object], unit: object, *, steps: tuple[str | int, ...] = ()
-) -> Suspicion | None:
+) -> UnitSuspicion | None:
     """Return what is odd about numbers in a unit; None where nothing is.
 
     Args:
@@ -77,18 +77,18 @@ def suspicion_of(
     if not (due.in_list if len(values) > 1 else due.alone) < abs(largest) < math.inf:
         return None
     meant = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
-    return Suspicion(
+    return UnitSuspicion(
         steps=steps,
         message=f"`{name}`: {largest:g} {unit} looks like {due.other}",
         hint=f"if so, write {meant if len(values) == 1 else f'[{meant}]'}",
     )
 
 
-def check_magnitudes(subject: Subject) -> Iterator[Finding]:
+def check_magnitudes(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find numbers in a behavior that seem to be in another unit than is due."""
     declared = subject.behavior.parameters
     for name, parameter in declared.items():
-        found = suspicion_of(name, [parameter.default], _unit(parameter)) if not parameter.required else None
+        found = unit_suspicion(name, [parameter.default], _unit(parameter)) if not parameter.required else None
         if found is not None:
             position = subject.behavior.source.position(("parameters", name, "default"))
             yield new_finding("suspect-unit", found.message, path=subject.base, position=position, hint=found.hint)
@@ -99,17 +99,17 @@ def check_magnitudes(subject: Subject) -> Iterator[Finding]:
                 yield subject.finding("suspect-unit", found.message, placed.path, *keys, hint=found.hint)
 
 
-def _given(subject: Subject, placed: Placed, name: str) -> Iterator[Suspicion]:
+def _given(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> Iterator[UnitSuspicion]:
     given = subject.given_to(placed)[name]
     signature, referred = subject.signature(placed.node), subject.referred(placed.node)
     if signature is not None and name in signature.parameters:
         declared = signature.parameters[name].type
         if is_annotated(declared):
-            yield from suspicions(declared, settled(given, {}), name=name)
+            yield from unit_suspicions(declared, known_part(given, {}), name=name)
     elif referred is not None and name in referred.behavior.parameters:
-        found = suspicion_of(name, [settled(given, {})], _unit(referred.behavior.parameters[name]))
+        found = unit_suspicion(name, [known_part(given, {})], _unit(referred.behavior.parameters[name]))
         yield from [found] if found is not None else []
 
 
-def _unit(parameter: Parameter) -> str:
+def _unit(parameter: ParameterSpec) -> str:
     return parameter.unit.strip()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, targets
 from engine.check.finding import Finding
-from engine.check.subject import Placed, Subject, targets
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 
 
-def check_reachability(subject: Subject) -> Iterator[Finding]:
+def check_reachability(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find missing initial states, states nothing leads to, and states that never lead out."""
     for placed in subject.nodes.values():
         machine = placed.node.sequential
@@ -17,13 +17,13 @@ def check_reachability(subject: Subject) -> Iterator[Finding]:
             continue
         if machine.initial not in machine.states:
             message = f"there is no state `{machine.initial}` to begin with"
-            hint = near_names(machine.initial, machine.states)
+            hint = did_you_mean(machine.initial, machine.states)
             yield subject.finding("missing-initial", message, placed.path, placed.node.kind, "initial", hint=hint)
             continue
         yield from _check_machine(subject, placed, machine.initial)
 
 
-def _check_machine(subject: Subject, placed: Placed, initial: str) -> Iterator[Finding]:
+def _check_machine(subject: AnalyzedBehavior, placed: NodeAt, initial: str) -> Iterator[Finding]:
     leads = {name: tuple(targets(child).values()) for name, child in placed.node.children.items()}
     reached = _reachable([initial], leads)
     for name in leads:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.check.made_state import UNKNOWN, given_values, made_state
-from engine.check.subject import Placed, Subject
+from engine.check.state_instances import UNKNOWN_PLACEHOLDER, given_values, try_make_state
 from engine.document.signature import StateSignature
 
 _NONE: frozenset[str] = frozenset()
@@ -16,15 +16,15 @@ _MOST_USES = 20_000
 """Uses of referred behaviors that are looked at, each with the parameters it gives."""
 
 
-def check_resources(subject: Subject) -> Iterator[Finding]:
+def check_resources(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find resources that two branches of a concurrency or parallel use, as far as constants tell."""
     if not any(placed.kind in _SIDE_BY_SIDE for placed in subject.nodes.values()):
         return
-    used = _Resources().used(subject, dict.fromkeys(subject.behavior.parameters, UNKNOWN))
+    used = _Resources().used(subject, dict.fromkeys(subject.behavior.parameters, UNKNOWN_PLACEHOLDER))
     for placed in subject.nodes.values():
         if placed.kind not in _SIDE_BY_SIDE:
             continue
-        owners: dict[str, Placed] = {}
+        owners: dict[str, NodeAt] = {}
         children = subject.children(placed)
         for child in children:
             for resource in sorted(used[child.path]):
@@ -42,20 +42,20 @@ class _Resources:
         self._uses = 0
         self._of_references: dict[tuple[int, str], frozenset[str]] = {}
 
-    def used(self, subject: Subject, known: Mapping[str, object]) -> dict[str, frozenset[str]]:
+    def used(self, subject: AnalyzedBehavior, known: Mapping[str, object]) -> dict[str, frozenset[str]]:
         """Return the resources of every node and everything inside it, by path.
 
         Args:
             subject: The behavior.
-            known: Its parameters; those that only a run knows are `UNKNOWN`.
+            known: Its parameters; those that only a run knows are `UNKNOWN_PLACEHOLDER`.
         """
         used: dict[str, frozenset[str]] = {}
-        for placed in subject.inside_out:
+        for placed in subject.postorder:
             inside = (used[child.path] for child in subject.children(placed))
             used[placed.path] = self._own(subject, placed, known).union(*inside)
         return used
 
-    def _own(self, subject: Subject, placed: Placed, known: Mapping[str, object]) -> frozenset[str]:
+    def _own(self, subject: AnalyzedBehavior, placed: NodeAt, known: Mapping[str, object]) -> frozenset[str]:
         signature = subject.signature(placed.node)
         if signature is not None:
             # Most states command nothing, and a class that does not say otherwise need not be made.
@@ -65,7 +65,10 @@ class _Resources:
         referred = subject.referred(placed.node)
         if referred is None or self._uses > _MOST_USES:
             return frozenset()
-        inner = {**dict.fromkeys(referred.behavior.parameters, UNKNOWN), **given_values(subject, placed, known)}
+        inner = {
+            **dict.fromkeys(referred.behavior.parameters, UNKNOWN_PLACEHOLDER),
+            **given_values(subject, placed, known),
+        }
         key = (id(referred), repr(sorted(inner.items())))
         if key not in self._of_references:
             self._uses += 1
@@ -75,9 +78,13 @@ class _Resources:
 
 def _resources_of(signature: StateSignature, given: Mapping[str, object]) -> frozenset[str]:
     """Ask the state which resources it commands."""
-    state = made_state(signature, given)
+    state = try_make_state(signature, given)
     try:
-        return frozenset(name for name in state.resources() if UNKNOWN not in name) if state is not None else _NONE
+        return (
+            frozenset(name for name in state.resources() if UNKNOWN_PLACEHOLDER not in name)
+            if state is not None
+            else _NONE
+        )
     except Exception:
         # It is a custom class, asked with stand-ins for unknown values: what it names is then unknown too.
         return _NONE

@@ -10,10 +10,10 @@ from typing import Any, cast
 
 import msgspec.inspect as inspect
 
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
 from engine.check.finding import Finding
-from engine.check.flow.read import only_name
-from engine.check.subject import Placed, Subject
-from engine.document.parameter import Parameter
+from engine.check.flow.key_reads import only_name
+from engine.document.parameter_spec import ParameterSpec
 
 _NUMERIC = ("number", "integer")
 
@@ -27,7 +27,7 @@ class _Due:
     high: float = math.inf
 
 
-def check_units(subject: Subject) -> Iterator[Finding]:
+def check_units(subject: AnalyzedBehavior) -> Iterator[Finding]:
     """Find parameters of the behavior that are handed on with another unit, without one, or out of range."""
     declared = subject.behavior.parameters
     if not declared:
@@ -43,7 +43,7 @@ def check_units(subject: Subject) -> Iterator[Finding]:
 
 
 def _compare(
-    subject: Subject, placed: Placed, name: str, source: str, parameter: Parameter, due: _Due
+    subject: AnalyzedBehavior, placed: NodeAt, name: str, source: str, parameter: ParameterSpec, due: _Due
 ) -> Iterator[Finding]:
     what = placed.node.state or placed.node.behavior
     path, keys = placed.path, ("with", name)
@@ -65,7 +65,7 @@ def _compare(
         yield subject.finding("range-too-wide", message, path, *keys, hint=hint)
 
 
-def _due(subject: Subject, placed: Placed, name: str) -> _Due | None:
+def _due(subject: AnalyzedBehavior, placed: NodeAt, name: str) -> _Due | None:
     signature = subject.signature(placed.node)
     if signature is not None and name in signature.parameters:
         return _due_by_type(signature.parameters[name].type)

@@ -16,15 +16,15 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.bus import GoalStatus
-from engine.bus.access import BusAccess, LocalBus
-from engine.bus.remote import RemoteBus
-from engine.cause import describe
-from engine.cell import OpenCell
+from engine.bus.json_bus import JsonBus, LocalJsonBus
+from engine.bus.remote_bus import RemoteJsonBus
+from engine.cause_chain import describe_cause
+from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_json
 from engine.document.cell import load_cell
 from engine.errors import FlexcellError
-from engine.state_names import STATE_FOLDER
+from engine.host.state_folder_names import STATE_FOLDER
 
 app = typer.Typer(
     help="Look at the skill bus of a running server, or of a cell file with --cell.", no_args_is_help=True
@@ -175,20 +175,20 @@ def goal(
         sys.stdout.write(msgspec.json.encode({"status": end.status.value, "result": end.result}).decode() + "\n")
         if end.status is GoalStatus.SUCCEEDED:
             return ExitCode.SUCCESS
-        sys.stderr.write(f"{end.status.value}: {describe(end.cause) if end.cause else 'no reason given'}\n")
+        sys.stderr.write(f"{end.status.value}: {describe_cause(end.cause) if end.cause else 'no reason given'}\n")
         return ExitCode.OTHER_OUTCOME
 
     raise typer.Exit(asyncio.run(main()))
 
 
 @asynccontextmanager
-async def _bus(cell: Path | None, server: Path) -> AsyncGenerator[BusAccess]:
+async def _bus(cell: Path | None, server: Path) -> AsyncGenerator[JsonBus]:
     if cell is None:
-        async with RemoteBus.connect(server) as remote:
+        async with RemoteJsonBus.connect(server) as remote:
             yield remote
     else:
         async with OpenCell(load_cell(cell)) as opened:
-            yield LocalBus(opened.bus)
+            yield LocalJsonBus(opened.bus)
 
 
 def _until_interrupted(main: object) -> None:

@@ -9,10 +9,10 @@ from typing import Annotated
 
 import typer
 
-from engine.bus.remote_cell import connect_remote_cell, remote_cell_connection
-from engine.cell_connection import CellConnection
+from engine.cell.cell_connection import CellConnection
+from engine.cell.remote_cell import connect_remote_cell, remote_cell_connection
 from engine.cli.exit_code import ExitCode
-from engine.state_names import STATE_FOLDER
+from engine.host.state_folder_names import STATE_FOLDER
 
 app = typer.Typer(help="The devices of a running server's cell.", no_args_is_help=True)
 

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, TextIO
 import typer
 from msgspec.structs import replace
 
-from engine.cell_names import cell_names
+from engine.cell.cell_names import cell_names
 from engine.check import (
     CellContext,
     Finding,
@@ -20,18 +20,18 @@ from engine.check import (
     check_entries_document,
     check_survey,
     check_targets,
-    invalid,
+    finding_sort_key,
+    invalid_document_finding,
     page_text,
-    place_of,
 )
 from engine.cli.exit_code import ExitCode
 from engine.cli.findings import as_github, as_json, as_sarif
 from engine.document import Behavior, survey_behavior
 from engine.document.cell import Cell, load_cell
-from engine.document.entries import SECTIONS, load_entries
+from engine.document.entries_document import SECTIONS, load_entries
 from engine.document.project import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
-from engine.document.recovery import load_around
+from engine.document.text_recovery import load_recovering
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import load_states
 from engine.state_catalogue import Catalogue
@@ -154,7 +154,7 @@ def findings_of(
             return check_cell(load_cell(file))
         return check_entries_document(load_entries(file), cell_names(cell) if cell is not None else None)
     except DocumentError as error:
-        return tuple(invalid(each, file) for each in (error, *error.others))
+        return tuple(invalid_document_finding(each, file) for each in (error, *error.others))
 
 
 def _of_behavior(
@@ -166,7 +166,7 @@ def _of_behavior(
     context = cell_context(behavior, cell) if behavior is not None else CellContext()
     findings = check_survey(survey, file, catalogue, known, cell=context)
     more = _at_targets(behavior, catalogue, context, targets) if behavior is not None else ()
-    return tuple(sorted((*findings, *more), key=place_of)) if more else findings
+    return tuple(sorted((*findings, *more), key=finding_sort_key)) if more else findings
 
 
 # Imported where they are wanted: a check of a small document takes mostly what is imported for it.
@@ -200,7 +200,7 @@ def document_kind(file: Path) -> str:
     Raises:
         DocumentError: it cannot be read.
     """
-    recovered = load_around(file)
+    recovered = load_recovering(file)
     data = recovered.source.data if recovered.source is not None else None
     for key, kind in (("root", "behavior"), ("outcomes", "behavior"), ("cell", "cell"), *_ENTRIES):
         if isinstance(data, dict) and key in data:

@@ -6,17 +6,17 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from engine.check.subject import Catalogue
+from engine.check.analyzed_behavior import Catalogue
 from engine.document.python_name import is_python_name
 from engine.document.yaml_source import MAX_BYTES, load_source
-from engine.editing.knowledge import Knowledge
-from engine.editing.mending.repair import Repaired, repair
-from engine.editing.versions import write_whole
+from engine.editing.fixes.auto_fix import FixResult, fix_text
+from engine.editing.project_context import ProjectContext
+from engine.editing.versions import write_atomically
 from engine.errors import DocumentError, FlexcellError
-from engine.library import FindingView
+from engine.library.behavior_library import FindingView
 
 
-def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> Repaired | None:
+def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> FixResult | None:
     """Write into a behavior document the fixes that can be made without asking; None where it is none, or unreadable.
 
     Raises:
@@ -25,9 +25,9 @@ def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> Repaired | No
     if is_python_name(str(file)) or not _is_behavior(file):
         return None
     content = _content(file)
-    knowledge = Knowledge(catalogue, file.parent, Path(file.absolute().anchor))
+    context = ProjectContext(catalogue, file.parent, Path(file.absolute().anchor))
     try:
-        made = repair(content.decode("utf-8"), file=file, knowledge=knowledge, likely=likely)
+        made = fix_text(content.decode("utf-8"), file=file, context=context, likely=likely)
     except UnicodeDecodeError:
         return None  # the check says so
     if made.fixed:
@@ -35,7 +35,7 @@ def fix_file(file: Path, catalogue: Catalogue, *, likely: bool) -> Repaired | No
     return made
 
 
-def fix_lines(file: Path, made: Repaired) -> Iterator[str]:
+def fix_lines(file: Path, made: FixResult) -> Iterator[str]:
     """Say what was fixed, where it stood when its turn came, and what a person may choose from for what is left."""
     for finding, fix in made.fixed:
         yield f"{_place(file, finding)}: fixed: {finding.message}: {fix.title} [{finding.code}]"
@@ -73,6 +73,6 @@ def _write(file: Path, before: bytes, text: str) -> None:
     if _content(target) != before:
         raise FlexcellError("the file was changed meanwhile", where=file, hint="nothing was fixed in it; check again")
     try:
-        write_whole(target, text)
+        write_atomically(target, text)
     except OSError as error:
         raise FlexcellError(f"the file cannot be written: {error.strerror}", where=file, hint=hint) from error

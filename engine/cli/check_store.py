@@ -5,12 +5,12 @@ from __future__ import annotations
 import asyncio
 from pathlib import Path
 
-from engine.cell_store import open_cell_store
+from engine.cell.cell_store import open_cell_store
 from engine.check import names_by_kind
 from engine.cli.store_access import require_file
 from engine.document import Behavior
-from engine.document.cell import MongoStore, load_cell
-from engine.document.entries import load_entries
+from engine.document.cell import MongoStoreSpec, load_cell
+from engine.document.entries_document import load_entries
 from engine.errors import DocumentError
 from engine.store import Store, open_store
 
@@ -40,7 +40,7 @@ def stored_names(behavior: Behavior, store: str) -> dict[str, set[str]]:
             "the behavior names no cell with a store", where=behavior.file, hint="name one: --store FILE or mongodb://…"
         )
     named = cell.document.store
-    if isinstance(named, MongoStore) or Path(named.path).is_file():
+    if isinstance(named, MongoStoreSpec) or Path(named.path).is_file():
         return names_by_kind([*keys, *asyncio.run(_listed_of_cell(behavior))])
     # A file that is not there yet will hold the seed.
     return names_by_kind(keys)

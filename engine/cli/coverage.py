@@ -12,9 +12,9 @@ import typer
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior
 from engine.cli.output_file import prepare, write
-from engine.coverage import Coverage, merge, read_coverage
-from engine.coverage.logs import RunLog, read_logs
-from engine.coverage.record import BehaviorCoverage, percent
+from engine.coverage import CoverageCollector, merge, read_coverage
+from engine.coverage.coverage_file import BehaviorCoverage, percent
+from engine.coverage.event_logs import RunEventLog, read_logs
 from engine.coverage.report import report as write_report
 from engine.errors import FlexcellError
 from engine.registry import load_states
@@ -69,7 +69,7 @@ def collect(
     """
     catalogue = load_states(behavior)
     found, _ = read_behavior(behavior, catalogue)
-    coverage = Coverage(found, catalogue)
+    coverage = CoverageCollector(found, catalogue)
     coverage.require_same(to)
     left_out = 0
     for place in logs:
@@ -84,7 +84,7 @@ def collect(
     sys.stderr.write(f"{coverage.runs} runs added to {to}{others}: {coverage.percent:.1f} % covered by them\n")
 
 
-def _add(coverage: Coverage, run: RunLog) -> None:
+def _add(coverage: CoverageCollector, run: RunEventLog) -> None:
     try:
         coverage.add(run.events)
     except FlexcellError as error:

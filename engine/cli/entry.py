@@ -48,7 +48,7 @@ def _command_line() -> Callable[[], None]:
 def _stop_options(arguments: list[str]) -> tuple[Path, str] | None:
     """Return state folder and reason; None for whatever only the full command line understands, such as --help."""
     from engine.cli.stop import REASON
-    from engine.state_names import STATE_FOLDER
+    from engine.host.state_folder_names import STATE_FOLDER
 
     given = {"--state": STATE_FOLDER, "--reason": REASON}
     names, values = arguments[0::2], arguments[1::2]

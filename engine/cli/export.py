@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from engine.authoring.export import to_yaml, write_behavior
+from engine.authoring.yaml_export import to_yaml, write_behavior
 from engine.cli.exit_code import ExitCode
 from engine.cli.inputs import read_behavior
 from engine.document.python_name import is_python_name

@@ -8,15 +8,15 @@ from pathlib import Path
 import msgspec
 
 from engine.authoring.python_file import load_python_behavior
-from engine.check import Finding, check_behavior, require_sound
+from engine.check import Finding, check_behavior, require_no_errors
 from engine.document import Behavior, load_behavior
 from engine.document.cell import Cell, load_cell
-from engine.document.parameter import Parameter
+from engine.document.parameter_spec import ParameterSpec
 from engine.document.python_name import is_python_name
 from engine.document.substitutes import Substitutes
 from engine.errors import ControlError, DocumentError, FlexcellError
-from engine.nearness import near_names
-from engine.plan import Catalogue, Plan, new_plan
+from engine.runtime.plan import Catalogue, Plan, new_plan
+from engine.suggestions import did_you_mean
 
 
 def read_behavior(
@@ -48,11 +48,11 @@ def read_plan(
         DocumentError: it cannot be read, or has errors; the first one is given.
     """
     behavior, findings = read_behavior(file, catalogue, cell=cell)
-    require_sound(findings)
+    require_no_errors(findings)
     return new_plan(behavior.with_substitutes(substitutes), catalogue)
 
 
-def read_plan_anew(
+def reload_plan(
     file: Path, catalogue: Catalogue, *, cell: Cell | None = None, substitutes: Substitutes | None = None
 ) -> Plan:
     """Load, check and plan a behavior whose file may have changed since this process read it.
@@ -82,7 +82,7 @@ def read_cell(file: Path | None, behavior: Behavior | None) -> Cell | None:
     return None
 
 
-def read_parameters(given: Sequence[str], declared: Mapping[str, Parameter]) -> dict[str, object]:
+def read_parameters(given: Sequence[str], declared: Mapping[str, ParameterSpec]) -> dict[str, object]:
     """Read `name=value` pairs by the types that the behavior declares.
 
     Raises:
@@ -92,7 +92,7 @@ def read_parameters(given: Sequence[str], declared: Mapping[str, Parameter]) -> 
     for pair in given:
         name, text = _split(pair, "-p")
         if name not in declared:
-            raise DocumentError(f"there is no parameter `{name}`", hint=near_names(name, declared))
+            raise DocumentError(f"there is no parameter `{name}`", hint=did_you_mean(name, declared))
         try:
             values[name] = declared[name].from_text(text)
         except DocumentError as error:

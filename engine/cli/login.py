@@ -10,9 +10,9 @@ import httpx
 import msgspec
 import typer
 
-from engine.bus.remote import ServerRecord, verified
+from engine.bus.remote_bus import ServerRecord, verify_response
 from engine.errors import BusError
-from engine.state_names import STATE_FOLDER
+from engine.host.state_folder_names import STATE_FOLDER
 
 _LIMIT_S = 10.0
 
@@ -52,5 +52,5 @@ def new_login_url(record: ServerRecord, *, role: str) -> str:
         raise BusError(
             f"the server does not answer: {error}", where=record.url, hint="start it with `flexcell serve`"
         ) from error
-    link = msgspec.json.decode(verified(answer).content, type=_Link)
+    link = msgspec.json.decode(verify_response(answer).content, type=_Link)
     return f"{record.url}login?t={link.token}"

@@ -15,7 +15,7 @@ from engine.cli.commands import Commands
 from engine.cli.exit_code import ExitCode
 from engine.cli.stop import REASON, stop_cell
 from engine.errors import DocumentError, FlexcellError, Position
-from engine.state_names import STATE_FOLDER
+from engine.host.state_folder_names import STATE_FOLDER
 
 app = typer.Typer(
     cls=Commands,

@@ -10,17 +10,17 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self, cast
 
-from engine.cause import describe
+from engine.cause_chain import describe_cause
 from engine.cli.line_input import LineInput
-from engine.control import LEVELS, Breakpoint
-from engine.control.step import StepMode
 from engine.errors import ControlError, FlexcellError
-from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded, SteppedBack
-from engine.nearness import near_names
-from engine.plan import Plan
-from engine.recorded_run import kept_version
-from engine.run import Run
-from engine.supervision import Supervision
+from engine.event import Event, GateReached, OperatorChanged, OutcomeRequested, PauseConfirmed, RunEnded, RunSteppedBack
+from engine.recording.recorded_run import version_snapshot
+from engine.runtime.control import LEVELS, Breakpoint
+from engine.runtime.control.single_step import StepMode
+from engine.runtime.plan import Plan
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
+from engine.suggestions import did_you_mean
 
 _MODES: tuple[StepMode, ...] = ("into", "over", "out")
 
@@ -34,7 +34,7 @@ class _Command:
     do: Callable[[OperatorConsole, Sequence[str]], None]
 
 
-class _Misspoken(Exception):
+class _UsageError(Exception):
     """The words after a command are not what it needs."""
 
 
@@ -55,7 +55,7 @@ class OperatorConsole:
         *,
         say: Callable[[str], None],
         reload: Callable[[], Plan],
-        policy: Supervision,
+        policy: RunOptions,
         descriptor: int | None = None,
     ) -> None:
         self.run = run
@@ -63,7 +63,7 @@ class OperatorConsole:
         self._reload = reload
         self._policy = policy
         known = descriptor if descriptor is not None else _standard_input()
-        self._input = LineInput(known, line=self.obey, end=self._ended)
+        self._input = LineInput(known, line=self.execute_line, end=self._ended)
         self._waiting: asyncio.Task[None] | None = None
         self._ordering: asyncio.Task[None] | None = None
         self._rests = asyncio.Event()
@@ -83,18 +83,18 @@ class OperatorConsole:
             if task is not None:
                 task.cancel()
 
-    def obey(self, line: str) -> None:
+    def execute_line(self, line: str) -> None:
         """Do what a line says, or say in one line why not."""
         words = line.split()
         if not words or self.run.ended:
             return
         command = COMMANDS.get(words[0])
         if command is None:
-            self.say(f"there is no command {words[0]!r} ({near_names(words[0], COMMANDS)}; `help` lists them)")
+            self.say(f"there is no command {words[0]!r} ({did_you_mean(words[0], COMMANDS)}; `help` lists them)")
             return
         try:
             command.do(self, words[1:])
-        except _Misspoken as error:
+        except _UsageError as error:
             self.say(f"{error}; usage: {command.usage}")
         except FlexcellError as error:
             self.say(str(error))
@@ -102,7 +102,7 @@ class OperatorConsole:
     def reload(self, *, preempt: bool) -> None:
         """Let the behavior as its file is now take the place of the running one."""
         plan = self._reload()
-        report = self.run.change(plan, preempt=preempt, kept=kept_version(plan.source))
+        report = self.run.change(plan, preempt=preempt, kept=version_snapshot(plan.source))
         for change in report.changes or ("the file means the same as before",):
             self.say(f"changed: {change}")
 
@@ -152,8 +152,8 @@ class OperatorConsole:
             case PauseConfirmed():
                 moving = f", but cannot be held: {', '.join(event.cannot)}" if event.cannot else ""
                 self.say(f"paused, everything rests{moving}")
-            case SteppedBack():
-                failed = f"the step back failed: {describe(event.cause)}" if event.cause is not None else ""
+            case RunSteppedBack():
+                failed = f"the step back failed: {describe_cause(event.cause)}" if event.cause is not None else ""
                 self.say(failed or f"back before {event.path}")
             case OperatorChanged(status="lost"):
                 then = {"hold": "it will be paused", "continue": "it goes on", "stop": "it will be stopped"}
@@ -184,13 +184,13 @@ def _standard_input() -> int | None:
 
 def _one(words: Sequence[str], what: str) -> str:
     if len(words) != 1:
-        raise _Misspoken(f"one {what} is needed" if not words else f"{' '.join(words[1:])!r} is too much")
+        raise _UsageError(f"one {what} is needed" if not words else f"{' '.join(words[1:])!r} is too much")
     return words[0]
 
 
 def _none(words: Sequence[str]) -> None:
     if words:
-        raise _Misspoken(f"{' '.join(words)!r} is too much")
+        raise _UsageError(f"{' '.join(words)!r} is too much")
 
 
 def _pause(console: OperatorConsole, words: Sequence[str]) -> None:
@@ -223,7 +223,7 @@ def _unlock(console: OperatorConsole, words: Sequence[str]) -> None:
 
 def _force(console: OperatorConsole, words: Sequence[str]) -> None:
     if len(words) != 2:
-        raise _Misspoken("a path and an outcome are needed")
+        raise _UsageError("a path and an outcome are needed")
     console.run.control.force(words[0], words[1])
 
 
@@ -242,7 +242,7 @@ def _answer(console: OperatorConsole, words: Sequence[str]) -> None:
 def _autonomy(console: OperatorConsole, words: Sequence[str]) -> None:
     level = _one(words, "level")
     if level not in LEVELS:
-        raise _Misspoken(f"{level!r} is none of {', '.join(LEVELS)}")
+        raise _UsageError(f"{level!r} is none of {', '.join(LEVELS)}")
     console.run.control.set_autonomy(level)
 
 
@@ -260,7 +260,7 @@ def _clear(console: OperatorConsole, words: Sequence[str]) -> None:
     known = control.view().breakpoints
     path = _one(words, "path") if words else ""
     if path and all(each.path != path for each in known):
-        raise ControlError("there is no breakpoint", where=path, hint=near_names(path, [each.path for each in known]))
+        raise ControlError("there is no breakpoint", where=path, hint=did_you_mean(path, [each.path for each in known]))
     control.set_breakpoints([each for each in known if path and each.path != path])
 
 
@@ -279,7 +279,7 @@ def _breakpoint(words: Sequence[str]) -> Breakpoint:
         elif word == "if" and left:
             condition, left = " ".join(left), []
         else:
-            raise _Misspoken(f"{word!r} is not understood")
+            raise _UsageError(f"{word!r} is not understood")
     made = Breakpoint(path=path, when="after" if when == "after" else "before", condition=condition, hits=hits)
     _ = made.template  # compiled now, so that a wrong expression is refused here
     return made
@@ -287,7 +287,7 @@ def _breakpoint(words: Sequence[str]) -> Breakpoint:
 
 def _count(word: str) -> int:
     if not word.isdecimal() or int(word) < 1:
-        raise _Misspoken(f"{word!r} is no count")
+        raise _UsageError(f"{word!r} is no count")
     return int(word)
 
 
@@ -299,7 +299,7 @@ def _written(each: Breakpoint) -> str:
 
 def _reload(console: OperatorConsole, words: Sequence[str]) -> None:
     if words not in ([], ["preempt"]):
-        raise _Misspoken(f"{' '.join(words)!r} is not understood")
+        raise _UsageError(f"{' '.join(words)!r} is not understood")
     console.reload(preempt=bool(words))
 
 

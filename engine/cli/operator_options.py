@@ -9,9 +9,9 @@ from typing import Annotated
 
 import typer
 
-from engine.control import AutonomyLevel, LossPolicy, load_breakpoints
 from engine.document.python_name import is_python_name
-from engine.supervision import Supervision
+from engine.runtime.control import AutonomyLevel, LossPolicy, load_breakpoints
+from engine.runtime.run_options import RunOptions
 
 Autonomy = Annotated[
     AutonomyLevel | None,
@@ -43,7 +43,7 @@ class OperatorOptions:
     breakpoints: bool
     paused: bool
 
-    def supervision(self, file: Path, *, autonomy: AutonomyLevel = "full") -> Supervision:
+    def supervision(self, file: Path, *, autonomy: AutonomyLevel = "full") -> RunOptions:
         """Return how a run of the behavior in `file` is watched over, at `autonomy` where no option says it.
 
         Raises:
@@ -52,7 +52,7 @@ class OperatorOptions:
         if self.autonomy is not None and not (self.operator or self.demand):
             sys.stderr.write("flexcell: without --operator or --demand-operator every outcome passes\n")
         wanted = (self.operator or self.breakpoints) and not is_python_name(str(file))
-        return Supervision(
+        return RunOptions(
             autonomy=self.autonomy or autonomy,
             demand_operator=self.demand,
             breakpoints=load_breakpoints(file) if wanted else (),

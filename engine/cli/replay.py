@@ -11,16 +11,16 @@ import msgspec
 import typer
 
 from engine.cli.exit_code import ExitCode
+from engine.cli.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
 from engine.cli.output_file import prepare
 from engine.document import load_behavior
 from engine.errors import FlexcellError
-from engine.junit import Case, Problem, Suite, class_name, write_junit
-from engine.plan import Catalogue
-from engine.recorded_run import read_run
 from engine.recording import Recording, load_recording
+from engine.recording.recorded_run import read_run
 from engine.registry import load_states
-from engine.replay import Difference, ReplayReport, recording_of
+from engine.replay import ReplayDifference, ReplayReport, recording_from_journal
 from engine.replay import replay as replay_recording
+from engine.runtime.plan import Catalogue
 
 
 def replay(
@@ -70,7 +70,7 @@ def _replayed(
 
 
 def _load(name: str, journal: Path | None) -> Recording:
-    return load_recording(Path(name)) if journal is None else recording_of(read_run(journal, name))
+    return load_recording(Path(name)) if journal is None else recording_from_journal(read_run(journal, name))
 
 
 def _exit_code(results: list[ReplayReport | FlexcellError]) -> ExitCode:
@@ -116,7 +116,7 @@ def _row(name: str, result: ReplayReport | FlexcellError) -> dict[str, object]:
     }
 
 
-def _difference(difference: Difference | None) -> dict[str, object] | None:
+def _difference(difference: ReplayDifference | None) -> dict[str, object] | None:
     if difference is None:
         return None
     return {
@@ -131,18 +131,18 @@ def _difference(difference: Difference | None) -> dict[str, object] | None:
     }
 
 
-def _suite(name: str, result: ReplayReport | FlexcellError) -> Suite:
+def _suite(name: str, result: ReplayReport | FlexcellError) -> JunitSuite:
     if isinstance(result, FlexcellError):
-        problem = Problem(kind="error", type="unusable", message=str(result))
-        case = Case(name=name, classname="replay", time_s=0.0, problem=problem)
-        return Suite(name=name, file=name, cases=(case,))
+        problem = JunitProblem(kind="error", type="unusable", message=str(result))
+        case = JunitCase(name=name, classname="replay", time_s=0.0, problem=problem)
+        return JunitSuite(name=name, file=name, cases=(case,))
     description, found = result.recording.description, result.difference
     problem = (
-        Problem(kind="failure", type="differs", message=str(found), text=found.explained())
+        JunitProblem(kind="failure", type="differs", message=str(found), text=found.explained())
         if found is not None
         else None
     )
-    case = Case(name=Path(name).stem, classname=class_name(name), time_s=result.duration_s, problem=problem)
+    case = JunitCase(name=Path(name).stem, classname=class_name(name), time_s=result.duration_s, problem=problem)
     properties = {
         "run": description.run,
         "behavior": description.behavior,
@@ -151,4 +151,4 @@ def _suite(name: str, result: ReplayReport | FlexcellError) -> Suite:
         "clock": description.clock,
         "events": str(result.compared),
     }
-    return Suite(name=description.behavior, file=name, cases=(case,), properties=properties)
+    return JunitSuite(name=description.behavior, file=name, cases=(case,), properties=properties)

@@ -11,27 +11,27 @@ from typing import Annotated, Literal
 import typer
 
 from engine.authoring.python_file import load_python_behavior
-from engine.cell import OpenCell
-from engine.cli.execution import Ended, Order, carry_out
+from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
-from engine.cli.inputs import read_plan, read_plan_anew
+from engine.cli.inputs import read_plan, reload_plan
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.output_file import prepare, write
+from engine.cli.run_execution import ExecutionResult, RunSetup, execute_run
 from engine.cli.run_report import print_json, print_result
 from engine.document.cell import Cell, load_cell
 from engine.document.python_name import is_python_name
 from engine.errors import ControlError
+from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import Journal, NullJournal, encode_event_log
-from engine.launch import Resumption, plan_resume, require_simulation, resume_run
-from engine.plan import Catalogue
-from engine.recorded_run import RecordedRun, read_run
+from engine.project.run_factory import ResumePlan, plan_resume, require_simulation, resume_run
+from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
-from engine.resume import RERUN, NeedsAnswers
-from engine.run import Run
-from engine.skill_port import SkillPort
+from engine.runtime.history.resume import RERUN, ResumeDecisionRequired
+from engine.runtime.plan import Catalogue
+from engine.runtime.record.skill_port import SkillPort
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
 from engine.state_catalogue import StateCatalogue
-from engine.state_names import STATE_FOLDER
-from engine.supervision import Supervision
 
 
 def resume(
@@ -100,13 +100,13 @@ def resume(
     answers = _read_answers(answer or [])
     try:
         resumption = decide(answers=answers)
-    except NeedsAnswers as questions:
+    except ResumeDecisionRequired as questions:
         answers = {**answers, **_asked(questions)}
         resumption = decide(answers=answers)
     if not quiet and not json:
         _tell(resumption)
     supervision = options.supervision(file, autonomy=resumption.autonomy)
-    order = Order(
+    order = RunSetup(
         make=partial(_make, resumption, catalogue, answers, supervision),
         cell=place,
         seed=found.origin.seed,
@@ -116,12 +116,10 @@ def resume(
         virtual=(clock or found.origin.clock) == "virtual",
         quiet=quiet or json,
         supervision=supervision,
-        reload=partial(read_plan_anew, file, catalogue, cell=place, substitutes=found.substitutes)
-        if operator
-        else None,
+        reload=partial(reload_plan, file, catalogue, cell=place, substitutes=found.substitutes) if operator else None,
     )
 
-    def report(ended: Ended) -> None:
+    def report(ended: ExecutionResult) -> None:
         encoded = encode_event_log(ended.log)
         if json:
             print_json(ended.result, encoded, len(ended.log))
@@ -130,14 +128,14 @@ def resume(
         if events is not None:
             write(events, encoded)
 
-    raise typer.Exit(carry_out(order, report=report))
+    raise typer.Exit(execute_run(order, report=report))
 
 
 async def _make(
-    resumption: Resumption,
+    resumption: ResumePlan,
     catalogue: Catalogue,
     answers: Mapping[str, str],
-    supervision: Supervision,
+    supervision: RunOptions,
     cell: OpenCell,
     journal: Journal | NullJournal,
     skills: SkillPort | None,
@@ -188,7 +186,7 @@ def _read_answers(given: Sequence[str]) -> dict[str, str]:
     return answers
 
 
-def _asked(questions: NeedsAnswers) -> dict[str, str]:
+def _asked(questions: ResumeDecisionRequired) -> dict[str, str]:
     """Return what the person at the terminal says; without a terminal print the questions and end."""
     if not (sys.stdin is not None and sys.stdin.isatty() and sys.stderr.isatty()):
         for question in questions.questions:
@@ -205,7 +203,7 @@ def _asked(questions: NeedsAnswers) -> dict[str, str]:
     return answers
 
 
-def _tell(resumption: Resumption) -> None:
+def _tell(resumption: ResumePlan) -> None:
     found, checkpoint = resumption.found, resumption.checkpoint
     for change in resumption.changes:
         sys.stderr.write(f"changed: {change}\n")

@@ -11,36 +11,36 @@ from typing import Annotated, Literal
 
 import typer
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.check import Finding, check_given, check_stored
-from engine.checkpoint import Checkpoint
-from engine.cli.execution import Ended, MakeRun, Order, carry_out
 from engine.cli.exit_code import ExitCode
-from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, read_plan_anew
+from engine.cli.inputs import behavior_source, read_behavior, read_cell, read_inputs, read_parameters, reload_plan
 from engine.cli.operator_options import Autonomy, Breakpoints, Demand, Loss, Operator, OperatorOptions, Paused
 from engine.cli.output_file import prepare, write
+from engine.cli.run_execution import ExecutionResult, MakeRun, RunSetup, execute_run
 from engine.cli.run_junit import write_run_junit
 from engine.cli.run_report import print_json, print_result
-from engine.coverage import Coverage
+from engine.coverage import CoverageCollector
 from engine.document import Behavior
 from engine.document.cell import Cell, load_cell
 from engine.document.faults import load_faults
 from engine.document.substitutes import load_substitutes
 from engine.errors import DocumentError
+from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import Journal, NullJournal, encode_event_log
-from engine.launch import moment_of, new_origin, new_run, require_simulation
-from engine.plan import Catalogue, Plan, new_plan
-from engine.recorded_run import RecordedRun, read_run
-from engine.recording import DEFAULT_RATE_HZ, RecordingOrder, collect_documents
+from engine.project.run_factory import checkpoint_at, new_origin, new_run, require_simulation
+from engine.recording import DEFAULT_RATE_HZ, RecordingOptions, collect_documents
+from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
-from engine.run import Run
-from engine.skill_port import SkillPort
-from engine.state_names import STATE_FOLDER
-from engine.supervision import Supervision
+from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.plan import Catalogue, Plan, new_plan
+from engine.runtime.record.skill_port import SkillPort
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Start:
+class _RunPosition:
     """The moment of another run to begin at."""
 
     found: RecordedRun
@@ -124,7 +124,7 @@ def run(
     catalogue = load_states(file)
     recorded = _read_recorded(from_, at, journal)
     place = _named_cell(cell, recorded)
-    behavior = whole = read_sound_behavior(file, catalogue, cell=place, given=parameter or ())
+    behavior = whole = read_valid_behavior(file, catalogue, cell=place, given=parameter or ())
     if substitutes is not None:
         behavior = behavior.with_substitutes(load_substitutes(substitutes))
     plan = new_plan(behavior, catalogue)
@@ -148,10 +148,10 @@ def run(
         if opened is not None:
             refuse_errors(check_given(behavior, catalogue, opened, parameters))
     inputs = read_inputs(input_ or [])
-    covered = Coverage(whole, catalogue) if coverage is not None else None
+    covered = CoverageCollector(whole, catalogue) if coverage is not None else None
     if covered is not None and coverage is not None:
         covered.require_same(coverage)
-    order = Order(
+    order = RunSetup(
         make=_maker(
             behavior,
             plan,
@@ -172,7 +172,7 @@ def run(
         quiet=quiet or json,
         supervision=supervision,
         inputs=inputs,
-        recording=RecordingOrder(
+        recording=RecordingOptions(
             path=record,
             documents=collect_documents(behavior, opened),
             rate_hz=record_rate,
@@ -182,12 +182,12 @@ def run(
         else None,
         faults=load_faults(faults) if faults is not None else None,
         watchers=(covered.follow(),) if covered is not None else (),
-        reload=partial(read_plan_anew, file, catalogue, cell=opened, substitutes=behavior.substitutes)
+        reload=partial(reload_plan, file, catalogue, cell=opened, substitutes=behavior.substitutes)
         if operator
         else None,
     )
 
-    def report(ended: Ended) -> None:
+    def report(ended: ExecutionResult) -> None:
         encoded = encode_event_log(ended.log)
         if json:
             print_json(ended.result, encoded, len(ended.log))
@@ -200,7 +200,7 @@ def run(
         if junit is not None:
             write_run_junit(junit, file, plan, ended.result, seed=seed, clock=clock)
 
-    raise typer.Exit(carry_out(order, report=report))
+    raise typer.Exit(execute_run(order, report=report))
 
 
 def _maker(
@@ -211,8 +211,8 @@ def _maker(
     parameters: dict[str, object],
     inputs: dict[str, object],
     seed: int | None,
-    supervision: Supervision,
-    start: _Start | None,
+    supervision: RunOptions,
+    start: _RunPosition | None,
     catalogue: Catalogue,
 ) -> MakeRun:
     async def make(cell: OpenCell, journal: Journal | NullJournal, skills: SkillPort | None) -> Run:
@@ -253,11 +253,11 @@ def _read_recorded(text: str | None, at: str | None, journal: str) -> tuple[Reco
     return read_run(journal, run_id), int(number)
 
 
-def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> _Start | None:
+def _read_start(recorded: tuple[RecordedRun, int] | None, at: str | None, plan: Plan) -> _RunPosition | None:
     if recorded is None:
         return None
     found, seq = recorded
-    start = _Start(found=found, seq=seq, checkpoint=moment_of(found, plan, seq=seq, path=at))
+    start = _RunPosition(found=found, seq=seq, checkpoint=checkpoint_at(found, plan, seq=seq, path=at))
     if found.world is not None and not start.restores:
         known = found.world.seq
         sys.stderr.write(f"flexcell: the cell starts as it is: its world is known at event {known} only\n")
@@ -273,7 +273,7 @@ def _named_cell(file: Path | None, recorded: tuple[RecordedRun, int] | None) -> 
     return load_cell(file) if file is not None else None
 
 
-def read_sound_behavior(
+def read_valid_behavior(
     file: Path, catalogue: Catalogue, *, cell: Cell | None = None, given: Sequence[str] = ()
 ) -> Behavior:
     """Load a behavior; one that has errors in the cell where it is to run ends the command with all of them.

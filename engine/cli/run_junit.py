@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.cause import describe, link_text, outwards
-from engine.junit import Case, Problem, Suite, class_name, write_junit
-from engine.plan import Plan
-from engine.run import RunResult
+from engine.cause_chain import describe_cause, link_text, links_from_root
+from engine.cli.junit import JunitCase, JunitProblem, JunitSuite, class_name, write_junit
+from engine.runtime.plan import Plan
+from engine.runtime.run import RunResult
 
 
 def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, seed: int | None, clock: str) -> None:
@@ -16,7 +16,7 @@ def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, se
     Raises:
         FlexcellError: it cannot be written.
     """
-    case = Case(name=plan.name, classname=class_name(file), time_s=result.duration_s, problem=_problem(result))
+    case = JunitCase(name=plan.name, classname=class_name(file), time_s=result.duration_s, problem=_problem(result))
     properties = {
         "run": result.run,
         "behavior": plan.name,
@@ -26,17 +26,17 @@ def write_run_junit(path: Path, file: Path, plan: Plan, result: RunResult, *, se
         "status": result.status,
         "outcome": result.outcome or "",
     }
-    write_junit(path, [Suite(name=plan.name, file=str(file), cases=(case,), properties=properties)])
+    write_junit(path, [JunitSuite(name=plan.name, file=str(file), cases=(case,), properties=properties)])
 
 
-def _problem(result: RunResult) -> Problem | None:
+def _problem(result: RunResult) -> JunitProblem | None:
     if result.success:
         return None
-    why = describe(result.cause) if result.cause is not None else ""
+    why = describe_cause(result.cause) if result.cause is not None else ""
     said = result.outcome or result.status
-    return Problem(
+    return JunitProblem(
         kind="failure" if result.status == "finished" else "error",
         type=said,
         message=why or said,
-        text="\nso ".join(map(link_text, outwards(result.cause))) or said,
+        text="\nso ".join(map(link_text, links_from_root(result.cause))) or said,
     )

@@ -8,9 +8,9 @@ from hashlib import sha256
 import msgspec
 from rich.console import Console
 
-from engine.cause import link_text, outwards
+from engine.cause_chain import link_text, links_from_root
 from engine.event import Cause
-from engine.run import RunResult
+from engine.runtime.run import RunResult
 
 
 def print_json(result: RunResult, encoded: bytes, count: int) -> None:
@@ -35,7 +35,7 @@ def cause_links(cause: Cause | None) -> list[dict[str, object]]:
     """Return a cause chain as the commands give it to machines: what was measured first, the run's end last."""
     return [
         {"message": link.message, "where": link.where, "kind": link.kind, "nodes": link.nodes}
-        for link in outwards(cause)
+        for link in links_from_root(cause)
     ]
 
 
@@ -53,7 +53,7 @@ def print_result(result: RunResult) -> None:
 
 def print_cause(cause: Cause | None, console: Console) -> None:
     """Print a cause chain from what was measured outwards, a line for each link and each node that it came through."""
-    for depth, link in enumerate(outwards(cause)):
+    for depth, link in enumerate(links_from_root(cause)):
         begin = f"{'  ' * depth}so " if depth else ""
         console.print(f"{begin}{link_text(link)}", markup=False, highlight=False, soft_wrap=True)
         for node in link.nodes:

@@ -17,21 +17,21 @@ from engine.cli.run_report import cause_links, print_cause
 from engine.errors import DocumentError
 from engine.event import (
     Cause,
-    Commanded,
     Event,
     GateReached,
     OperatorChanged,
+    OperatorCommanded,
     OutcomeRequested,
     RunEnded,
     StopRequested,
 )
-from engine.history import History
+from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import RunRecord, encode_event, list_runs
-from engine.plan import new_plan
-from engine.recorded_run import RecordedRun, read_run
+from engine.recording.recorded_run import RecordedRun, read_run
 from engine.registry import load_states
-from engine.resume import read_history
-from engine.state_names import STATE_FOLDER
+from engine.runtime.history.resume import read_history
+from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.plan import new_plan
 
 _LAST_EVENTS = 10
 _PIPE_WIDTH = 200
@@ -42,7 +42,7 @@ JournalPlace = Annotated[str, typer.Option("--journal", help="Directory of the j
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 
 
-class RunLine(msgspec.Struct, frozen=True, kw_only=True):
+class RunListEntry(msgspec.Struct, frozen=True, kw_only=True):
     """One run in the list; `status` is running, interrupted, finished, stopped, errored or damaged.
 
     `verified` is false where an older version, which made no checksums, wrote some of it.
@@ -58,7 +58,7 @@ class RunLine(msgspec.Struct, frozen=True, kw_only=True):
     damage: str
 
 
-class RunSummary(RunLine, frozen=True, kw_only=True):
+class RunSummary(RunListEntry, frozen=True, kw_only=True):
     """Where one run stood at its last durable event, and what was done to it."""
 
     outcome: str | None
@@ -118,8 +118,8 @@ def show(
         _print(summary, _end(found))
 
 
-def _line(record: RunRecord) -> RunLine:
-    return RunLine(
+def _line(record: RunRecord) -> RunListEntry:
+    return RunListEntry(
         id=record.id,
         behavior=record.behavior,
         status="damaged" if record.damage else "interrupted" if record.interrupted else record.status,
@@ -145,7 +145,9 @@ def _summary(found: RecordedRun) -> RunSummary:
         if history is not None
         else {},
         parameters=history.parameters if history is not None else found.origin.parameters,
-        operator=[event for event in found.effective if isinstance(event, Commanded | OperatorChanged | StopRequested)],
+        operator=[
+            event for event in found.effective if isinstance(event, OperatorCommanded | OperatorChanged | StopRequested)
+        ],
         last=list(found.effective[-_LAST_EVENTS:]),
         world_at=found.world.seq if found.world is not None else None,
     )
@@ -156,7 +158,7 @@ def _end(found: RecordedRun) -> RunEnded | None:
     return last if isinstance(last, RunEnded) else None
 
 
-def _history(found: RecordedRun) -> History | None:
+def _history(found: RecordedRun) -> RunStateReducer | None:
     """Return where it stood; the behavior it executed is in the journal itself."""
     behavior = found.behavior()
     if behavior is None:

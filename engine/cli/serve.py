@@ -17,19 +17,19 @@ from typing import Annotated, Any
 
 import typer
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
+from engine.host.thread_switch_interval import short_switch_interval
 from engine.journal import Journal
-from engine.prompt_turns import prompt_turns
-from engine.registry import SERVERS, load_maker, load_states
-from engine.session import Session
-from engine.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
+from engine.project.server_state_folder import ServerStateFolder, lock_server_state_folder
+from engine.project.session import Session
+from engine.project.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
+from engine.registry import SERVERS, load_factory, load_states
+from engine.runtime.watchdog import LoopWatchdog
 from engine.state_catalogue import Catalogue
-from engine.state_folder import StateFolder, locked_state_folder
 from engine.stop import StopRelay
-from engine.teaching import HelpingHand, teachable
-from engine.watchdog import Watchdog
+from engine.teaching import HelpingHand, guidable_robots
 
 ServeDashboard = Callable[..., Coroutine[Any, Any, None]]
 
@@ -72,7 +72,7 @@ def serve(
     loaded = load_cell(cell) if cell is not None else None
     catalogue = load_states(project)
     sys.stderr.writelines(f"flexcell: {failure}\n" for failure in catalogue.broken.values())
-    with locked_state_folder(state) as folder:
+    with lock_server_state_folder(state) as folder:
         recordings = (
             SessionRecordings(state / RECORDINGS, kept=recordings_kept, size_mb=recordings_size) if record else None
         )
@@ -103,14 +103,14 @@ async def _serve(
     stop_port: int,
     view_port: int,
     project: Path,
-    folder: StateFolder,
+    folder: ServerStateFolder,
     seed: int | None,
     recordings: SessionRecordings | None,
     open_page: bool,
 ) -> None:
-    new_dashboard: ServeDashboard = load_maker(SERVERS, "dashboard")
+    new_dashboard: ServeDashboard = load_factory(SERVERS, "dashboard")
     # Plans load it with the first tree, which would hold the loop in the middle of another run.
-    import_module("engine.tree")
+    import_module("engine.runtime.tree")
     state = folder.path
 
     def ready(dashboard: Any) -> None:
@@ -119,7 +119,7 @@ async def _serve(
         gc.collect()
         gc.freeze()
         # What is late before is late for nobody.
-        watched.enter_context(Watchdog())
+        watched.enter_context(LoopWatchdog())
         sys.stdout.write(f"Dashboard: {dashboard.new_login_url()}\n")
         sys.stdout.write("It logs in once; `flexcell login` prints another. Stop with Ctrl-C.\n")
         sys.stdout.flush()
@@ -128,12 +128,12 @@ async def _serve(
 
     if cell is not None:
         sys.stderr.write(f"Opening {cell.name} ({cell.file}); the first time, what it needs is compiled.\n")
-    with Journal.open(state) as journal, prompt_turns(), ExitStack() as watched:
+    with Journal.open(state) as journal, short_switch_interval(), ExitStack() as watched:
         async with (
             StopRelay(host=host, port=stop_port) as relay,
             OpenCell(cell, seed=seed, relay=relay) as opened,
             HelpingHand(
-                opened.bus, robots=teachable(opened.bus), folder=state / "captures", file=state / "triggers.yaml"
+                opened.bus, robots=guidable_robots(opened.bus), folder=state / "captures", file=state / "triggers.yaml"
             ),
             Session(opened, project=project, catalogue=catalogue, journal=journal, recordings=recordings) as session,
         ):

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from engine.state_names import SERVER_FILE
+from engine.host.state_folder_names import SERVER_FILE
 
 REASON = "flexcell stop"
 _ANSWER_S = 2.0

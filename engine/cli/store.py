@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.cli.inputs import read_json
-from engine.cli.store_access import Cell, Place, Who, Why, at_store, chosen_store, named, opened_store
-from engine.cli.store_exchange import exported, imported
+from engine.cli.store_access import Cell, Place, Who, Why, author_name, chosen_store, opened_store, with_store
+from engine.cli.store_formats import exported, imported
 from engine.document.yaml_writer import write_yaml
 from engine.errors import StoreError
 from engine.store import EntryChange, Store, migrate
@@ -46,7 +46,7 @@ def list_entries(
     json: AsJson = False,
 ) -> None:
     """List the entries with their revisions, tags, and who changed them last."""
-    keys = at_store(
+    keys = with_store(
         cell,
         store,
         lambda opened: opened.list(kind=kind, prefix=prefix, text=search, tags=tag or (), limit=limit),
@@ -63,14 +63,14 @@ def list_entries(
 @app.command("get")
 def get(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
     """Print one entry as JSON."""
-    record = at_store(cell, store, lambda opened: opened.get(kind, name))
+    record = with_store(cell, store, lambda opened: opened.get(kind, name))
     sys.stdout.write(msgspec.json.encode(record).decode() + "\n")
 
 
 @app.command("show")
 def show(kind: Kind, name: Name, cell: Cell = None, store: Place = None) -> None:
     """Print one entry to be read: its value, tags, and its last change."""
-    changes = at_store(cell, store, lambda opened: opened.history(kind, name))
+    changes = with_store(cell, store, lambda opened: opened.history(kind, name))
     if not changes or changes[-1].value is None:
         raise StoreError("there is no such entry", where=f"{kind} {name}", hint="flexcell store list")
     last = changes[-1]
@@ -97,11 +97,11 @@ def set_entry(
     if not isinstance(fields, dict):
         raise StoreError("the value is not a JSON object", where=f"{kind} {name}", hint='such as {"joints": [0, 1]}')
     checked = msgspec.convert(fields, dict[str, object])
-    record = at_store(
+    record = with_store(
         cell,
         store,
         lambda opened: opened.put(
-            kind, name, checked, expected_revision=expected_revision, tags=tag, by=named(by), reason=reason
+            kind, name, checked, expected_revision=expected_revision, tags=tag, by=author_name(by), reason=reason
         ),
     )
     sys.stdout.write(f"{record.kind} {record.name} revision {record.revision}\n")
@@ -118,17 +118,19 @@ def delete(
     store: Place = None,
 ) -> None:
     """Remove one entry; its history stays, and `undo` brings it back."""
-    at_store(
+    with_store(
         cell,
         store,
-        lambda opened: opened.delete(kind, name, expected_revision=expected_revision, by=named(by), reason=reason),
+        lambda opened: opened.delete(
+            kind, name, expected_revision=expected_revision, by=author_name(by), reason=reason
+        ),
     )
 
 
 @app.command("history")
 def history(kind: Kind, name: Name, cell: Cell = None, store: Place = None, json: AsJson = False) -> None:
     """Print every change of an entry: who, when and why; with --json the values too."""
-    changes = at_store(cell, store, lambda opened: opened.history(kind, name))
+    changes = with_store(cell, store, lambda opened: opened.history(kind, name))
     if json:
         sys.stdout.write(msgspec.json.encode(changes).decode() + "\n")
         return
@@ -147,10 +149,10 @@ def undo(
     store: Place = None,
 ) -> None:
     """Bring back what an entry was before its last change; again, one step further into the past."""
-    change = at_store(
+    change = with_store(
         cell,
         store,
-        lambda opened: opened.undo(kind, name, expected_revision=expected_revision, by=named(by), reason=reason),
+        lambda opened: opened.undo(kind, name, expected_revision=expected_revision, by=author_name(by), reason=reason),
     )
     sys.stdout.write(f"{change.kind} {change.name} {_change_text(change)}\n")
 
@@ -158,7 +160,7 @@ def undo(
 @app.command("export")
 def export(format_: Format = "entries", cell: Cell = None, store: Place = None) -> None:
     """Print all entries: as an entries document, or one JSON document a line for `mongoimport`."""
-    records = at_store(cell, store, lambda opened: opened.export())
+    records = with_store(cell, store, lambda opened: opened.export())
     sys.stdout.write(exported(records, format_))
 
 
@@ -176,10 +178,12 @@ def import_entries(
 ) -> None:
     """Write the entries of a document that are missing in the store."""
     entries = imported(source, format_, collection=collection, say=_say)
-    written = at_store(
+    written = with_store(
         cell,
         store,
-        lambda opened: opened.seed(entries, overwrite=overwrite, by=named(by), reason=f"import of {Path(source).name}"),
+        lambda opened: opened.seed(
+            entries, overwrite=overwrite, by=author_name(by), reason=f"import of {Path(source).name}"
+        ),
     )
     sys.stdout.write(f"{len(written)} of {len(entries)} entries written\n")
 

@@ -10,12 +10,12 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from engine.cell_store import open_cell_store
+from engine.cell.cell_store import open_cell_store
 from engine.document.cell import load_cell
-from engine.document.entries import load_entries
+from engine.document.entries_document import load_entries
 from engine.errors import StoreError
 from engine.store import Store, open_store
-from engine.store.mongo_address import is_mongo_address
+from engine.store.mongo.mongo_address import is_mongo_address
 
 T = TypeVar("T")
 
@@ -25,7 +25,7 @@ Place = Annotated[
 ]
 
 
-def named(who: str | None) -> str:
+def author_name(who: str | None) -> str:
     """Return who does it: the one who is named, or else who runs the command as far as its computer knows."""
     if who is not None:
         return who
@@ -39,7 +39,7 @@ Who = Annotated[str | None, typer.Option(help="Who does it, for the history; you
 Why = Annotated[str, typer.Option(help="Why, for the history.")]
 
 
-def at_store(cell: Path | None, address: str | None, work: Callable[[Store], Awaitable[T]]) -> T:
+def with_store(cell: Path | None, address: str | None, work: Callable[[Store], Awaitable[T]]) -> T:
     """Open the chosen store, do `work` with it, and close it."""
 
     async def main() -> T:

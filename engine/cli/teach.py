@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from engine.bus.remote import RemoteBus
+from engine.bus.remote_bus import RemoteJsonBus
 from engine.cli.exit_code import ExitCode
 from engine.cli.teach_propose import propose
 from engine.errors import BusError
@@ -32,7 +32,7 @@ from engine.skills.teaching import (
     TeachStatus,
 )
 from engine.teaching.button_device import button_events
-from engine.teaching.document import load_triggers
+from engine.teaching.teach_document import load_triggers
 
 app = typer.Typer(
     help="Teach poses and motions: triggers, captures, saving them as named entries.", no_args_is_help=True
@@ -124,7 +124,7 @@ def buttons(
     """
 
     async def main() -> None:
-        async with RemoteBus.connect(server) as bus:
+        async with RemoteJsonBus.connect(server) as bus:
             async for event in button_events(device):
                 name = f"{topic}/{event.button}"
                 try:
@@ -143,13 +143,13 @@ def _call(server: Path, request: Service[R], kind: type[R]) -> R:
     return asyncio.run(_with_bus(server, lambda bus: _asked(bus, request, kind)))
 
 
-async def _asked(bus: RemoteBus, request: Service[R], kind: type[R]) -> R:
+async def _asked(bus: RemoteJsonBus, request: Service[R], kind: type[R]) -> R:
     answer = await bus.call(f"{_NAMESPACE}/{request.skill_name()}", msgspec.to_builtins(request))
     return msgspec.json.decode(answer, type=kind)
 
 
-async def _with_bus(server: Path, ask: Callable[[RemoteBus], Awaitable[R]]) -> R:
-    async with RemoteBus.connect(server) as bus:
+async def _with_bus(server: Path, ask: Callable[[RemoteJsonBus], Awaitable[R]]) -> R:
+    async with RemoteJsonBus.connect(server) as bus:
         return await ask(bus)
 
 

@@ -12,15 +12,15 @@ from typing import Annotated, cast, get_args
 import msgspec
 import typer
 
-from engine.bus.remote import RemoteBus
+from engine.bus.remote_bus import RemoteJsonBus
 from engine.cli.store_access import chosen_store
 from engine.document.cell import load_cell
 from engine.errors import SkillFailed, StoreError
-from engine.nearness import near_names
+from engine.host.state_folder_names import STATE_FOLDER
 from engine.skills.entries import EntryList, ListEntries
 from engine.skills.proposing import Proposal, ProposalOptions, ProposeBehavior, Role, StepKind, TaughtStep, ToolName
-from engine.state_names import STATE_FOLDER
-from engine.teaching.proposing import propose_offline
+from engine.suggestions import did_you_mean
+from engine.teaching.proposal_service import propose_offline
 
 _KINDS: tuple[str, ...] = get_args(StepKind)
 _ROLES: tuple[str, ...] = get_args(Role)
@@ -80,7 +80,7 @@ async def _offline(texts: Sequence[str], part: str | None, options: ProposalOpti
 
 
 async def _asked(texts: Sequence[str], part: str | None, options: ProposalOptions, server: Path) -> Proposal:
-    async with RemoteBus.connect(server) as bus:
+    async with RemoteJsonBus.connect(server) as bus:
         listed = msgspec.json.decode(await bus.call(f"store/{ListEntries.skill_name()}", {}), type=EntryList)
         steps = read_steps(texts, [(kind, name) for kind, name, _ in listed.entries], part=part)
         request = ProposeBehavior(steps=steps, options=options)
@@ -104,14 +104,14 @@ def read_steps(texts: Sequence[str], keys: Iterable[tuple[str, str]], *, part: s
 def _step(text: str, kinds: dict[str, list[str]], part: str | None) -> TaughtStep:
     named, _, role = text.partition("=")
     if role and role not in _ROLES:
-        raise SkillFailed(f"there is no role {role}", where=text, hint=near_names(role, _ROLES))
+        raise SkillFailed(f"there is no role {role}", where=text, hint=did_you_mean(role, _ROLES))
     chosen = cast("Role | None", role or None)
     if named.startswith("+"):
         return TaughtStep(kind="action", name=named[1:], role=chosen, part=part)
     kind, _, name = named.rpartition(":")
     found = [kind] if kind in kinds.get(name, ()) else [] if kind else kinds.get(name, [])
     if not found:
-        raise SkillFailed(f"there is no entry {named} that a motion can be made of", hint=near_names(name, kinds))
+        raise SkillFailed(f"there is no entry {named} that a motion can be made of", hint=did_you_mean(name, kinds))
     if len(found) > 1:
         hint = " or ".join(f"{each}:{name}" for each in found)
         raise SkillFailed(f"several kinds of entries are called {name}", where=text, hint=hint)

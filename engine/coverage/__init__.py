@@ -5,8 +5,16 @@
 writes files as text, HTML, Cobertura XML, lcov or JSON.
 """
 
-from engine.coverage.coverage import Coverage
-from engine.coverage.item import Item, ItemKind
-from engine.coverage.record import BehaviorCoverage, merge, read_coverage, write_coverage
+from engine.coverage.coverage_collector import CoverageCollector
+from engine.coverage.coverage_file import BehaviorCoverage, merge, read_coverage, write_coverage
+from engine.coverage.coverage_item import CoverageItem, ItemKind
 
-__all__ = ["BehaviorCoverage", "Coverage", "Item", "ItemKind", "merge", "read_coverage", "write_coverage"]
+__all__ = [
+    "BehaviorCoverage",
+    "CoverageCollector",
+    "CoverageItem",
+    "ItemKind",
+    "merge",
+    "read_coverage",
+    "write_coverage",
+]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from engine.coverage.lines import FileCoverage, Line, by_file
-from engine.coverage.record import BehaviorCoverage, percent
+from engine.coverage.coverage_file import BehaviorCoverage, percent
+from engine.coverage.line_coverage import CoverageLine, FileCoverage, by_file
 
 _DOCTYPE = '<!DOCTYPE coverage SYSTEM "http://cobertura.sourceforge.net/xml/coverage-04.dtd">'
 
@@ -15,7 +15,7 @@ def cobertura_report(coverages: tuple[BehaviorCoverage, ...], *, version: str, t
     """Return the report; `version` is that of the program, `time_s` the moment it is made, in Unix time."""
     files = by_file(coverages)
     covered, valid = sum(file.lines_covered for file in files), sum(len(file.lines) for file in files)
-    taken, ways = sum(file.ways_taken for file in files), sum(file.ways for file in files)
+    taken, ways = sum(file.branches_taken for file in files), sum(file.branches for file in files)
     root = Element(
         "coverage",
         {
@@ -45,7 +45,7 @@ def _package(packages: Element, folder: str, files: list[FileCoverage]) -> None:
         {
             "name": folder.replace("/", "."),
             "line-rate": _rate(sum(f.lines_covered for f in files), sum(len(f.lines) for f in files)),
-            "branch-rate": _rate(sum(f.ways_taken for f in files), sum(f.ways for f in files)),
+            "branch-rate": _rate(sum(f.branches_taken for f in files), sum(f.branches for f in files)),
             "complexity": "0",
         },
     )
@@ -58,7 +58,7 @@ def _package(packages: Element, folder: str, files: list[FileCoverage]) -> None:
                 "name": Path(file.file).name,
                 "filename": file.file,
                 "line-rate": _rate(file.lines_covered, len(file.lines)),
-                "branch-rate": _rate(file.ways_taken, file.ways),
+                "branch-rate": _rate(file.branches_taken, file.branches),
                 "complexity": "0",
             },
         )
@@ -68,15 +68,15 @@ def _package(packages: Element, folder: str, files: list[FileCoverage]) -> None:
             _line(lines, line)
 
 
-def _line(lines: Element, line: Line) -> None:
+def _line(lines: Element, line: CoverageLine) -> None:
     attributes = {"number": str(line.number), "hits": str(line.hits), "branch": "false"}
-    if line.ways:
-        share = f"{percent(line.taken, len(line.ways)):.0f}%"
-        attributes |= {"branch": "true", "condition-coverage": f"{share} ({line.taken}/{len(line.ways)})"}
+    if line.branches:
+        share = f"{percent(line.taken, len(line.branches)):.0f}%"
+        attributes |= {"branch": "true", "condition-coverage": f"{share} ({line.taken}/{len(line.branches)})"}
     element = SubElement(lines, "line", attributes)
-    if line.ways:
+    if line.branches:
         conditions = SubElement(element, "conditions")
-        for number, way in enumerate(line.ways):
+        for number, way in enumerate(line.branches):
             coverage = "100%" if way.item.count else "0%"
             SubElement(conditions, "condition", {"number": str(number), "type": "jump", "coverage": coverage})
 

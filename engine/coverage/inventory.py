@@ -6,31 +6,31 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from engine.coverage.item import Item, ItemKind
+from engine.coverage.coverage_item import CoverageItem, ItemKind
 from engine.document.behavior import Behavior
-from engine.document.condition import Condition
-from engine.document.node import TREE_KINDS, TREE_OUTCOMES, WRAPPERS, Node
+from engine.document.concurrency_condition import ConcurrencyCondition
+from engine.document.node_spec import TREE_KINDS, TREE_OUTCOMES, WRAPPERS, NodeSpec
 from engine.errors import Position
-from engine.plan import Catalogue, Plan, new_plan
+from engine.runtime.plan import Catalogue, Plan, new_plan
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rule:
+class ConditionItem:
     """One condition of a concurrency container, or its `otherwise`, under the name of its item."""
 
     name: str
-    condition: Condition
+    condition: ConcurrencyCondition
 
 
 @dataclass(frozen=True, kw_only=True)
-class Inventory:
+class CoverageInventory:
     """What can be covered in a behavior and in those it refers to."""
 
     behavior: Behavior
-    items: tuple[Item, ...]
+    items: tuple[CoverageItem, ...]
     roots: frozenset[str]
     """The paths of the roots of behaviors."""
-    rules: Mapping[str, tuple[Rule, ...]]
+    rules: Mapping[str, tuple[ConditionItem, ...]]
     """The conditions of each concurrency container, by path."""
     succeeding: Mapping[str, frozenset[str]]
     """The outcomes that mean SUCCESS, by path of each leaf of a tree."""
@@ -48,7 +48,7 @@ class Inventory:
         return tuple(found.values())
 
 
-def take_inventory(behavior: Behavior, catalogue: Catalogue) -> Inventory:
+def take_inventory(behavior: Behavior, catalogue: Catalogue) -> CoverageInventory:
     """List what runs of a behavior can do, in document order.
 
     Raises:
@@ -57,7 +57,7 @@ def take_inventory(behavior: Behavior, catalogue: Catalogue) -> Inventory:
     plan = new_plan(behavior, catalogue)
     listing = _Listing(plan)
     listing.add(behavior, "root")
-    return Inventory(
+    return CoverageInventory(
         behavior=behavior,
         items=tuple(listing.items),
         roots=frozenset(listing.roots),
@@ -69,9 +69,9 @@ def take_inventory(behavior: Behavior, catalogue: Catalogue) -> Inventory:
 class _Listing:
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
-        self.items: list[Item] = []
+        self.items: list[CoverageItem] = []
         self.roots: list[str] = []
-        self.rules: dict[str, tuple[Rule, ...]] = {}
+        self.rules: dict[str, tuple[ConditionItem, ...]] = {}
         self.succeeding: dict[str, frozenset[str]] = {}
 
     def add(self, behavior: Behavior, base: str) -> None:
@@ -99,7 +99,7 @@ class _Listing:
 
     def _add(self, kind: ItemKind, path: str, place: Position, name: str = "", target: str = "") -> None:
         self.items.append(
-            Item(
+            CoverageItem(
                 kind=kind,
                 path=path,
                 name=name,
@@ -118,14 +118,14 @@ class _Listing:
         for outcome in self._plan.outcomes_of(path) or ():
             self._add("outcome", path, behavior.position(inside), outcome)
 
-    def _add_transitions(self, behavior: Behavior, inside: str, path: str, node: Node) -> None:
+    def _add_transitions(self, behavior: Behavior, inside: str, path: str, node: NodeSpec) -> None:
         for outcome, target in node.transitions.items():
             self._add("transition", path, behavior.key_position(inside, "transitions", outcome), outcome, target)
         for outcome in self._plan.outcomes_of(path) or ():
             if outcome not in node.transitions:
                 self._add("outcome", path, behavior.position(inside), outcome)
 
-    def _add_statuses(self, behavior: Behavior, inside: str, path: str, node: Node) -> None:
+    def _add_statuses(self, behavior: Behavior, inside: str, path: str, node: NodeSpec) -> None:
         planned = self._plan.nodes.get(path)
         statuses: Iterable[str] = _statuses_of_part(node)
         if planned is not None and not _is_part(node):
@@ -136,23 +136,23 @@ class _Listing:
             if status in statuses:
                 self._add("status", path, behavior.position(inside), status)
 
-    def _add_conditions(self, behavior: Behavior, inside: str, path: str, node: Node) -> None:
+    def _add_conditions(self, behavior: Behavior, inside: str, path: str, node: NodeSpec) -> None:
         container = node.concurrency
         if container is None:
             return
-        rules: list[Rule] = []
+        rules: list[ConditionItem] = []
         for number, rule in enumerate(container.rules, start=1):
-            rules.append(Rule(name=f"{number}: {_text(rule)}", condition=rule))
+            rules.append(ConditionItem(name=f"{number}: {_text(rule)}", condition=rule))
             where = behavior.position(inside, "concurrency", "conditions", number - 1)
             self._add("condition", path, where, rules[-1].name, rule.consequence)
         if container.otherwise is not None:
-            always = Condition(outcome=container.otherwise, when={})
-            rules.append(Rule(name="otherwise", condition=always))
+            always = ConcurrencyCondition(outcome=container.otherwise, when={})
+            rules.append(ConditionItem(name="otherwise", condition=always))
             where = behavior.key_position(inside, "concurrency", "otherwise")
             self._add("condition", path, where, "otherwise", container.otherwise)
         self.rules[path] = tuple(rules)
 
-    def _add_diversions(self, behavior: Behavior, inside: str, path: str, node: Node) -> None:
+    def _add_diversions(self, behavior: Behavior, inside: str, path: str, node: NodeSpec) -> None:
         if node.guard is not None and node.guard.to is not None:
             self._add("guard", path, behavior.key_position(inside, "guard"), target=node.guard.to)
         if node.timeout is not None and node.timeout.to is not None:
@@ -161,12 +161,12 @@ class _Listing:
             self._add("on_error", path, behavior.key_position(inside, "on_error"), target=node.on_error)
 
 
-def _is_part(node: Node) -> bool:
+def _is_part(node: NodeSpec) -> bool:
     """Whether a node of a tree is a composite, decorator or foreign behaviour, and not a leaf of ours."""
     return node.kind in (*TREE_KINDS, *WRAPPERS)
 
 
-def _statuses_of_part(node: Node) -> tuple[str, ...]:
+def _statuses_of_part(node: NodeSpec) -> tuple[str, ...]:
     """Return how a part can end; a condition only succeeds, a remap may show either in the place of the other."""
     if node.condition is not None:
         return ("success",)
@@ -175,6 +175,6 @@ def _statuses_of_part(node: Node) -> tuple[str, ...]:
     return TREE_OUTCOMES
 
 
-def _text(rule: Condition) -> str:
+def _text(rule: ConcurrencyCondition) -> str:
     children = ", ".join(f"{child}: {outcome}" for child, outcome in rule.when.items())
     return f"{rule.consequence} ← {children if rule.needs_all else f'{rule.needed} of {children}'}"

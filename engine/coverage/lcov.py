@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from engine.coverage.lines import FileCoverage, Line, Way, by_file
-from engine.coverage.record import BehaviorCoverage
+from engine.coverage.coverage_file import BehaviorCoverage
+from engine.coverage.line_coverage import CoverageBranch, CoverageLine, FileCoverage, by_file
 
 
 def lcov_report(coverages: tuple[BehaviorCoverage, ...]) -> str:
@@ -18,13 +18,13 @@ def _record(file: FileCoverage) -> str:
     rows += [f"FNDA:{node.count},{node.path}" for _, node in nodes]
     rows += [f"FNF:{len(nodes)}", f"FNH:{sum(node.count > 0 for _, node in nodes)}"]
     for line in file.lines:
-        rows += [_branch(line, index, way) for index, way in enumerate(line.ways)]
-    rows += [f"BRF:{file.ways}", f"BRH:{file.ways_taken}"]
+        rows += [_branch(line, index, way) for index, way in enumerate(line.branches)]
+    rows += [f"BRF:{file.branches}", f"BRH:{file.branches_taken}"]
     rows += [f"DA:{line.number},{line.hits}" for line in file.lines]
     rows += [f"LF:{len(file.lines)}", f"LH:{file.lines_covered}", "end_of_record"]
     return "\n".join(rows) + "\n"
 
 
-def _branch(line: Line, index: int, way: Way) -> str:
+def _branch(line: CoverageLine, index: int, way: CoverageBranch) -> str:
     # `-` says that the branch was never decided, as its node was never entered.
     return f"BRDA:{line.number},0,{index},{way.item.count if way.reached else '-'}"

@@ -8,10 +8,10 @@ from typing import Literal
 import msgspec
 
 from engine.coverage.cobertura import cobertura_report
+from engine.coverage.coverage_file import BehaviorCoverage, CoverageFile
+from engine.coverage.html_page import html_page
 from engine.coverage.lcov import lcov_report
-from engine.coverage.page import html_page
-from engine.coverage.record import BehaviorCoverage, CoverageFile
-from engine.coverage.text import text_report
+from engine.coverage.text_table import text_report
 
 ReportFormat = Literal["text", "html", "cobertura", "lcov", "json"]
 

@@ -1,57 +1,65 @@
 """Documents: behaviors, cells and entries as strict YAML or JSON, read into frozen models.
 
 A document that cannot be used is a `DocumentError` with file, line and column. Entries are read and written by
-`engine.document.entries`, which few programs need.
+`engine.document.entries_document`, which few programs need.
 """
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.cell import Cell, CellDocument, Fixture, Jitter, Part, RobotEntry, load_cell
-from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
-from engine.document.condition import Condition
+from engine.document.cell import Cell, CellDocument, Fixture, Jitter, PartSpec, RobotSpec, load_cell
+from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
+from engine.document.concurrency_condition import ConcurrencyCondition
 from engine.document.expression import Template, compile_template
 from engine.document.loader import (
+    BehaviorSurvey,
     CircularReference,
-    Survey,
     load_behavior,
     parse_behavior,
     read_behavior,
     survey_behavior,
 )
-from engine.document.node import Concurrency, ForEach, Guard, Machine, Node, Retry, Timeout
-from engine.document.parameter import Parameter, bind_parameters
+from engine.document.node_spec import (
+    ConcurrencySpec,
+    ForEachSpec,
+    GuardSpec,
+    MachineSpec,
+    NodeSpec,
+    RetrySpec,
+    TimeoutSpec,
+)
+from engine.document.parameter_spec import ParameterSpec, bind_parameters
 from engine.document.placement import Placement
 from engine.document.signature import KeySignature, StateSignature, read_signature
-from engine.document.yaml_source import Source, load_source, parse_source
+from engine.document.yaml_source import DocumentSource, load_source, parse_source
 from engine.document.yaml_writer import write_yaml
 
 __all__ = [
     "Behavior",
     "BehaviorDocument",
+    "BehaviorSurvey",
     "Cell",
     "CellDocument",
     "CircularReference",
-    "Concurrency",
-    "Condition",
+    "ConcurrencyCondition",
+    "ConcurrencySpec",
     "DepthCamera",
+    "DocumentSource",
     "Fixture",
-    "ForEach",
-    "Guard",
+    "ForEachSpec",
+    "GuardSpec",
     "Jitter",
     "KeySignature",
-    "Machine",
-    "Node",
+    "MachineSpec",
+    "NodeSpec",
     "OccupancyMap",
-    "Parameter",
-    "Part",
+    "ParameterSpec",
+    "PartSpec",
     "Person",
     "Placement",
-    "Retry",
-    "RobotEntry",
-    "Source",
+    "RetrySpec",
+    "RobotSpec",
     "StateSignature",
-    "Survey",
     "Template",
-    "Timeout",
+    "TimeoutSpec",
     "bind_parameters",
     "compile_template",
     "load_behavior",

@@ -10,27 +10,27 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict
-from engine.document.node import Key, Node
+from engine.document.decoding import StrictModel
 from engine.document.node_kind import OutcomeName
-from engine.document.parameter import Parameter
+from engine.document.node_spec import Key, NodeSpec
+from engine.document.parameter_spec import ParameterSpec
 from engine.document.substitutes import Substitutes
-from engine.document.yaml_source import DataPath, Source
+from engine.document.yaml_source import DataPath, DocumentSource
 from engine.errors import Position
 
 
-class BehaviorDocument(Strict, frozen=True, kw_only=True):
+class BehaviorDocument(StrictModel, frozen=True, kw_only=True):
     """A behavior as written. `view` (canvas positions) and `notes`, by node path, have no meaning."""
 
     flexcell: Literal[1]
     name: Annotated[str, Meta(min_length=1, max_length=128, description="What people call it")]
     description: str = ""
-    parameters: dict[Key, Parameter] = {}
+    parameters: dict[Key, ParameterSpec] = {}
     userdata: dict[Key, object] = {}
     outcomes: Annotated[tuple[OutcomeName, ...], Meta(min_length=1, description="How it can end, at least one")]
     success: Annotated[tuple[OutcomeName, ...], Meta(description="The outcomes that mean success")] = ()
     cell: Annotated[str, Meta(min_length=1, description="The cell it runs in, relative to this document")] | None = None
-    root: Node
+    root: NodeSpec
     view: dict[str, tuple[float, float]] = {}
     notes: dict[str, str] = {}
 
@@ -45,7 +45,7 @@ class Behavior:
     """SHA-256 of what the document and its references mean: without `view`, `notes`, comments, formatting."""
     references: Mapping[str, Behavior] = field(default_factory=dict[str, "Behavior"])
     """The behaviors referred to, by the path as written in `behavior:`."""
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
     """The classes that Python gave it, by the `module:Class` written for each; a document brings none."""
     substitutes: Substitutes | None = field(default=None, repr=False)
@@ -60,12 +60,12 @@ class Behavior:
         return self.document.name
 
     @property
-    def root(self) -> Node:
+    def root(self) -> NodeSpec:
         """The outermost node; its path is `root`."""
         return self.document.root
 
     @property
-    def parameters(self) -> Mapping[str, Parameter]:
+    def parameters(self) -> Mapping[str, ParameterSpec]:
         """What a run may be given, by name."""
         return self.document.parameters
 
@@ -92,7 +92,7 @@ class Behavior:
         meaning = sha256(self.meaning.encode() + substitutes.text).hexdigest()
         return replace(self, substitutes=substitutes, meaning=meaning)
 
-    def nodes(self) -> Iterator[tuple[str, Node]]:
+    def nodes(self) -> Iterator[tuple[str, NodeSpec]]:
         """Go through (path, node) in document order, containers before their children."""
         return walk("root", self.root)
 
@@ -121,7 +121,7 @@ class Behavior:
         return tuple(steps)
 
 
-def walk(path: str, node: Node) -> Iterator[tuple[str, Node]]:
+def walk(path: str, node: NodeSpec) -> Iterator[tuple[str, NodeSpec]]:
     """Go through (path, node) of a node and everything inside it, in document order."""
     due = [(path, node)]
     while due:

@@ -27,7 +27,7 @@ from engine.document.cel_environment import (
 from engine.document.cel_syntax import ParsedExpression, Syntax, read_parsed
 from engine.document.expression_cost import MAX_STEPS, Sizes, cost_of
 from engine.document.text_cache import TextCache
-from engine.document.value_size import SCALAR, SMALL, measure
+from engine.document.value_size import SCALAR, SMALL, measure_value
 from engine.errors import ExpressionError
 
 MAX_LENGTH = 1_000
@@ -107,12 +107,12 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
         try:
             return cost_of(self._syntax, {name: sizes[name] for name in self.names if name in sizes}).steps
         except ExpressionError as error:
-            raise ExpressionError(f"`${{{shortened(self.text)}}}`: {error.message}", hint=error.hint) from None
+            raise ExpressionError(f"`${{{shorten_text(self.text)}}}`: {error.message}", hint=error.hint) from None
 
     def too_long(self, steps: float) -> ExpressionError:
         """Return why it is not evaluated."""
         count = f"{steps:,.0f}" if steps < 1e12 else "endless"
-        message = f"`${{{shortened(self.text)}}}`: this may take {count} steps with values of this size"
+        message = f"`${{{shorten_text(self.text)}}}`: this may take {count} steps with values of this size"
         hint = f"{MAX_STEPS:,.0f} are allowed; use smaller values, a simpler expression or a state"
         return ExpressionError(message, hint=hint)
 
@@ -158,7 +158,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
 
     def _check_size(self, value: object, data: Variables) -> None:
         try:
-            weight = measure(value, name="the result").weight
+            weight = measure_value(value, name="the result").weight
         except ExpressionError as error:
             raise self._failed(error.message, data) from None
         if weight > MAX_RESULT_WEIGHT:
@@ -167,7 +167,7 @@ class Expression(msgspec.Struct, frozen=True, gc=False):
     def _failed(self, reason: str, data: Variables) -> ExpressionError:
         shown = ", ".join(f"{name} = {_shown(value)}" for name, value in data.items())
         return ExpressionError(
-            f"`${{{shortened(self.text)}}}`: {reason.strip()}", hint=f"with {shown}" if shown else None
+            f"`${{{shorten_text(self.text)}}}`: {reason.strip()}", hint=f"with {shown}" if shown else None
         )
 
 
@@ -180,7 +180,7 @@ def compile_expression(text: str) -> Expression:
     text = text.strip()
     if len(text) > MAX_LENGTH:
         raise ExpressionError(
-            f"`${{{shortened(text)}}}`: longer than {MAX_LENGTH} characters", hint="use a state instead"
+            f"`${{{shorten_text(text)}}}`: longer than {MAX_LENGTH} characters", hint="use a state instead"
         )
     if not text:
         raise ExpressionError("`${}`: the expression is empty", hint="write a name or a formula")
@@ -221,7 +221,7 @@ def _parse(text: str) -> ParsedExpression:
         for _, column, reason in _ERROR_LINE.findall(str(error)):
             raise _malformed(text, _in_words(reason), int(column)) from None
         reason = _ERROR_STATUS.sub("", str(error)).splitlines()[0]
-        raise ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint="use a simpler expression") from None
+        raise ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint="use a simpler expression") from None
 
 
 def _check_names(text: str, names: tuple[str, ...], uses: tuple[NameUse, ...]) -> None:
@@ -249,12 +249,12 @@ def _checked_program(text: str, called: str) -> Any:
         return environment().compile(called, disable_check=True)
     except RuntimeError as error:
         reason = _ERROR_STATUS.sub("", str(error)).splitlines()[0]
-        raise ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint="use a simpler expression") from None
+        raise ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint="use a simpler expression") from None
 
 
 def _malformed(text: str, reason: str, column: int = 0) -> ExpressionError:
     place = f"at character {column}" if column > 0 else None
-    return ExpressionError(f"`${{{shortened(text)}}}`: {reason}", hint=place)
+    return ExpressionError(f"`${{{shorten_text(text)}}}`: {reason}", hint=place)
 
 
 def _in_words(reason: str) -> str:
@@ -272,7 +272,7 @@ def _result_type(text: str, called: str) -> ValueType:
         except RuntimeError as error:
             for _, _, reason in _ERROR_LINE.findall(str(error)):
                 if impossible := _impossible(reason):
-                    raise ExpressionError(f"`${{{shortened(text)}}}`: {impossible}") from None
+                    raise ExpressionError(f"`${{{shorten_text(text)}}}`: {impossible}") from None
             return "anything"
 
     return _TYPES.get(called, read)
@@ -311,11 +311,11 @@ def too_much_text(length: int) -> str:
 def _shown(value: object) -> str:
     """Return the beginning of a value; nobody writes out a large one for a message."""
     if isinstance(value, str):
-        return shortened(repr(value[:100]))
+        return shorten_text(repr(value[:100]))
     if isinstance(value, list | tuple | dict):
         items = cast("Sized", value)
-        return shortened(repr(items)) if len(items) <= 20 else f"a {type(items).__name__} of {len(items)}"
-    return shortened(repr(value))
+        return shorten_text(repr(items)) if len(items) <= 20 else f"a {type(items).__name__} of {len(items)}"
+    return shorten_text(repr(value))
 
 
 def _plain(value: object) -> object:
@@ -329,7 +329,7 @@ def _plain(value: object) -> object:
     return _plain(msgspec.to_builtins(value)) if isinstance(value, msgspec.Struct) else value
 
 
-def shortened(text: str) -> str:
+def shorten_text(text: str) -> str:
     """Return the beginning of a text on one line."""
     text = " ".join(text[:200].split())
     return text if len(text) <= 80 else f"{text[:77]}…"

@@ -17,47 +17,47 @@ _VARINT, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
 _FIXED = {_FIXED64: 8, _FIXED32: 4}
 
 
-class Literal(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
     """A constant; `text` is None where it is neither text nor bytes."""
 
     text: str | None = None
 
 
-class Name(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelIdentifier(msgspec.Struct, frozen=True, gc=False, tag=True):
     """The use of a variable, or of a type."""
 
     name: str
     id: int
 
 
-class Selection(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelSelect(msgspec.Struct, frozen=True, gc=False, tag=True):
     """A field of a value, or with `test` whether it has it."""
 
     operand: Syntax
     test: bool
 
 
-class Call(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelCall(msgspec.Struct, frozen=True, gc=False, tag=True):
     """An operator or function; the target of a method is its first argument."""
 
     function: str
     arguments: tuple[Syntax, ...]
 
 
-class ListLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelList(msgspec.Struct, frozen=True, gc=False, tag=True):
     """`[a, b]`."""
 
     items: tuple[Syntax, ...]
 
 
-class MappingLiteral(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelMap(msgspec.Struct, frozen=True, gc=False, tag=True):
     """`{a: b}`; `message` names the type of a protobuf message."""
 
     message: str
     items: tuple[Syntax, ...]
 
 
-class Comprehension(msgspec.Struct, frozen=True, gc=False, tag=True):
+class CelComprehension(msgspec.Struct, frozen=True, gc=False, tag=True):
     """What `all`, `exists`, `exists_one`, `map` and `filter` become: a fold over a list or mapping."""
 
     variable: str
@@ -69,7 +69,7 @@ class Comprehension(msgspec.Struct, frozen=True, gc=False, tag=True):
     result: Syntax
 
 
-Syntax = Literal | Name | Selection | Call | ListLiteral | MappingLiteral | Comprehension
+Syntax = CelLiteral | CelIdentifier | CelSelect | CelCall | CelList | CelMap | CelComprehension
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,22 +92,22 @@ def read_parsed(serialized: bytes) -> ParsedExpression:
     return ParsedExpression(_expression(message.message(2)), {entry.number(1): entry.number(2) for entry in positions})
 
 
-def _free(node: Syntax, bound: frozenset[str]) -> Iterator[Name]:
+def _free(node: Syntax, bound: frozenset[str]) -> Iterator[CelIdentifier]:
     match node:
-        case Literal():
+        case CelLiteral():
             return
-        case Name():
+        case CelIdentifier():
             if node.name not in bound:
                 yield node
-        case Selection():
+        case CelSelect():
             yield from _free(node.operand, bound)
-        case Call():
+        case CelCall():
             for each in node.arguments:
                 yield from _free(each, bound)
-        case ListLiteral() | MappingLiteral():
+        case CelList() | CelMap():
             for each in node.items:
                 yield from _free(each, bound)
-        case Comprehension():
+        case CelComprehension():
             yield from _free(node.values, bound)
             yield from _free(node.start, bound)
             inside = bound | {node.variable, node.accumulator}
@@ -121,29 +121,29 @@ def _expression(data: bytes) -> Syntax:
     for number, read in _KINDS.items():
         if number in fields:
             return read(_Fields(fields.message(number)), fields.number(2))
-    return Literal()
+    return CelLiteral()
 
 
 def _constant(fields: _Fields, _: int) -> Syntax:
     found = fields.message(6) if 6 in fields else fields.message(7) if 7 in fields else None
-    return Literal(found.decode("utf-8", "replace") if found is not None else None)
+    return CelLiteral(found.decode("utf-8", "replace") if found is not None else None)
 
 
 def _name(fields: _Fields, number: int) -> Syntax:
-    return Name(fields.text(1), number)
+    return CelIdentifier(fields.text(1), number)
 
 
 def _selection(fields: _Fields, _: int) -> Syntax:
-    return Selection(_expression(fields.message(1)), bool(fields.number(3)))
+    return CelSelect(_expression(fields.message(1)), bool(fields.number(3)))
 
 
 def _call(fields: _Fields, _: int) -> Syntax:
     target = [fields.message(1)] if 1 in fields else []
-    return Call(fields.text(2), tuple(map(_expression, [*target, *fields.messages(3)])))
+    return CelCall(fields.text(2), tuple(map(_expression, [*target, *fields.messages(3)])))
 
 
 def _list(fields: _Fields, _: int) -> Syntax:
-    return ListLiteral(tuple(map(_expression, fields.messages(1))))
+    return CelList(tuple(map(_expression, fields.messages(1))))
 
 
 def _mapping(fields: _Fields, _: int) -> Syntax:
@@ -151,11 +151,11 @@ def _mapping(fields: _Fields, _: int) -> Syntax:
     for each in fields.messages(2):
         entry = _Fields(each)
         items += [_expression(entry.message(number)) for number in (3, 4) if number in entry]
-    return MappingLiteral(fields.text(1), tuple(items))
+    return CelMap(fields.text(1), tuple(items))
 
 
 def _comprehension(fields: _Fields, _: int) -> Syntax:
-    return Comprehension(
+    return CelComprehension(
         variable=fields.text(1),
         values=_expression(fields.message(2)),
         accumulator=fields.text(3),

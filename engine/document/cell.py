@@ -14,21 +14,21 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.cell_senses import DepthCamera, OccupancyMap, Person
-from engine.document.conversion import Strict, convert
+from engine.document.cell_perception import DepthCamera, OccupancyMap, Person
+from engine.document.decoding import StrictModel, decode_document
 from engine.document.placement import Angle, Color, Length, Name, Offset, Placement
-from engine.document.yaml_source import DataPath, Source, load_source
+from engine.document.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import DocumentError
 
 
-class SqliteStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
+class SqliteStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="sqlite"):
     """Named entries in a file; `seed` is an entries document that fills what is missing."""
 
     path: Annotated[str, Meta(min_length=1, description="Database file, relative to the current directory")]
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
-class MongoStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
+class MongoStoreSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mongodb"):
     """Named entries on a MongoDB server; `seed` is an entries document that fills what is missing.
 
     `${NAME}` in `uri` stands for an environment variable, such as that with the password.
@@ -39,7 +39,7 @@ class MongoStore(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mongo
     seed: Annotated[str, Meta(min_length=1, description="Entries document, relative to this one")] | None = None
 
 
-class MujocoWorld(Strict, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
+class MujocoWorld(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="mujoco"):
     """The simulated surroundings.
 
     The two silences are for simulations in real time on a loaded machine: a longer one lets an arm move on for
@@ -60,13 +60,13 @@ OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
 OutputNumber = Annotated[int, Meta(ge=0, description="Number of a digital output of the robot's controller, from 0")]
 
 
-class GripperEntry(Strict, frozen=True, kw_only=True):
+class GripperSpec(StrictModel, frozen=True, kw_only=True):
     """The gripper at the flange of a robot."""
 
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the gripper model")]
 
 
-class RobotEntry(Strict, frozen=True, kw_only=True):
+class RobotSpec(StrictModel, frozen=True, kw_only=True):
     """One robot: its model, who drives it, where its base stands and what it holds.
 
     `model` (also that of the gripper) is the name of a built-in model, or the path of a model folder
@@ -79,7 +79,7 @@ class RobotEntry(Strict, frozen=True, kw_only=True):
     model: Annotated[str, Meta(min_length=1, description="Name or folder of the robot model")]
     driver: Literal["sim"] | dict[str, object] = "sim"
     base: Placement = Placement()
-    gripper: GripperEntry | None = None
+    gripper: GripperSpec | None = None
     calibration: Annotated[str, Meta(min_length=1, description="Calibration file, relative to this one")] | None = None
     coupled_joints: bool = False
     outputs: dict[OutputUse, OutputNumber] = {}
@@ -95,14 +95,14 @@ class RobotEntry(Strict, frozen=True, kw_only=True):
         return self.driver if isinstance(self.driver, str) else str(self.driver["kind"])
 
 
-class Jitter(Strict, frozen=True, kw_only=True):
+class Jitter(StrictModel, frozen=True, kw_only=True):
     """How far a part may lie off, uniformly to both sides, when a run is seeded."""
 
     xy_m: Offset = 0.0
     yaw_rad: Angle = 0.0
 
 
-class Spring(Strict, frozen=True, kw_only=True):
+class Spring(StrictModel, frozen=True, kw_only=True):
     """How a fixture gives way along its z axis: foam, a part on a compliant table, a sprung pad.
 
     Its skin is soft at first touch, which makes forces on it believable while a tool slides over it;
@@ -115,7 +115,7 @@ class Spring(Strict, frozen=True, kw_only=True):
     friction: Annotated[float, Meta(ge=0.0, le=2.0, description="Coefficient of friction of its skin")] = 0.3
 
 
-class Fixture(Strict, frozen=True, kw_only=True):
+class Fixture(StrictModel, frozen=True, kw_only=True):
     """A fixed body, or one that gives way by its `spring`.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a tray: its outer
@@ -131,7 +131,7 @@ class Fixture(Strict, frozen=True, kw_only=True):
     spring: Spring | None = None
 
 
-class Part(Strict, frozen=True, kw_only=True):
+class PartSpec(StrictModel, frozen=True, kw_only=True):
     """A free body with real contact; a magnet pulls at it when it is `magnetic`.
 
     `size_m` of a box: edge lengths x, y, z; of a cylinder: diameter, length; of a sphere: diameter.
@@ -147,17 +147,17 @@ class Part(Strict, frozen=True, kw_only=True):
     color: Color = "#d0d0d0"
 
 
-class CellDocument(Strict, frozen=True, kw_only=True):
+class CellDocument(StrictModel, frozen=True, kw_only=True):
     """A work cell as written."""
 
     flexcell: Literal[1]
     cell: Name
     description: str = ""
-    store: SqliteStore | MongoStore | None = None
+    store: SqliteStoreSpec | MongoStoreSpec | None = None
     world: MujocoWorld | None = None
-    robots: dict[Name, RobotEntry] = {}
+    robots: dict[Name, RobotSpec] = {}
     fixtures: dict[Name, Fixture] = {}
-    parts: dict[Name, Part] = {}
+    parts: dict[Name, PartSpec] = {}
     cameras: dict[Name, DepthCamera] = {}
     occupancy: OccupancyMap | None = None
     people: dict[Name, Person] = {}
@@ -169,7 +169,7 @@ class Cell:
 
     document: CellDocument
     file: Path
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
 
     @property
     def name(self) -> str:
@@ -195,7 +195,7 @@ def load_cell(path: Path | str) -> Cell:
     """
     file = Path(path)
     source = load_source(file)
-    document = convert(source, CellDocument, refused=_REFUSED)
+    document = decode_document(source, CellDocument, refused=_REFUSED)
     _require_no_secret(document, source)
     _require_sizes(document, source)
     _require_drivers(document, source)
@@ -218,9 +218,9 @@ _SIZES = {
 }
 
 
-def _require_no_secret(document: CellDocument, source: Source) -> None:
+def _require_no_secret(document: CellDocument, source: DocumentSource) -> None:
     store = document.store
-    if isinstance(store, MongoStore) and _SECRET.search(store.uri):
+    if isinstance(store, MongoStoreSpec) and _SECRET.search(store.uri):
         raise DocumentError(
             "the address of the store has a password in it",
             where=source.position(("store", "uri")),
@@ -228,8 +228,8 @@ def _require_no_secret(document: CellDocument, source: Source) -> None:
         )
 
 
-def _require_sizes(document: CellDocument, source: Source) -> None:
-    bodies: list[tuple[DataPath, Fixture | Part]] = [
+def _require_sizes(document: CellDocument, source: DocumentSource) -> None:
+    bodies: list[tuple[DataPath, Fixture | PartSpec]] = [
         *((("fixtures", name), fixture) for name, fixture in document.fixtures.items()),
         *((("parts", name), part) for name, part in document.parts.items()),
     ]
@@ -253,7 +253,7 @@ def _require_sizes(document: CellDocument, source: Source) -> None:
             )
 
 
-def _require_drivers(document: CellDocument, source: Source) -> None:
+def _require_drivers(document: CellDocument, source: DocumentSource) -> None:
     for name, robot in document.robots.items():
         if isinstance(robot.driver, dict) and not isinstance(robot.driver.get("kind"), str):
             raise DocumentError(
@@ -263,7 +263,7 @@ def _require_drivers(document: CellDocument, source: Source) -> None:
             )
 
 
-def _require_world(document: CellDocument, source: Source) -> None:
+def _require_world(document: CellDocument, source: DocumentSource) -> None:
     if document.world is not None:
         return
     for name, robot in document.robots.items():
@@ -275,7 +275,7 @@ def _require_world(document: CellDocument, source: Source) -> None:
             )
 
 
-def _require_people(document: CellDocument, source: Source) -> None:
+def _require_people(document: CellDocument, source: DocumentSource) -> None:
     taken = {
         **dict.fromkeys(document.parts, "part"),
         **dict.fromkeys(document.fixtures, "fixture"),

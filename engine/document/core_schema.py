@@ -32,7 +32,7 @@ def plain_scalar(text: str) -> bool | int | float | str | None:
     if _FLOAT.fullmatch(text):
         number = float(text)
         if not math.isfinite(number):
-            raise ValueError(f"{shortened(text)} is too large for a number")
+            raise ValueError(f"{shorten_scalar(text)} is too large for a number")
         return number
     if _BASED.fullmatch(text):
         return _integer(text[2:], 8 if text[1] == "o" else 16)
@@ -45,10 +45,10 @@ def _integer(digits: str, base: int) -> int:
     # Twenty-four places hold any 64-bit number with sign in octal; longer text is not worth converting.
     number = int(digits, base) if len(digits) <= 24 else None
     if number is None or not -(2**63) <= number < 2**63:
-        raise ValueError(f"{shortened(digits)} does not fit into 64 bits")
+        raise ValueError(f"{shorten_scalar(digits)} does not fit into 64 bits")
     return number
 
 
-def shortened(text: str) -> str:
+def shorten_scalar(text: str) -> str:
     """Return text as a message shows it."""
     return text if len(text) <= 40 else f"{text[:37]}…"

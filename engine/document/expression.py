@@ -19,12 +19,12 @@ from engine.document.cel_expression import (
     Expression,
     Variables,
     compile_expression,
-    shortened,
+    shorten_text,
     too_much_text,
 )
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
-from engine.document.value_size import SMALL, measure
+from engine.document.value_size import SMALL, measure_value
 from engine.errors import ExpressionError
 
 MAX_PER_TEXT = 100
@@ -111,7 +111,7 @@ class _Read(msgspec.Struct, frozen=True, gc=False):
         """
         if self.small_steps is not None and all(map(_is_small, map(variables.get, self.names))):
             return self.small_steps
-        sizes = {name: measure(variables[name], name=name) for name in self.names if name in variables}
+        sizes = {name: measure_value(variables[name], name=name) for name in self.names if name in variables}
         METER.work(_BEGIN + _LOOK * self.characters + _MEASURE * sum(size.weight for size in sizes.values()))
         steps = 0.0
         for expression in self.computed:
@@ -218,7 +218,9 @@ class _Joined(msgspec.Struct, frozen=True, gc=False):
         shown = (piece if isinstance(piece, str) else piece.text_of(variables) for piece in self.pieces)
         joined = "".join(shown)
         if len(joined) > MAX_TEXT:
-            raise ExpressionError(f"`{shortened(self.text)}`: {too_much_text(len(joined))}", hint="use a state instead")
+            raise ExpressionError(
+                f"`{shorten_text(self.text)}`: {too_much_text(len(joined))}", hint="use a state instead"
+            )
         return joined
 
 
@@ -244,7 +246,7 @@ def split_text(text: str) -> list[str | Expression]:
         pieces.append(compile_expression(text[start + 2 : end]))
         if len(pieces) > 2 * MAX_PER_TEXT:
             raise ExpressionError(
-                f"`{shortened(text)}`: more than {MAX_PER_TEXT} expressions", hint="use a state instead"
+                f"`{shorten_text(text)}`: more than {MAX_PER_TEXT} expressions", hint="use a state instead"
             )
         literal = []
         index = end + 1
@@ -281,5 +283,5 @@ def _closing_brace(text: str, start: int) -> int:
             depth -= 1
         index += 1
     raise ExpressionError(
-        f"`{shortened(text)}`: `${{` is not closed", hint="add `}`, or write `$${` for the characters"
+        f"`{shorten_text(text)}`: `${{` is not closed", hint="add `}`, or write `$${` for the characters"
     )

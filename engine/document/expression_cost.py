@@ -1,7 +1,7 @@
 """What the evaluation of an expression may cost at most, from its syntax and the sizes of its variables.
 
 The cost is counted in steps of about a microsecond. Figures are those of the slowest inputs that
-were measured; `benchmarks/hostile.py` holds them against the clock. Whatever is not known here is
+were measured; `benchmarks/hostile_inputs.py` holds them against the clock. Whatever is not known here is
 refused, so that no evaluation begins whose end is not known.
 """
 
@@ -12,23 +12,23 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from engine.document.cel_syntax import (
-    Call,
-    Comprehension,
-    ListLiteral,
-    Literal,
-    MappingLiteral,
-    Name,
-    Selection,
+    CelCall,
+    CelComprehension,
+    CelIdentifier,
+    CelList,
+    CelLiteral,
+    CelMap,
+    CelSelect,
     Syntax,
 )
 from engine.document.pattern_cost import pattern_weight
-from engine.document.value_size import SCALAR, Size, either, joined, list_size, text_size
+from engine.document.value_size import SCALAR, ValueSize, either_size, joined_size, list_size, text_size
 from engine.errors import ExpressionError
 
 MAX_STEPS = 10_000.0
 """What one evaluation may cost: 10 ms."""
 
-Sizes = Mapping[str, Size]
+Sizes = Mapping[str, ValueSize]
 
 _START = 10.0
 _NODE = 0.15
@@ -50,14 +50,14 @@ _ZONE = re.compile(r"[A-Za-z][A-Za-z0-9_+-]*(?:/[A-Za-z0-9_+-]+){0,2}|[+-]?\d\d:
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class ExpressionCost:
     """Upper bounds: of the steps of an evaluation, and of the size of its value."""
 
     steps: float
-    result: Size
+    result: ValueSize
 
 
-def cost_of(root: Syntax, sizes: Sizes) -> Cost:
+def cost_of(root: Syntax, sizes: Sizes) -> ExpressionCost:
     """Return what an expression may cost with variables of these sizes; of those that are absent as little as can be.
 
     Raises:
@@ -65,7 +65,7 @@ def cost_of(root: Syntax, sizes: Sizes) -> Cost:
     """
     counting = _Counting(_START + _READ * sum(size.weight for size in sizes.values()))
     result = counting.size(root, sizes)
-    return Cost(min(counting.steps + _RESULT * result.weight, _ENDLESS), result)
+    return ExpressionCost(min(counting.steps + _RESULT * result.weight, _ENDLESS), result)
 
 
 class _Counting:
@@ -74,49 +74,49 @@ class _Counting:
     def __init__(self, steps: float = 0.0) -> None:
         self.steps = steps
 
-    def size(self, node: Syntax, sizes: Sizes) -> Size:
+    def size(self, node: Syntax, sizes: Sizes) -> ValueSize:
         """Return the size of the value of a node, counting what it costs."""
         self.steps += _NODE
         match node:
-            case Literal():
+            case CelLiteral():
                 return text_size(len(node.text), node.text) if node.text is not None else SCALAR
-            case Name():
+            case CelIdentifier():
                 return sizes.get(node.name, SCALAR)
-            case Selection():
+            case CelSelect():
                 found = self.size(node.operand, sizes).inside
                 return SCALAR if node.test else found
-            case Call():
+            case CelCall():
                 return self._call(node, sizes)
-            case ListLiteral():
+            case CelList():
                 return self._items(node.items, sizes)
-            case MappingLiteral():
+            case CelMap():
                 if node.message:
                     raise _unknown(node.message)
                 return self._items(node.items, sizes)
-            case Comprehension():
+            case CelComprehension():
                 return self._fold(node, sizes)
 
-    def added(self, node: Comprehension, inside: Sizes) -> Size | None:
+    def added(self, node: CelComprehension, inside: Sizes) -> ValueSize | None:
         """Return the size of what a round adds, counting what it costs; each node once, for they are nested."""
         growth = _growth(node)
         if growth is None:
             self.size(node.step, inside)
             return None
-        if isinstance(node.step, Call) and _is_conditional(node.step):
+        if isinstance(node.step, CelCall) and _is_conditional(node.step):
             self.size(node.step.arguments[0], inside)
             self.steps += _ADD
         return self.size(growth, inside)
 
-    def _items(self, items: tuple[Syntax, ...], sizes: Sizes) -> Size:
+    def _items(self, items: tuple[Syntax, ...], sizes: Sizes) -> ValueSize:
         weight, item = 1.0, None
         for each in items:
             found = self.size(each, sizes)
             weight += found.weight
-            item = either(item, found) if item is not None else found
+            item = either_size(item, found) if item is not None else found
         self.steps += _COPY * len(items)
-        return Size(min(weight, _ENDLESS), 0.0, float(len(items)), item)
+        return ValueSize(min(weight, _ENDLESS), 0.0, float(len(items)), item)
 
-    def _call(self, node: Call, sizes: Sizes) -> Size:
+    def _call(self, node: CelCall, sizes: Sizes) -> ValueSize:
         if node.function == "_?_:_":
             return self._choice(node.arguments, sizes)
         charge = _CHARGES.get(node.function)
@@ -126,12 +126,12 @@ class _Counting:
         self.steps = min(self.steps + steps, _ENDLESS)
         return result
 
-    def _choice(self, arguments: tuple[Syntax, ...], sizes: Sizes) -> Size:
+    def _choice(self, arguments: tuple[Syntax, ...], sizes: Sizes) -> ValueSize:
         condition, one, other = arguments
         self.size(condition, sizes)
-        return either(self.size(one, sizes), self.size(other, sizes))
+        return either_size(self.size(one, sizes), self.size(other, sizes))
 
-    def _fold(self, node: Comprehension, sizes: Sizes) -> Size:
+    def _fold(self, node: CelComprehension, sizes: Sizes) -> ValueSize:
         values = self.size(node.values, sizes)
         self.size(node.start, sizes)
         inside = {**sizes, node.variable: values.inside, node.accumulator: SCALAR}
@@ -146,58 +146,58 @@ class _Counting:
         return self.size(node.result, {**sizes, node.accumulator: made})
 
 
-def _growth(node: Comprehension) -> Syntax | None:
+def _growth(node: CelComprehension) -> Syntax | None:
     """Return what a round adds to the accumulator, None where that is a truth value."""
     step = node.step
-    if isinstance(step, Call) and _is_conditional(step):
+    if isinstance(step, CelCall) and _is_conditional(step):
         step = step.arguments[1]
-    if isinstance(step, Call) and step.function in ("_||_", "_&&_"):
+    if isinstance(step, CelCall) and step.function in ("_||_", "_&&_"):
         return None
-    if isinstance(step, Call) and step.function == "_+_" and _is_name(step.arguments[0], node.accumulator):
+    if isinstance(step, CelCall) and step.function == "_+_" and _is_name(step.arguments[0], node.accumulator):
         return step.arguments[1]
     raise _unknown("comprehension")
 
 
 def _is_conditional(step: Syntax) -> bool:
-    return isinstance(step, Call) and step.function == "_?_:_"
+    return isinstance(step, CelCall) and step.function == "_?_:_"
 
 
 def _is_name(node: Syntax, name: str) -> bool:
-    return isinstance(node, Name) and node.name == name
+    return isinstance(node, CelIdentifier) and node.name == name
 
 
 def _unknown(name: str) -> ExpressionError:
     return ExpressionError(f"`{name}` cannot be used in an expression", hint="use a state instead")
 
 
-_Charge = Callable[[list[Size]], tuple[float, Size]]
+_Charge = Callable[[list[ValueSize]], tuple[float, ValueSize]]
 
 
 def _scalar(steps: float) -> _Charge:
     return lambda given: (steps + _CHARACTER * max((each.text for each in given), default=0.0), SCALAR)
 
 
-def _join(given: list[Size]) -> tuple[float, Size]:
-    made = joined(*given) if len(given) == 2 and any(each.text or each.length for each in given) else SCALAR
+def _join(given: list[ValueSize]) -> tuple[float, ValueSize]:
+    made = joined_size(*given) if len(given) == 2 and any(each.text or each.length for each in given) else SCALAR
     return _ARITHMETIC + _CHARACTER * made.text + _COPY * made.length, made
 
 
-def _compare(given: list[Size]) -> tuple[float, Size]:
+def _compare(given: list[ValueSize]) -> tuple[float, ValueSize]:
     return _COMPARE * min((each.weight for each in given), default=1.0), SCALAR
 
 
-def _find(given: list[Size]) -> tuple[float, Size]:
+def _find(given: list[ValueSize]) -> tuple[float, ValueSize]:
     sought, values = given
     alike = min(sought.weight, values.inside.weight)
     return values.length * (_FIND + (_COMPARE * alike if alike > 1 else 0.0)), SCALAR
 
 
-def _contains(given: list[Size]) -> tuple[float, Size]:
+def _contains(given: list[ValueSize]) -> tuple[float, ValueSize]:
     text, part = (each.text for each in given)
     return 1 + _CHARACTER * text + text * part / 10_000, SCALAR
 
 
-def _matches(given: list[Size]) -> tuple[float, Size]:
+def _matches(given: list[ValueSize]) -> tuple[float, ValueSize]:
     text, pattern = given
     if pattern.literal is None and pattern.text:
         hint = "write it as text, or give it as a parameter or key of its own"
@@ -206,14 +206,14 @@ def _matches(given: list[Size]) -> tuple[float, Size]:
     return 20 + 2 * weight + text.text * weight / 10, SCALAR
 
 
-def _zoned(given: list[Size]) -> tuple[float, Size]:
+def _zoned(given: list[ValueSize]) -> tuple[float, ValueSize]:
     # The evaluator opens the file of the zone, whatever it is.
     if len(given) > 1 and not _ZONE.fullmatch(given[1].literal or ""):
         raise ExpressionError("this is no time zone", hint="write it as `Europe/Berlin` or `+02:00`")
     return 5.0, SCALAR
 
 
-def _text(given: list[Size]) -> tuple[float, Size]:
+def _text(given: list[ValueSize]) -> tuple[float, ValueSize]:
     characters = 4 * max((each.text for each in given), default=0.0) + 40
     return 1 + _CHARACTER * characters, text_size(characters)
 

@@ -17,10 +17,10 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict, convert
+from engine.document.decoding import StrictModel, decode_document
 from engine.document.duration import Duration, seconds
 from engine.document.path_pattern import PathPattern
-from engine.document.yaml_source import Source, load_source, parse_source
+from engine.document.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 FaultKind = Literal["late", "hang", "error", "duplicate", "lost", "crash"]
@@ -36,7 +36,7 @@ AddressPattern = Annotated[
 ]
 
 
-class Hang(Strict, frozen=True, kw_only=True):
+class HangFault(StrictModel, frozen=True, kw_only=True):
     """The device takes the request and never answers.
 
     A cancel reaches it and is confirmed, unless `ignore_cancel`.
@@ -45,7 +45,7 @@ class Hang(Strict, frozen=True, kw_only=True):
     ignore_cancel: bool = False
 
 
-class Failure(Strict, frozen=True, kw_only=True):
+class ErrorFault(StrictModel, frozen=True, kw_only=True):
     """The request fails with `message`.
 
     `by` says how: `abort` ends the goal as aborted, `reject` refuses it, `raise` raises in the
@@ -63,7 +63,7 @@ class Failure(Strict, frozen=True, kw_only=True):
         return seconds(self.after)
 
 
-class Crash(Strict, frozen=True, kw_only=True):
+class CrashFault(StrictModel, frozen=True, kw_only=True):
     """The process is killed at once, as by `kill -9`.
 
     `at_event` when the event of this number is recorded; `on_request` before a matching request
@@ -74,7 +74,7 @@ class Crash(Strict, frozen=True, kw_only=True):
     on_request: Literal["before", "after"] | None = None
 
 
-class Fault(Strict, frozen=True, kw_only=True):
+class Fault(StrictModel, frozen=True, kw_only=True):
     """One thing that goes wrong: exactly one kind, and to which requests it happens.
 
     `request` is the n-th request of one state that `at` and `address` match, counted over all its
@@ -95,11 +95,11 @@ class Fault(Strict, frozen=True, kw_only=True):
     times: Annotated[int, Meta(ge=1, description="How often at most, 1 or more")] | None = None
     probability: Annotated[float, Meta(gt=0.0, le=1.0, description="Above 0, at most 1")] = 1.0
     late: Duration | None = None
-    hang: Hang | None = None
-    error: Failure | Annotated[str, Meta(min_length=1, description="What the failure says")] | None = None
+    hang: HangFault | None = None
+    error: ErrorFault | Annotated[str, Meta(min_length=1, description="What the failure says")] | None = None
     duplicate: Literal["at_once", "after_end"] | None = None
     lost: Literal["request", "answer"] | None = None
-    crash: Crash | None = None
+    crash: CrashFault | None = None
 
     @property
     def kinds(self) -> tuple[FaultKind, ...]:
@@ -117,9 +117,9 @@ class Fault(Strict, frozen=True, kw_only=True):
         return seconds(self.late or 0.0)
 
     @property
-    def failure(self) -> Failure | None:
+    def failure(self) -> ErrorFault | None:
         """The error, where it is one, also when only its message is written."""
-        return Failure(message=self.error) if isinstance(self.error, str) else self.error
+        return ErrorFault(message=self.error) if isinstance(self.error, str) else self.error
 
     @property
     def crashes_at(self) -> int | None:
@@ -130,7 +130,7 @@ class Fault(Strict, frozen=True, kw_only=True):
 _PLAIN = Fault()
 
 
-class FaultsDocument(Strict, frozen=True, kw_only=True):
+class FaultsDocument(StrictModel, frozen=True, kw_only=True):
     """The faults of a run as written, in order of precedence."""
 
     flexcell: Literal[1]
@@ -144,7 +144,7 @@ class Faults:
 
     document: FaultsDocument
     file: Path
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
 
     def position(self, index: int) -> Position:
         """Return where the fault with this index, from 0, stands."""
@@ -169,8 +169,8 @@ def parse_faults(text: bytes | str, *, file: Path | str) -> Faults:
     return _checked(parse_source(text, file=str(file)), Path(file))
 
 
-def _checked(source: Source, file: Path) -> Faults:
-    document = convert(source, FaultsDocument)
+def _checked(source: DocumentSource, file: Path) -> Faults:
+    document = decode_document(source, FaultsDocument)
     for index, fault in enumerate(document.faults):
         _require_one_kind(source, index, fault)
         if fault.crash is not None:
@@ -178,7 +178,7 @@ def _checked(source: Source, file: Path) -> Faults:
     return Faults(document=document, file=file, source=source)
 
 
-def _require_one_kind(source: Source, index: int, fault: Fault) -> None:
+def _require_one_kind(source: DocumentSource, index: int, fault: Fault) -> None:
     known = ", ".join(f"`{kind}`" for kind in FAULT_KINDS)
     if not fault.kinds:
         where = source.position(("faults", index))
@@ -190,7 +190,7 @@ def _require_one_kind(source: Source, index: int, fault: Fault) -> None:
         )
 
 
-def _require_one_crash(source: Source, index: int, fault: Fault, crash: Crash) -> None:
+def _require_one_crash(source: DocumentSource, index: int, fault: Fault, crash: CrashFault) -> None:
     where = source.position(("faults", index, "crash"), of_key=True)
     if (crash.at_event is None) == (crash.on_request is None):
         raise DocumentError("a crash has either `at_event` or `on_request`", where=where, hint="give one of them")

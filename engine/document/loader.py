@@ -9,15 +9,15 @@ from pathlib import Path
 import msgspec
 
 from engine.document.behavior import Behavior, BehaviorDocument
-from engine.document.collection_pause import without_collection
-from engine.document.conversion import convert
-from engine.document.meaning import meaning_hash
+from engine.document.decoding import decode_document
 from engine.document.mistakes import MAX_MISTAKES
-from engine.document.partial import read_around
-from engine.document.recovery import Recovered, load_around, recover
-from engine.document.structure import require_structure
-from engine.document.yaml_source import Source, load_source, parse_source
+from engine.document.partial_behavior import read_partial_behavior
+from engine.document.semantic_hash import compute_semantic_hash
+from engine.document.structural_rules import require_structural_rules
+from engine.document.text_recovery import RecoveredText, load_recovering, recover_text
+from engine.document.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
+from engine.host.gc_pause import pause_gc
 
 MAX_CHAIN = 64
 MAX_EXPANDED_NODES = 50_000
@@ -36,7 +36,7 @@ class CircularReference:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Survey:
+class BehaviorSurvey:
     """What there is to say of a document before it is checked.
 
     `behavior` is None where nothing can be read. With mistakes it is only good for being checked: it has gaps.
@@ -61,7 +61,7 @@ def load_behavior(path: Path | str) -> Behavior:
     return behavior
 
 
-@without_collection
+@pause_gc
 def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, ...]]:
     """Read a behavior like `load_behavior`, returning circular references, left open, beside it.
 
@@ -73,7 +73,7 @@ def read_behavior(path: Path | str) -> tuple[Behavior, tuple[CircularReference, 
     return behavior, tuple(reading.circles)
 
 
-@without_collection
+@pause_gc
 def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     """Return the behavior that `text` describes; references are read relative to `file`, which need not exist.
 
@@ -88,8 +88,8 @@ def parse_behavior(text: bytes | str, *, file: Path | str) -> Behavior:
     return behavior
 
 
-@without_collection
-def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within: Path | None = None) -> Survey:
+@pause_gc
+def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within: Path | None = None) -> BehaviorSurvey:
     """Read a behavior with all its mistakes and those of the behaviors it refers to.
 
     Args:
@@ -102,18 +102,18 @@ def survey_behavior(path: Path | str, text: bytes | str | None = None, *, within
         strict = _Reading()
         source = parse_source(text, file=str(path)) if text is not None else load_source(file)
         behavior = strict.build(source, file, ())
-        return Survey(behavior=behavior, circles=tuple(strict.circles))
+        return BehaviorSurvey(behavior=behavior, circles=tuple(strict.circles))
     except DocumentError as refusal:
         first = refusal
     around = _Reading(mistakes=[], within=within)
     try:
-        recovered = recover(text, file=str(path)) if text is not None else load_around(file)
+        recovered = recover_text(text, file=str(path)) if text is not None else load_recovering(file)
         behavior = around.build_around(recovered, file, ())
     except DocumentError as refusal:
         known = around.mistakes if refusal in around.mistakes else [*around.mistakes, refusal]
-        return Survey(behavior=None, mistakes=tuple(known))
+        return BehaviorSurvey(behavior=None, mistakes=tuple(known))
     mistakes = tuple(around.mistakes[:MAX_MISTAKES] or [first])
-    return Survey(behavior=behavior, mistakes=mistakes, circles=tuple(around.circles))
+    return BehaviorSurvey(behavior=behavior, mistakes=mistakes, circles=tuple(around.circles))
 
 
 class _Reading:
@@ -133,22 +133,22 @@ class _Reading:
         if known is not None:
             return known
         if self._goes_around:
-            behavior = self.build_around(load_around(file), file, chain)
+            behavior = self.build_around(load_recovering(file), file, chain)
         else:
             behavior = self.build(load_source(file), file, chain)
         self._done[_identity(file)] = behavior
         return behavior
 
-    def build(self, source: Source, file: Path, chain: tuple[Path, ...]) -> Behavior:
-        behavior = Behavior(document=convert(source, BehaviorDocument), file=file, meaning="", source=source)
-        require_structure(behavior)
+    def build(self, source: DocumentSource, file: Path, chain: tuple[Path, ...]) -> Behavior:
+        behavior = Behavior(document=decode_document(source, BehaviorDocument), file=file, meaning="", source=source)
+        require_structural_rules(behavior)
         return self._complete(behavior, file, chain)
 
-    def build_around(self, recovered: Recovered, file: Path, chain: tuple[Path, ...]) -> Behavior:
+    def build_around(self, recovered: RecoveredText, file: Path, chain: tuple[Path, ...]) -> Behavior:
         self.mistakes += recovered.mistakes
         if recovered.source is None:
             raise recovered.mistakes[0]
-        partial = read_around(recovered.source, file, recovered.gaps)
+        partial = read_partial_behavior(recovered.source, file, recovered.gaps)
         self.mistakes += partial.mistakes
         if partial.behavior is None:
             raise (*recovered.mistakes, *partial.mistakes)[0]
@@ -171,7 +171,7 @@ class _Reading:
     def _complete(self, behavior: Behavior, file: Path, chain: tuple[Path, ...]) -> Behavior:
         references = self._references(behavior, (*chain, _identity(file)))
         meanings = {written: referred.meaning for written, referred in references.items()}
-        meaning = meaning_hash(behavior.document, meanings)
+        meaning = compute_semantic_hash(behavior.document, meanings)
         self._expanded[meaning] = self._count_expanded(behavior, meanings)
         return replace(behavior, references=references, meaning=meaning)
 

@@ -14,8 +14,8 @@ from typing import Annotated, Any, Final, Literal, Union, cast, get_args, get_or
 import msgspec
 from msgspec.structs import FieldInfo
 
-from engine.document.yaml_source import DataPath, Place, Source
-from engine.nearness import close_names
+from engine.document.yaml_source import DataPath, DocumentSource, PositionTree
+from engine.suggestions import close_names
 
 MAX_MISTAKES = 100
 """Mistakes of one document that are told."""
@@ -29,7 +29,7 @@ Repair = Callable[[Plain], Plain]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mistake:
+class DocumentMistake:
     """A place where data does not fit: `path` leads to the value, to a key that is wrong, or to one that is missing.
 
     `complaint` is what msgspec says of the value; empty for keys that are unknown or missing. `meant` is the key as
@@ -54,7 +54,7 @@ _BROKEN: Final = _Broken()
 
 
 @dataclass
-class Sifting:
+class MistakeCollector:
     """One look at one document.
 
     Args:
@@ -62,7 +62,7 @@ class Sifting:
     """
 
     repairs: Mapping[type, Repair] = field(default_factory=dict[type, Repair])
-    mistakes: list[Mistake] = field(default_factory=list[Mistake])
+    mistakes: list[DocumentMistake] = field(default_factory=list[DocumentMistake])
 
     def sift(self, value: object, kind: Any) -> object:
         """Return the value without its mistakes; None where nothing is left, or there are too many.
@@ -83,7 +83,7 @@ class Sifting:
         kept = self._container(value, kind, path)
         if len(self.mistakes) == known:
             # It is wrong as a whole, or what is wrong in it cannot be told apart.
-            self._note(Mistake(path=path, fault="value", complaint=complaint))
+            self._note(DocumentMistake(path=path, fault="value", complaint=complaint))
             return _BROKEN
         return kept if kept is not _BROKEN and _complaint(kept, kind) is None else _BROKEN
 
@@ -120,7 +120,7 @@ class Sifting:
                 kept |= {key: found} if found is not _BROKEN else {}
         for name, each in fields.items():
             if each.required and name not in kept:
-                self._note(Mistake(path=(*path, name), fault="missing"))
+                self._note(DocumentMistake(path=(*path, name), fault="missing"))
                 kept[name] = self._stand_in(each.type)
         repair = self.repairs.get(kind)
         if repair is not None and len(self.mistakes) > known:
@@ -132,10 +132,10 @@ class Sifting:
         absent = [name for name in fields if name not in value]
         meant = next(iter(close_names(key[:_LONGEST_KEY], absent, most=1, cutoff=_ALIKE)), "")
         number = len(self.mistakes)
-        self._note(Mistake(path=(*path, key), fault="unknown", meant=meant))
+        self._note(DocumentMistake(path=(*path, key), fault="unknown", meant=meant))
         found = self._value(value[key], fields[meant].type, (*path, meant)) if meant else _BROKEN
         if found is _BROKEN:
-            self.mistakes[number:] = [Mistake(path=(*path, key), fault="unknown")]
+            self.mistakes[number:] = [DocumentMistake(path=(*path, key), fault="unknown")]
             return {}
         return {meant: found}
 
@@ -145,7 +145,7 @@ class Sifting:
         for key, each in value.items():
             complaint = _complaint(key, key_kind)
             if complaint is not None:
-                self._note(Mistake(path=(*path, key), fault="key", complaint=complaint))
+                self._note(DocumentMistake(path=(*path, key), fault="key", complaint=complaint))
             found = self._kept(each, value_kind, (*path, key))
             kept |= {key: found} if complaint is None else {}
         return kept
@@ -175,13 +175,13 @@ class Sifting:
             return [self._stand_in(kinds[0])]
         return {str: UNREADABLE, bool: False, int: 1, float: 1.0}.get(option, _BROKEN)
 
-    def _note(self, mistake: Mistake) -> None:
+    def _note(self, mistake: DocumentMistake) -> None:
         self.mistakes.append(mistake)
         if len(self.mistakes) >= MAX_MISTAKES:
             raise TooManyMistakes
 
 
-def as_meant(source: Source, mistakes: Iterable[Mistake]) -> Source:
+def with_corrected_keys(source: DocumentSource, mistakes: Iterable[DocumentMistake]) -> DocumentSource:
     """Return a document in which what stands at mistyped keys is also found under those that were meant."""
     place = source.place
     for mistake in mistakes:
@@ -190,7 +190,7 @@ def as_meant(source: Source, mistakes: Iterable[Mistake]) -> Source:
     return replace(source, place=place)
 
 
-def _with_alias(place: Place, path: DataPath, meant: str) -> Place:
+def _with_alias(place: PositionTree, path: DataPath, meant: str) -> PositionTree:
     children = dict(place.children or {})
     step, rest = path[0], path[1:]
     if step not in children:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, get_args
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict
+from engine.document.decoding import StrictModel
 
 PlainKind = Literal["state", "machine", "concurrency", "priority", "tree", "foreach", "behavior"]
 TreeKind = Literal[
@@ -56,7 +56,7 @@ Times = Annotated[int, Meta(ge=1, le=1_000_000, description="How often, 1 or mor
 Assignments = Annotated[dict[Key, object], Meta(description="`{userdata key: value}`, in this order")]
 
 
-class Post(Strict, frozen=True, kw_only=True):
+class PostConditionsSpec(StrictModel, frozen=True, kw_only=True):
     """Userdata that is assigned when a part of a tree has ended, or was halted; values may hold `${…}`.
 
     `always` is after success and failure, behind the others. Nothing is assigned for a part that was skipped.

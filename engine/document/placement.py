@@ -7,7 +7,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict
+from engine.document.decoding import StrictModel
 from engine.messages import Pose, Quaternion, Vector3
 
 _METRES, _RADIANS = {"unit": "m"}, {"unit": "rad"}
@@ -17,15 +17,15 @@ Angle = Annotated[float, Meta(ge=0.0, description="An angle in radians, 0 or mor
 Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
 Color = Annotated[str, Meta(pattern="^#[0-9a-fA-F]{6}$", description="A color as `#rrggbb`")]
 Offset = Annotated[float, Meta(ge=0.0, description="A distance in metres, 0 or more", extra_json_schema=_METRES)]
-Point = Annotated[Vector3, Meta(description="A point in metres", extra_json_schema=_METRES)]
-Turn = Annotated[Vector3, Meta(description="Angles in radians, about x, y, z", extra_json_schema=_RADIANS)]
+PositionXyz = Annotated[Vector3, Meta(description="A point in metres", extra_json_schema=_METRES)]
+RotationRpy = Annotated[Vector3, Meta(description="Angles in radians, about x, y, z", extra_json_schema=_RADIANS)]
 
 
-class Placement(Strict, frozen=True, kw_only=True):
+class Placement(StrictModel, frozen=True, kw_only=True):
     """Where something stands in the world frame: position, and rotation about fixed x, y, z axes in turn."""
 
-    xyz: Point = (0.0, 0.0, 0.0)
-    rpy: Turn = (0.0, 0.0, 0.0)
+    xyz: PositionXyz = (0.0, 0.0, 0.0)
+    rpy: RotationRpy = (0.0, 0.0, 0.0)
 
     def pose(self) -> Pose:
         """Return the placement as a pose in the frame `world`."""

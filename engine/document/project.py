@@ -16,8 +16,8 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict, convert
-from engine.document.yaml_source import Source, load_source
+from engine.document.decoding import StrictModel, decode_document
+from engine.document.yaml_source import DocumentSource, load_source
 from engine.errors import Position
 
 PROJECT_FILE = "flexcell.yaml"
@@ -32,7 +32,7 @@ ModuleName = Annotated[
 ]
 
 
-class ProjectDocument(Strict, frozen=True, kw_only=True):
+class ProjectDocument(StrictModel, frozen=True, kw_only=True):
     """A project as written. `states` are the modules whose classes documents may name as `module:Class`."""
 
     flexcell: Literal[1]
@@ -45,7 +45,7 @@ class Project:
 
     document: ProjectDocument
     file: Path
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
 
     @property
     def folder(self) -> Path:
@@ -64,7 +64,7 @@ def load_project(file: Path) -> Project:
         DocumentError: it cannot be read or is no valid project file; `where` is the position.
     """
     source = load_source(file)
-    return Project(document=convert(source, ProjectDocument), file=file.resolve(), source=source)
+    return Project(document=decode_document(source, ProjectDocument), file=file.resolve(), source=source)
 
 
 def find_project(start: Path) -> Project | None:

@@ -10,9 +10,9 @@ import msgspec
 
 from engine.document.behavior import BehaviorDocument
 from engine.document.cell import CellDocument
-from engine.document.entries import EntriesDocument
+from engine.document.entries_document import EntriesDocument
 from engine.document.faults import FaultsDocument
-from engine.document.parameter import any_value
+from engine.document.parameter_spec import any_value
 from engine.document.project import ProjectDocument
 from engine.document.substitutes import SubstitutesDocument
 

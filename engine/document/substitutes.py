@@ -19,15 +19,15 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-from engine.document.conversion import Strict, convert
+from engine.document.decoding import StrictModel, decode_document
 from engine.document.duration import Duration, seconds
-from engine.document.node import Key
+from engine.document.node_spec import Key
 from engine.document.path_pattern import PathPattern, matches
-from engine.document.yaml_source import Source, load_source, parse_source
+from engine.document.yaml_source import DocumentSource, load_source, parse_source
 from engine.errors import DocumentError, Position
 
 
-class Ending(Strict, frozen=True, kw_only=True):
+class SubstituteEnding(StrictModel, frozen=True, kw_only=True):
     """How one activation of a node ends: with an outcome and its outputs, or an error, `after` a time.
 
     `outputs` are those of the state or behavior that is stood in for; of a container they are userdata keys.
@@ -44,7 +44,7 @@ class Ending(Strict, frozen=True, kw_only=True):
         return seconds(self.after)
 
 
-class Substitute(Ending, frozen=True, kw_only=True):
+class Substitute(SubstituteEnding, frozen=True, kw_only=True):
     """What stands in for the nodes `at`: an ending, a `script` of them, or another `state`.
 
     A script has one ending for each activation, in turn; the last one is that of all others. Another state is given the
@@ -52,17 +52,19 @@ class Substitute(Ending, frozen=True, kw_only=True):
     """
 
     at: PathPattern
-    script: tuple[Ending, ...] = ()
+    script: tuple[SubstituteEnding, ...] = ()
     state: Annotated[str, Meta(min_length=1, description="The name of a state")] | None = None
     parameters: dict[str, object] | None = msgspec.field(default=None, name="with")
 
     @property
-    def endings(self) -> tuple[Ending, ...]:
+    def endings(self) -> tuple[SubstituteEnding, ...]:
         """The script; a single ending is one."""
-        return self.script or (Ending(outcome=self.outcome, after=self.after, outputs=self.outputs, error=self.error),)
+        return self.script or (
+            SubstituteEnding(outcome=self.outcome, after=self.after, outputs=self.outputs, error=self.error),
+        )
 
 
-class SubstitutesDocument(Strict, frozen=True, kw_only=True):
+class SubstitutesDocument(StrictModel, frozen=True, kw_only=True):
     """The substitutes of a run as written, in order of precedence."""
 
     flexcell: Literal[1]
@@ -76,7 +78,7 @@ class Substitutes:
 
     document: SubstitutesDocument
     file: Path
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
     classes: Mapping[str, type] = field(default_factory=dict[str, type], repr=False, compare=False)
     """The state classes that a test gave, by the name written for each; a document brings none."""
 
@@ -123,8 +125,8 @@ def new_substitutes(entries: Iterable[Substitute], *, name: str = "substitutes")
     return parse_substitutes(msgspec.json.encode(document), file=name)
 
 
-def _checked(source: Source, file: Path) -> Substitutes:
-    document = convert(source, SubstitutesDocument)
+def _checked(source: DocumentSource, file: Path) -> Substitutes:
+    document = decode_document(source, SubstitutesDocument)
     for index, entry in enumerate(document.substitutes):
         _require_one_kind(source, index, entry)
         for number, ending in enumerate(entry.script):
@@ -134,7 +136,7 @@ def _checked(source: Source, file: Path) -> Substitutes:
     return Substitutes(document=document, file=file, source=source)
 
 
-def _require_one_kind(source: Source, index: int, entry: Substitute) -> None:
+def _require_one_kind(source: DocumentSource, index: int, entry: Substitute) -> None:
     written = [key for key in ("outcome", "error", "script", "state") if getattr(entry, key) not in (None, ())]
     if len(written) > 1:
         where = source.position(("substitutes", index, written[1]), of_key=True)
@@ -149,7 +151,7 @@ def _require_one_kind(source: Source, index: int, entry: Substitute) -> None:
         raise DocumentError(f"`{loose[0]}` has no meaning here", where=where, hint=hint)
 
 
-def _require_one_end(source: Source, keys: tuple[str | int, ...], ending: Ending) -> None:
+def _require_one_end(source: DocumentSource, keys: tuple[str | int, ...], ending: SubstituteEnding) -> None:
     if (ending.outcome is None) == (ending.error is None):
         hint = "give one of `outcome` and `error`" + ("" if len(keys) > 2 else ", a `script` or a `state`")
         raise DocumentError("this substitute does not say how it ends", where=source.position(keys), hint=hint)

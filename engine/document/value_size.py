@@ -25,7 +25,7 @@ _ENDLESS = 1e15
 _SCALARS = frozenset((int, float, bool, type(None), datetime, timedelta))
 
 
-class Size(NamedTuple):
+class ValueSize(NamedTuple):
     """Upper bounds of what a value may hold."""
 
     weight: float = 1.0
@@ -33,61 +33,61 @@ class Size(NamedTuple):
     """Characters, where it may be text."""
     length: float = 0.0
     """Items, where it may be a list or mapping."""
-    item: Size | None = None
+    item: ValueSize | None = None
     """What any key or item may hold; None where there is none."""
     literal: str | None = None
     """The text itself, where it is short and known."""
 
     @property
-    def inside(self) -> Size:
+    def inside(self) -> ValueSize:
         """What any item may hold."""
         return self.item or SCALAR
 
 
-SCALAR = Size()
+SCALAR = ValueSize()
 
 
-def text_size(characters: float, literal: str | None = None) -> Size:
+def text_size(characters: float, literal: str | None = None) -> ValueSize:
     """Return the size of text."""
     characters = min(characters, _ENDLESS)
-    return Size(1 + characters / CHARACTERS_PER_WEIGHT, characters, literal=literal)
+    return ValueSize(1 + characters / CHARACTERS_PER_WEIGHT, characters, literal=literal)
 
 
-def list_size(length: float, item: Size) -> Size:
+def list_size(length: float, item: ValueSize) -> ValueSize:
     """Return the size of a list of so many items, or of a mapping of half as many."""
     length = min(length, _ENDLESS)
-    return Size(min(1 + length * item.weight, _ENDLESS), 0.0, length, item)
+    return ValueSize(min(1 + length * item.weight, _ENDLESS), 0.0, length, item)
 
 
-def joined(one: Size, other: Size) -> Size:
+def joined_size(one: ValueSize, other: ValueSize) -> ValueSize:
     """Return the size of both together: texts or lists one behind the other."""
     text = min(one.text + other.text, _ENDLESS)
     length = min(one.length + other.length, _ENDLESS)
-    return Size(min(one.weight + other.weight, _ENDLESS), text, length, _common_item(one, other))
+    return ValueSize(min(one.weight + other.weight, _ENDLESS), text, length, _common_item(one, other))
 
 
-def either(one: Size, other: Size) -> Size:
+def either_size(one: ValueSize, other: ValueSize) -> ValueSize:
     """Return the size of a value that is one or the other."""
     if one is other:
         return one
     length = max(one.length, other.length)
-    return Size(max(one.weight, other.weight), max(one.text, other.text), length, _common_item(one, other))
+    return ValueSize(max(one.weight, other.weight), max(one.text, other.text), length, _common_item(one, other))
 
 
-def _common_item(one: Size, other: Size) -> Size | None:
+def _common_item(one: ValueSize, other: ValueSize) -> ValueSize | None:
     if not one.length:
         return other.item
     if not other.length:
         return one.item
-    return either(one.inside, other.inside)
+    return either_size(one.inside, other.inside)
 
 
 _SHORT = text_size(100)
-SMALL = Size(1 + 2 * 16 * _SHORT.weight, _SHORT.text, 16.0, _SHORT)
+SMALL = ValueSize(1 + 2 * 16 * _SHORT.weight, _SHORT.text, 16.0, _SHORT)
 """What most values keep to: numbers, short texts, and flat lists and mappings of a few of them."""
 
 
-def measure(value: object, *, name: str) -> Size:
+def measure_value(value: object, *, name: str) -> ValueSize:
     """Return the size of a value; `name` is what messages call it.
 
     Raises:
@@ -105,7 +105,7 @@ class _Measuring:
         self._name = name
         self._weight = 0.0
 
-    def level(self, values: Sequence[object], depth: int) -> Size:
+    def level(self, values: Sequence[object], depth: int) -> ValueSize:
         """Return a size that each of the values keeps to."""
         before = self._weight
         self._count(len(values))
@@ -130,7 +130,7 @@ class _Measuring:
         self._weight -= len(inside)
         item = self.level(inside, depth + 1) if inside else None
         weight = 1 + text / CHARACTERS_PER_WEIGHT + (slots * item.weight if item is not None else 0)
-        return Size(min(weight, self._weight - before), text, length, item)
+        return ValueSize(min(weight, self._weight - before), text, length, item)
 
     def _opened(self, kind: type[object], values: Sequence[object]) -> list[Any]:
         """Return what is inside each of the values; of mappings the keys and the values are one each."""

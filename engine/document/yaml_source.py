@@ -19,8 +19,8 @@ from typing import NoReturn, Protocol, cast
 import msgspec
 import yaml
 
-from engine.document.core_schema import plain_scalar, shortened
-from engine.document.text_portions import TextPortions
+from engine.document.chunked_text import ChunkedText
+from engine.document.core_schema import plain_scalar, shorten_scalar
 from engine.errors import DocumentError, Position
 
 MAX_BYTES = 2_000_000
@@ -37,25 +37,25 @@ _UNREADABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800
 SURROGATE_PAIR = re.compile(r"(?<!\\)((?:\\\\)*)\\u([dD][89abAB][0-9a-fA-F]{2})\\u([dD][c-fC-F][0-9a-fA-F]{2})")
 
 
-class Place(msgspec.Struct, gc=False):
+class PositionTree(msgspec.Struct, gc=False):
     """Where a key and its value stand, counted from 0, and the places inside the value."""
 
     key_line: int
     key_column: int
     line: int
     column: int
-    children: dict[str | int, Place] | None = None
+    children: dict[str | int, PositionTree] | None = None
     file: str | None = None
     """The file it stands in, where that is another than the document's."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class DocumentSource:
     """A document as read: plain data and where each part of it stands in `file`."""
 
     file: str
     data: object
-    place: Place = field(repr=False)
+    place: PositionTree = field(repr=False)
 
     def position(self, path: DataPath, *, of_key: bool = False) -> Position:
         """Return where the value (or the key) at `path` stands; for a path that is absent, its nearest ancestor."""
@@ -78,7 +78,7 @@ class LineMistake(DocumentError):
     line: int = 0
 
 
-def load_source(path: Path) -> Source:
+def load_source(path: Path) -> DocumentSource:
     """Read a YAML or JSON file.
 
     Raises:
@@ -104,19 +104,19 @@ def load_text(path: Path) -> bytes:
         raise DocumentError(f"cannot read this file: {reason}", where=start, hint="check its path") from error
 
 
-def parse_source(content: bytes | str, *, file: str) -> Source:
+def parse_source(content: bytes | str, *, file: str) -> DocumentSource:
     """Parse YAML or JSON text; `file` is the name to show in positions.
 
     Raises:
         DocumentError: the text is not an acceptable document; `where` is the position.
     """
-    reading = StrictReading(content, file=file)
+    reading = StrictReader(content, file=file)
     for _ in reading:
         pass
     return reading.source()
 
 
-class StrictReading:
+class StrictReader:
     """The reading of a text event by event, for who looks at it more closely than its data: iterate, then `source`.
 
     `said` is the value that the last event was or began. While iterating raises what `parse_source` does. Without
@@ -133,7 +133,7 @@ class StrictReading:
         """The scalar that was read last, or the dict or list that has begun."""
         return self._builder.said
 
-    def source(self) -> Source:
+    def source(self) -> DocumentSource:
         """Return the document, when all of it was iterated over."""
         return self._builder.source()
 
@@ -213,7 +213,7 @@ class _Event(Protocol):
 
 def _events(text: str, file: str, builder: _Builder) -> Iterator[object]:
     # PyYAML's C parser is untyped: the cast contains it here.
-    parser = yaml.CSafeLoader(TextPortions(text))
+    parser = yaml.CSafeLoader(ChunkedText(text))
     next_event = cast(Callable[[], _Event | None], parser.get_event)
     try:
         while (event := next_event()) is not None:
@@ -261,12 +261,14 @@ class _Builder:
         self._expression_text = 0
         self.said: object = None
         self._root: list[object] = []
-        self._root_place = Place(0, 0, 0, 0)
+        self._root_place = PositionTree(0, 0, 0, 0)
         # One row per open container: the container, its place, and the pending key of a mapping.
         self._container: dict[str, object] | list[object] | None = None
         self._place = self._root_place
         self._key: tuple[str, int, int] | None = None
-        self._stack: list[tuple[dict[str, object] | list[object] | None, Place, tuple[str, int, int] | None]] = []
+        self._stack: list[
+            tuple[dict[str, object] | list[object] | None, PositionTree, tuple[str, int, int] | None]
+        ] = []
 
     def take(self, event: _Event) -> bool:
         """Use one event; True when the stream is over."""
@@ -285,11 +287,11 @@ class _Builder:
             self._start_document(event)
         return kind is yaml.StreamEndEvent
 
-    def source(self) -> Source:
+    def source(self) -> DocumentSource:
         """Return what was built."""
         if not self._root:
             _refuse(self._file, 0, 0, "the document is empty")
-        return Source(file=self._file, data=self._root[0], place=self._root_place)
+        return DocumentSource(file=self._file, data=self._root[0], place=self._root_place)
 
     def _start_document(self, event: _Event) -> None:
         self._documents += 1
@@ -341,9 +343,9 @@ class _Builder:
         if plain and key == "<<":
             self._refuse_line(event, "the merge key `<<` is not supported", "write the keys out")
         if key in container:
-            first = cast("dict[str | int, Place]", self._place.children)[key]
+            first = cast("dict[str | int, PositionTree]", self._place.children)[key]
             self._refuse_line(
-                event, f"the key `{shortened(key)}` is repeated; it is first on line {first.key_line + 1}"
+                event, f"the key `{shorten_scalar(key)}` is repeated; it is first on line {first.key_line + 1}"
             )
         mark = event.start_mark
         self._key = (key, mark.line, mark.column)
@@ -361,20 +363,20 @@ class _Builder:
         self._stack.append(outer)
         self._container, self._place, self._key = container, place, None
 
-    def _add(self, value: object, line: int, column: int) -> Place:
+    def _add(self, value: object, line: int, column: int) -> PositionTree:
         container = self._container
         if container is None:
             self._root.append(value)
-            self._root_place = Place(line, column, line, column)
+            self._root_place = PositionTree(line, column, line, column)
             return self._root_place
-        children = cast("dict[str | int, Place]", self._place.children)
+        children = cast("dict[str | int, PositionTree]", self._place.children)
         if type(container) is dict:
             key, key_line, key_column = cast("tuple[str, int, int]", self._key)
             self._key = None
             container[key] = value
-            place = children[key] = Place(key_line, key_column, line, column)
+            place = children[key] = PositionTree(key_line, key_column, line, column)
         else:
-            place = Place(line, column, line, column)
+            place = PositionTree(line, column, line, column)
             if self._places:
                 children[len(children)] = place
             cast("list[object]", container).append(value)

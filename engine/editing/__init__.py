@@ -1,39 +1,39 @@
 """Editing of documents: pure edits of their text that keep every byte they are not about, and the files behind them.
 
-`apply_edits` is a function of text and edits; `Documents` opens, saves, merges and keeps versions.
+`apply_edits` is a function of text and edits; `DocumentRepository` opens, saves, merges and keeps versions.
 """
 
-from engine.editing.apply import Edited, Refusal, apply_edits, copy_nodes, read_edits
-from engine.editing.documents import DocumentConflict, Documents, NoSuchDocument, Opened
+from engine.editing.apply import EditRefusal, EditResult, apply_edits, copy_nodes, read_edits
+from engine.editing.diagnostics import DocumentAnalysis, analyze_text, text_hash
+from engine.editing.document_graph import DocumentInfo, DocumentNode
+from engine.editing.document_repository import DocumentConflict, DocumentRepository, NoSuchDocument, StoredDocument
 from engine.editing.draft import Draft, EditRefused
 from engine.editing.edit import AnyEdit
-from engine.editing.examination import Examination, examine, hash_of
-from engine.editing.graph import DocumentInfo, DocumentNode
-from engine.editing.knowledge import Knowledge
-from engine.editing.merging import MergeConflict, Merged, merge_texts
-from engine.editing.versions import Version
+from engine.editing.project_context import ProjectContext
+from engine.editing.three_way_merge import MergeConflict, MergeResult, merge_texts
+from engine.editing.versions import DocumentVersion
 
 __all__ = [
     "AnyEdit",
+    "DocumentAnalysis",
     "DocumentConflict",
     "DocumentInfo",
     "DocumentNode",
-    "Documents",
+    "DocumentRepository",
+    "DocumentVersion",
     "Draft",
+    "EditRefusal",
     "EditRefused",
-    "Edited",
-    "Examination",
-    "Knowledge",
+    "EditResult",
     "MergeConflict",
-    "Merged",
+    "MergeResult",
     "NoSuchDocument",
-    "Opened",
-    "Refusal",
-    "Version",
+    "ProjectContext",
+    "StoredDocument",
+    "analyze_text",
     "apply_edits",
     "copy_nodes",
-    "examine",
-    "hash_of",
     "merge_texts",
     "read_edits",
+    "text_hash",
 ]

@@ -8,15 +8,19 @@ from typing import Any, cast
 
 import msgspec
 
-from engine.document.conversion import in_words
-from engine.editing import adding, edit, fields, grouping, nodes, ungrouping, wiring
-from engine.editing.bench import Bench
+from engine.document.decoding import explain_validation_error
+from engine.editing import edit, grouping, ungrouping
+from engine.editing import field_edits as fields
+from engine.editing import node_edits as nodes
+from engine.editing import node_insertion as adding
+from engine.editing import transition_edits as wiring
 from engine.editing.draft import Draft, EditRefused
-from engine.editing.knowledge import Knowledge
+from engine.editing.edit_session import EditSession
+from engine.editing.project_context import ProjectContext
 from engine.errors import DocumentError
 
 MAX_TEXT = 2_000_000
-_MAKERS: Mapping[type, Callable[[Bench, Any], None]] = {
+_MAKERS: Mapping[type, Callable[[EditSession, Any], None]] = {
     edit.AddNode: adding.add_node,
     edit.RemoveNodes: nodes.remove_nodes,
     edit.RenameNode: nodes.rename_node,
@@ -28,17 +32,17 @@ _MAKERS: Mapping[type, Callable[[Bench, Any], None]] = {
     edit.ClearParameter: fields.clear_parameter,
     edit.SetField: fields.set_field,
     edit.SetPositions: fields.set_positions,
-    edit.Group: grouping.group,
-    edit.Ungroup: ungrouping.ungroup,
-    edit.Duplicate: adding.duplicate,
-    edit.Paste: adding.paste,
+    edit.GroupNodes: grouping.group,
+    edit.UngroupNode: ungrouping.ungroup,
+    edit.DuplicateNodes: adding.duplicate,
+    edit.PasteNodes: adding.paste,
     edit.SetDocument: fields.set_document,
     edit.AutoConnect: wiring.auto_connect,
 }
 
 
 @dataclass(frozen=True, kw_only=True)
-class Refusal:
+class EditRefusal:
     """Why no edit was made: `index` says which of them could not be."""
 
     message: str
@@ -47,7 +51,7 @@ class Refusal:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Edited:
+class EditResult:
     """A text after edits, and the paths of the nodes that they made or changed; where refused, as it was.
 
     `draft` is the text as read, where edits were made.
@@ -56,66 +60,68 @@ class Edited:
     text: str
     draft: Draft | None = None
     changed: tuple[str, ...] = ()
-    refused: Refusal | None = None
+    refused: EditRefusal | None = None
 
 
-def read_edits(raw: Sequence[object]) -> tuple[list[edit.AnyEdit], Refusal | None]:
+def read_edits(raw: Sequence[object]) -> tuple[list[edit.AnyEdit], EditRefusal | None]:
     """Return edits from plain data, or which of them is none."""
     made: list[edit.AnyEdit] = []
     for index, each in enumerate(raw):
         try:
             made.append(cast("edit.AnyEdit", msgspec.convert(each, cast("Any", edit.AnyEdit))))
         except msgspec.ValidationError as error:
-            return [], Refusal(
-                message=f"this is no edit: {in_words(str(error))}", hint="see the list of edits", index=index
+            return [], EditRefusal(
+                message=f"this is no edit: {explain_validation_error(str(error))}",
+                hint="see the list of edits",
+                index=index,
             )
     return made, None
 
 
-def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, knowledge: Knowledge) -> Edited:
+def apply_edits(text: str, edits: Sequence[edit.AnyEdit], *, file: str, context: ProjectContext) -> EditResult:
     """Apply edits one after the other; the first that cannot be made leaves the text as it was.
 
     Args:
         text: YAML, or JSON where `file` ends so.
         edits: What to do.
         file: Name of the document, for positions.
-        knowledge: The states and behaviors around it.
+        context: The states and behaviors around it.
     """
     try:
         draft = Draft(text, file=file)
     except DocumentError as error:
-        return Edited(text=text, refused=Refusal(message=error.message, hint=error.hint or "", index=0))
-    return apply_to(draft, edits, knowledge=knowledge)
+        return EditResult(text=text, refused=EditRefusal(message=error.message, hint=error.hint or "", index=0))
+    return apply_edits_to_draft(draft, edits, context=context)
 
 
-def apply_to(draft: Draft, edits: Sequence[edit.AnyEdit], *, knowledge: Knowledge) -> Edited:
+def apply_edits_to_draft(draft: Draft, edits: Sequence[edit.AnyEdit], *, context: ProjectContext) -> EditResult:
     """Apply edits to a text that was read already; its `draft` is used up."""
     index, text = 0, draft.given
     try:
-        bench = Bench(draft, knowledge)
+        session = EditSession(draft, context)
         for each in edits:
-            _MAKERS[type(each)](bench, each)
-            bench.stale()
+            _MAKERS[type(each)](session, each)
+            session.stale()
             index += 1
         made = draft.rewritten()
     except (EditRefused, DocumentError) as error:
-        return Edited(
+        return EditResult(
             text=text,
-            refused=Refusal(message=error.message, hint=error.hint or "", index=min(index, max(0, len(edits) - 1))),
+            refused=EditRefusal(message=error.message, hint=error.hint or "", index=min(index, max(0, len(edits) - 1))),
         )
     if len(made.given) > MAX_TEXT:
-        refusal = Refusal(
+        refusal = EditRefusal(
             message="the document would become too large", hint="split it with behavior references", index=index
         )
-        return Edited(text=text, refused=refusal)
-    return Edited(text=made.given, draft=made, changed=bench.changed())
+        return EditResult(text=text, refused=refusal)
+    return EditResult(text=made.given, draft=made, changed=session.changed())
 
 
-def copy_nodes(text: str, paths: Sequence[str], *, file: str, knowledge: Knowledge) -> str:
+def copy_nodes(text: str, paths: Sequence[str], *, file: str, context: ProjectContext) -> str:
     """Return nodes as YAML with their comments, each under its name.
 
     Raises:
         EditRefused: a path names no node.
         DocumentError: the text cannot be read.
     """
-    return adding.copied_yaml(Bench(Draft(text, file=file), knowledge), list(paths))
+    return adding.copy_as_yaml(EditSession(Draft(text, file=file), context), list(paths))

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 
 import msgspec
 
-from engine.document.node import KINDS, TREE_KINDS, WRAPPERS
+from engine.document.node_spec import KINDS, TREE_KINDS, WRAPPERS
 from engine.document.signature import KeySignature, StateSignature, read_signature
 from engine.errors import StateError
-from engine.library import Library
+from engine.library.behavior_library import Library
 from engine.state_catalogue import Catalogue
 
 
@@ -49,7 +49,7 @@ class ContainerView:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReferableView:
+class BehaviorReferenceView:
     """A behavior that another may refer to by its file."""
 
     id: str
@@ -106,10 +106,10 @@ def container_views() -> tuple[ContainerView, ...]:
     )
 
 
-def referable_views(library: Library) -> tuple[ReferableView, ...]:
+def behavior_reference_views(library: Library) -> tuple[BehaviorReferenceView, ...]:
     """Return the behaviors of a project, sorted by id; of one that cannot be read only what is known."""
     return tuple(
-        ReferableView(
+        BehaviorReferenceView(
             id=view.id,
             name=view.name,
             description=view.description,

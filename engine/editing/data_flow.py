@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from engine.check.flow.flow import Flow
-from engine.check.flow.read import Read, assignments, reads
-from engine.check.flow.route import route, shown
-from engine.check.flow.site import Sites
-from engine.check.subject import Catalogue, Placed, Subject, new_subjects
+from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, NodeAt, analyze_behaviors
+from engine.check.flow.definition_sites import DefinitionSites
+from engine.check.flow.key_reads import KeyRead, assignments, key_reads
+from engine.check.flow.userdata_flow import DataFlow
+from engine.check.flow.witness_path import format_witness_path, witness_path
 from engine.document.behavior import Behavior
 
-Origin = Literal["parameter", "userdata", "item", "index", "output", "collect", "post"]
-Defined = Literal["always", "maybe", "never", "unreachable"]
+KeyOrigin = Literal["parameter", "userdata", "item", "index", "output", "collect", "post"]
+Definedness = Literal["always", "maybe", "never", "unreachable"]
 _MOST_ROUTES = 200
 
 
@@ -26,7 +26,7 @@ class KeyWriter:
     """
 
     path: str
-    origin: Origin
+    origin: KeyOrigin
     name: str
 
 
@@ -42,7 +42,7 @@ class KeyReader:
     by: str
     name: str
     required: bool
-    defined: Defined
+    defined: Definedness
     sources: tuple[str, ...]
     way: str = ""
 
@@ -58,11 +58,11 @@ class KeyFlow:
 
 def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
     """Return the keys of a behavior, those that it declares first; behaviors that it refers to are walls."""
-    subject = new_subjects(behavior, catalogue)[0]
+    subject = analyze_behaviors(behavior, catalogue)[0]
     written = list(_writers(subject))
-    read = tuple(reads(subject))
+    read = tuple(key_reads(subject))
     keys = dict.fromkeys((*(key for key, _ in written), *(each.key for each in read)))
-    flow = Flow(subject, Sites(keys))
+    flow = DataFlow(subject, DefinitionSites(keys))
     readers = [(each.key, _reader(flow, each, number < _MOST_ROUTES)) for number, each in enumerate(read)]
     return tuple(
         KeyFlow(
@@ -74,7 +74,7 @@ def data_flow(behavior: Behavior, catalogue: Catalogue) -> tuple[KeyFlow, ...]:
     )
 
 
-def _writers(subject: Subject) -> Iterator[tuple[str, KeyWriter]]:
+def _writers(subject: AnalyzedBehavior) -> Iterator[tuple[str, KeyWriter]]:
     document = subject.behavior.document
     for key in document.parameters:
         yield key, KeyWriter(path="", origin="parameter", name=key)
@@ -84,7 +84,7 @@ def _writers(subject: Subject) -> Iterator[tuple[str, KeyWriter]]:
         yield from _written(subject, placed)
 
 
-def _written(subject: Subject, placed: Placed) -> Iterator[tuple[str, KeyWriter]]:
+def _written(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[str, KeyWriter]]:
     node, path = placed.node, placed.path
     for key in node.userdata:
         yield key, KeyWriter(path=path, origin="userdata", name=key)
@@ -105,10 +105,10 @@ def _written(subject: Subject, placed: Placed) -> Iterator[tuple[str, KeyWriter]
         yield key, KeyWriter(path=path, origin="output", name=name)
 
 
-def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
+def _reader(flow: DataFlow, read: KeyRead, with_way: bool) -> KeyReader:
     path, sites = read.placed.path, flow.sites
     fact = flow.fact_at(read)
-    defined: Defined = "unreachable"
+    defined: Definedness = "unreachable"
     sources: tuple[str, ...] = ()
     way = ""
     if fact is not None:
@@ -116,7 +116,7 @@ def _reader(flow: Flow, read: Read, with_way: bool) -> KeyReader:
         defined = "always" if not undefined else "maybe" if known else "never"
         sources = tuple(site.path for site in sites.places(read.key, known))
         if undefined and known and with_way and read.by not in ("collect", "shared", "post"):
-            way = shown(route(flow, path, sites.undefined_bit(read.key)))
+            way = format_witness_path(witness_path(flow, path, sites.undefined_bit(read.key)))
     return KeyReader(
         path=path, by=read.by, name=read.name, required=read.required, defined=defined, sources=sources, way=way
     )

@@ -6,9 +6,9 @@ import copy
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
-from engine.editing.matching import same
-from engine.editing.rewriting import Rewriter
-from engine.editing.syntax import Collection, Origin, SyntaxTree, read_syntax
+from engine.editing.node_matching import is_same_value
+from engine.editing.syntax import Collection, SourceText, SyntaxTree, read_syntax
+from engine.editing.text_rewriter import TextRewriter
 from engine.errors import DocumentError, FlexcellError
 
 
@@ -39,7 +39,7 @@ class Draft:
         self.data = cast("dict[str, object]", root.data)
 
     @property
-    def origin(self) -> Origin:
+    def origin(self) -> SourceText:
         """The text as it was read, with its spans."""
         return self._tree.origin
 
@@ -95,7 +95,7 @@ class Draft:
         Raises:
             EditRefused: it cannot be written without changing more than was asked for.
         """
-        made = Rewriter(self._sources, self.json).document(self._tree, self.data)
+        made = TextRewriter(self._sources, self.json).document(self._tree, self.data)
         # What ends with a line feed cannot be shown on a last line without one.
         again = self._read_back(made) or self._read_back(made + "\n")
         if again is None:
@@ -135,4 +135,4 @@ def _equal(a: Any, b: Any) -> bool:
     if isinstance(a, list) and isinstance(b, list):
         many, more = cast("list[Any]", a), cast("list[Any]", b)
         return len(many) == len(more) and all(_equal(one, other) for one, other in zip(many, more, strict=True))
-    return same(cast("object", a), cast("object", b))
+    return is_same_value(cast("object", a), cast("object", b))

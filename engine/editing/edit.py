@@ -7,15 +7,15 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta
 
-Point = tuple[float, float]
-Path = Annotated[str, Meta(max_length=4000, description="A node, `root/approach/left`")]
-Name = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")]
+CanvasPoint = tuple[float, float]
+NodePath = Annotated[str, Meta(max_length=4000, description="A node, `root/approach/left`")]
+NodeName = Annotated[str, Meta(pattern="^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$", description="Letters, digits, `_` and `-`")]
 
 
-class Edge(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, rename={"source": "from"}):
+class TransitionRef(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, rename={"source": "from"}):
     """An arrow of a machine: a child of it (its path), and one of its outcomes."""
 
-    source: Path
+    source: NodePath
     outcome: str
 
 
@@ -32,65 +32,65 @@ class AddNode(Edit, frozen=True, kw_only=True, tag="add_node"):
     sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children.
     """
 
-    parent: Path
+    parent: NodePath
     kind: str = ""
     runs: str = ""
     parameters: dict[str, object] = {}
-    name: Name | None = None
+    name: NodeName | None = None
     yaml: str = ""
     index: int | None = None
-    position: Point | None = None
-    after: Path | None = None
-    on_edge: Edge | None = None
+    position: CanvasPoint | None = None
+    after: NodePath | None = None
+    on_edge: TransitionRef | None = None
 
 
 class RemoveNodes(Edit, frozen=True, kw_only=True, tag="remove_nodes"):
     """Take nodes out, with the transitions and conditions that name them; other references show as findings."""
 
-    paths: tuple[Path, ...]
+    paths: tuple[NodePath, ...]
 
 
 class RenameNode(Edit, frozen=True, kw_only=True, tag="rename_node"):
     """Give a node another name; whatever refers to it follows."""
 
-    path: Path
-    name: Name
+    path: NodePath
+    name: NodeName
 
 
 class MoveNodes(Edit, frozen=True, kw_only=True, tag="move_nodes"):
     """Put nodes into another container, or elsewhere among their siblings; transitions among them stay."""
 
-    paths: tuple[Path, ...]
-    parent: Path
+    paths: tuple[NodePath, ...]
+    parent: NodePath
     index: int | None = None
 
 
 class SetTransition(Edit, frozen=True, kw_only=True, tag="set_transition"):
     """Lead an outcome of a node to a sibling, or to an outcome of the machine around it."""
 
-    path: Path
+    path: NodePath
     outcome: str
-    target: Name
+    target: NodeName
 
 
 class ClearTransition(Edit, frozen=True, kw_only=True, tag="clear_transition"):
     """Lead an outcome of a node nowhere."""
 
-    path: Path
+    path: NodePath
     outcome: str
 
 
 class SetInitial(Edit, frozen=True, kw_only=True, tag="set_initial"):
     """Let a machine begin with a child."""
 
-    path: Path
-    child: Name
+    path: NodePath
+    child: NodeName
 
 
 class SetParameter(Edit, frozen=True, kw_only=True, tag="set_parameter"):
     """Give a state or behavior a value for a parameter."""
 
-    path: Path
+    path: NodePath
     name: str
     value: object
 
@@ -98,7 +98,7 @@ class SetParameter(Edit, frozen=True, kw_only=True, tag="set_parameter"):
 class ClearParameter(Edit, frozen=True, kw_only=True, tag="clear_parameter"):
     """Take the value of a parameter back; its default holds."""
 
-    path: Path
+    path: NodePath
     name: str
 
 
@@ -111,7 +111,7 @@ class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
     failure_count, after, status, running, failure; and `order`, the names of all children in their new order.
     """
 
-    path: Path
+    path: NodePath
     field: str
     value: object = None
 
@@ -119,35 +119,35 @@ class SetField(Edit, frozen=True, kw_only=True, tag="set_field"):
 class SetPositions(Edit, frozen=True, kw_only=True, tag="set_positions"):
     """Place nodes on the canvas, in pixels relative to their container; null forgets a position."""
 
-    positions: dict[Path, Point | None]
+    positions: dict[NodePath, CanvasPoint | None]
 
 
-class Group(Edit, frozen=True, kw_only=True, tag="group"):
+class GroupNodes(Edit, frozen=True, kw_only=True, tag="group"):
     """Put siblings into a new container in their place; what leads out of them becomes its outcomes."""
 
-    paths: tuple[Path, ...]
+    paths: tuple[NodePath, ...]
     kind: Literal["machine", "priority", "concurrency", "sequence", "selector", "parallel"]
-    name: Name | None = None
+    name: NodeName | None = None
 
 
-class Ungroup(Edit, frozen=True, kw_only=True, tag="ungroup"):
+class UngroupNode(Edit, frozen=True, kw_only=True, tag="ungroup"):
     """Put the children of a container in its place."""
 
-    path: Path
+    path: NodePath
 
 
-class Duplicate(Edit, frozen=True, kw_only=True, tag="duplicate"):
+class DuplicateNodes(Edit, frozen=True, kw_only=True, tag="duplicate"):
     """Put copies of nodes beside them; transitions among them lead to the copies."""
 
-    paths: tuple[Path, ...]
+    paths: tuple[NodePath, ...]
 
 
-class Paste(Edit, frozen=True, kw_only=True, tag="paste"):
+class PasteNodes(Edit, frozen=True, kw_only=True, tag="paste"):
     """Put nodes as `copy` gives them into a container."""
 
-    parent: Path
+    parent: NodePath
     yaml: str
-    position: Point | None = None
+    position: CanvasPoint | None = None
     index: int | None = None
 
 
@@ -163,7 +163,7 @@ class SetDocument(Edit, frozen=True, kw_only=True, tag="set_document"):
 class AutoConnect(Edit, frozen=True, kw_only=True, tag="auto_connect"):
     """Lead the open outcomes of nodes where they obviously go; of all children for a machine."""
 
-    paths: tuple[Path, ...]
+    paths: tuple[NodePath, ...]
 
 
 AnyEdit = (
@@ -178,10 +178,10 @@ AnyEdit = (
     | ClearParameter
     | SetField
     | SetPositions
-    | Group
-    | Ungroup
-    | Duplicate
-    | Paste
+    | GroupNodes
+    | UngroupNode
+    | DuplicateNodes
+    | PasteNodes
     | SetDocument
     | AutoConnect
 )

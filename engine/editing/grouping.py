@@ -5,120 +5,120 @@ from __future__ import annotations
 from itertools import product
 from typing import cast
 
-from engine.document.node import SLOTS
-from engine.editing.adding import name_part
-from engine.editing.bench import Bench, Restructuring, insert_key, states_of
+from engine.document.node_spec import SLOTS
 from engine.editing.draft import EditRefused
-from engine.editing.edit import Group, Point, SetPositions
-from engine.editing.fields import set_positions
-from engine.editing.nodes import outermost, take_out
-from engine.editing.outline import GROUPS, MACHINES, Plain, Spot, leads
+from engine.editing.edit import CanvasPoint, GroupNodes, SetPositions
+from engine.editing.edit_session import EditSession, ReferenceUpdate, insert_key, named_children
+from engine.editing.field_edits import set_positions
+from engine.editing.node_edits import detach_node, outermost
+from engine.editing.node_insertion import set_tree_node_name
+from engine.editing.outline import GROUPS, MACHINES, NodeRef, Plain, transition_entries
 
 _MARGIN_PX = (40, 60)
 """Between the corner of a container and the first of its children."""
 _MOST_RULES = 16
 
 
-def group(bench: Bench, edit: Group) -> None:
+def group(session: EditSession, edit: GroupNodes) -> None:
     """Put siblings into a new container."""
-    spots = outermost([bench.at(path) for path in edit.paths])
-    if not spots:
+    refs = outermost([session.at(path) for path in edit.paths])
+    if not refs:
         raise EditRefused("nothing is chosen", hint="choose the nodes to be grouped")
-    home = spots[0].parent
+    home = refs[0].parent
     if home is None:
         raise EditRefused("the outermost node cannot be grouped", hint="group what is inside")
-    if any(spot.parent is not home for spot in spots):
+    if any(ref.parent is not home for ref in refs):
         raise EditRefused("only nodes of one container can be grouped", hint="choose siblings")
-    order = [child.name for child in bench.outline.children(home)]
-    spots.sort(key=lambda spot: order.index(spot.name))
-    if edit.name is not None and edit.name in order and edit.name not in [spot.name for spot in spots]:
+    order = [child.name for child in session.outline.children(home)]
+    refs.sort(key=lambda ref: order.index(ref.name))
+    if edit.name is not None and edit.name in order and edit.name not in [ref.name for ref in refs]:
         raise EditRefused(f"`{home.path}` has a `{edit.name}` already", hint="choose another name")
     if home.kind in MACHINES:
-        _in_machine(bench, edit, home, spots)
+        _in_machine(session, edit, home, refs)
     elif home.kind == "tree" or home.is_part:
-        _in_tree(bench, edit, home, spots)
+        _in_tree(session, edit, home, refs)
     else:
-        _around_one(bench, edit, home, spots)
+        _around_one(session, edit, home, refs)
 
 
-def _in_machine(bench: Bench, edit: Group, home: Spot, spots: list[Spot]) -> None:
+def _in_machine(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
     # Branches are entered all at once, wherever one leads to.
-    entry = spots[0].name if edit.kind in ("concurrency", "parallel") else _entry(bench, home, spots)
-    crossing = _crossing(spots)
+    entry = refs[0].name if edit.kind in ("concurrency", "parallel") else _entry(session, home, refs)
+    crossing = _crossing(refs)
     if edit.kind in MACHINES:
-        inside: Plain = {"initial": entry, "states": {spot.name: spot.data for spot in spots}}
+        inside: Plain = {"initial": entry, "states": {ref.name: ref.data for ref in refs}}
         made: Plain = {edit.kind: inside}
         wired = {target: target for target in crossing}
     elif edit.kind == "concurrency":
-        conditions = _conditions(bench, spots)
-        inside = {"states": {spot.name: spot.data for spot in spots}, "conditions": conditions}
+        conditions = _conditions(session, refs)
+        inside = {"states": {ref.name: ref.data for ref in refs}, "conditions": conditions}
         made = {"concurrency": inside}
         wired = {target: target for target in dict.fromkeys(next(iter(rule)) for rule in conditions)}
     else:
-        spots, wired = _chain(bench, edit.kind, spots, entry)
-        made = {"tree": {edit.kind: [spot.data for spot in spots]}}
+        refs, wired = _chain(session, edit.kind, refs, entry)
+        made = {"tree": {edit.kind: [ref.data for ref in refs]}}
     if wired:
         made["transitions"] = wired
-    _replace_in_named(bench, edit, home, spots, made)
+    _replace_in_named(session, edit, home, refs, made)
 
 
-def _replace_in_named(bench: Bench, edit: Group, home: Spot, spots: list[Spot], made: Plain) -> None:
-    name = edit.name or bench.free_name(home, "group")
-    points = _points(bench, spots)
-    place = min(list(home.states).index(spot.name) for spot in spots)
-    follow = Restructuring(bench)
-    for spot in spots:
-        take_out(spot)
+def _replace_in_named(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef], made: Plain) -> None:
+    name = edit.name or session.free_name(home, "group")
+    points = _points(session, refs)
+    place = min(list(home.states).index(ref.name) for ref in refs)
+    follow = ReferenceUpdate(session)
+    for ref in refs:
+        detach_node(ref)
         if edit.kind not in MACHINES:
-            spot.data.pop("transitions", None)
+            ref.data.pop("transitions", None)
         if edit.kind in GROUPS:
             for measure in ("timeout", "guard"):
-                if isinstance(spot.data.get(measure), dict):
-                    cast("Plain", spot.data[measure])["to"] = "failure"
-            if "on_error" in spot.data:
-                spot.data["on_error"] = "failure"
-            name_part(spot.data, spot.name)
-    insert_key(states_of(home), name, made, place)
-    follow.finish(instead={id(spot.data): name for spot in spots}, stray=lambda _, target: target)
+                if isinstance(ref.data.get(measure), dict):
+                    cast("Plain", ref.data[measure])["to"] = "failure"
+            if "on_error" in ref.data:
+                ref.data["on_error"] = "failure"
+            set_tree_node_name(ref.data, ref.name)
+    insert_key(named_children(home), name, made, place)
+    follow.finish(instead={id(ref.data): name for ref in refs}, stray=lambda _, target: target)
     if points:
         corner = [min(point[axis] for point in points.values()) - _MARGIN_PX[axis] for axis in (0, 1)]
-        positions: dict[str, Point | None] = {bench.outline.path_of(made): (corner[0], corner[1])}
+        positions: dict[str, CanvasPoint | None] = {session.outline.path_of(made): (corner[0], corner[1])}
         if edit.kind not in GROUPS:
-            by_id = {id(spot.data): points[spot.path] for spot in spots if spot.path in points}
-            for child in bench.outline.children(bench.at(bench.outline.path_of(made))):
+            by_id = {id(ref.data): points[ref.path] for ref in refs if ref.path in points}
+            for child in session.outline.children(session.at(session.outline.path_of(made))):
                 if id(child.data) in by_id:
                     x, y = by_id[id(child.data)]
                     positions[child.path] = (x - corner[0], y - corner[1])
-        set_positions(bench, SetPositions(positions=positions))
-    bench.mark(made)
+        set_positions(session, SetPositions(positions=positions))
+    session.mark(made)
 
 
-def _entry(bench: Bench, home: Spot, spots: list[Spot]) -> str:
+def _entry(session: EditSession, home: NodeRef, refs: list[NodeRef]) -> str:
     """Return the one member that is entered from outside."""
-    names = {spot.name for spot in spots}
-    outside = [child for child in bench.outline.children(home) if child.name not in names]
-    entered = dict.fromkeys(to for child in outside for _, _, to in leads(child.data) if to in names)
+    names = {ref.name for ref in refs}
+    outside = [child for child in session.outline.children(home) if child.name not in names]
+    entered = dict.fromkeys(to for child in outside for _, _, to in transition_entries(child.data) if to in names)
     initial = home.body.get("initial")
     if isinstance(initial, str) and initial in names:
         entered = dict.fromkeys((initial, *entered))
     if len(entered) > 1:
         listed = " and ".join(f"`{name}`" for name in entered)
         raise EditRefused(f"{listed} are entered from outside, but a container begins in one place", where=home.path)
-    return next(iter(entered), spots[0].name)
+    return next(iter(entered), refs[0].name)
 
 
-def _crossing(spots: list[Spot]) -> list[str]:
+def _crossing(refs: list[NodeRef]) -> list[str]:
     """Return where members lead to outside of them, each once."""
-    names = {spot.name for spot in spots}
-    return list(dict.fromkeys(to for spot in spots for _, _, to in leads(spot.data) if to not in names))
+    names = {ref.name for ref in refs}
+    return list(dict.fromkeys(to for ref in refs for _, _, to in transition_entries(ref.data) if to not in names))
 
 
-def _conditions(bench: Bench, spots: list[Spot]) -> list[Plain]:
+def _conditions(session: EditSession, refs: list[NodeRef]) -> list[Plain]:
     """Return the rules of a concurrency container: all good ends together lead on, each other one leads out."""
-    names = {spot.name for spot in spots}
-    good = {spot.name: bench.ends(spot).success for spot in spots}
+    names = {ref.name for ref in refs}
+    good = {ref.name: session.ends(ref).success for ref in refs}
     onward = dict.fromkeys(
-        to for spot in spots for how, to in _transitions(spot).items() if how in good[spot.name] and to not in names
+        to for ref in refs for how, to in _transitions(ref).items() if how in good[ref.name] and to not in names
     )
     found: list[Plain] = []
     if len(onward) == 1 and all(good.values()):
@@ -127,27 +127,27 @@ def _conditions(bench: Bench, spots: list[Spot]) -> list[Plain]:
             raise EditRefused("these end well in too many ways for conditions", hint="group fewer of them")
         for each in combinations:
             found.append({next(iter(onward)): dict(zip(good, each, strict=True))})
-    for spot in spots:
-        for mapping, key, to in leads(spot.data):
-            outcome = key if mapping is spot.data.get("transitions") else to
-            if to not in names and not (len(onward) == 1 and outcome in good[spot.name]):
-                found.append({to: {spot.name: outcome}})
+    for ref in refs:
+        for mapping, key, to in transition_entries(ref.data):
+            outcome = key if mapping is ref.data.get("transitions") else to
+            if to not in names and not (len(onward) == 1 and outcome in good[ref.name]):
+                found.append({to: {ref.name: outcome}})
     return found
 
 
-def _chain(bench: Bench, kind: str, spots: list[Spot], entry: str) -> tuple[list[Spot], dict[str, str]]:
+def _chain(session: EditSession, kind: str, refs: list[NodeRef], entry: str) -> tuple[list[NodeRef], dict[str, str]]:
     """Return members in the order in which a tree would run them, and where success and failure lead."""
-    by_name = {spot.name: spot for spot in spots}
+    by_name = {ref.name: ref for ref in refs}
     onward = "success" if kind == "sequence" else "failure"
-    order: list[Spot] = []
+    order: list[NodeRef] = []
     due: str | None = entry
     ways: dict[str, dict[str, None]] = {"success": {}, "failure": {}}
     while due is not None and kind != "parallel":
-        spot = by_name[due]
-        if spot in order:
+        ref = by_name[due]
+        if ref in order:
             raise EditRefused(f"`{due}` is run again, but a {kind} does not go back", hint="group them as a machine")
-        order.append(spot)
-        split = _split(bench, spot)
+        order.append(ref)
+        split = _split(session, ref)
         inside = [to for to in split[onward] if to in by_name]
         other = "failure" if onward == "success" else "success"
         back = [to for to in split[other] if to in by_name]
@@ -156,15 +156,15 @@ def _chain(bench: Bench, kind: str, spots: list[Spot], entry: str) -> tuple[list
         due = inside[0] if inside else None
         for status in ways:
             ways[status] |= {to: None for to in split[status] if to not in by_name}
-    for spot in spots if kind == "parallel" else ():
-        order.append(spot)
-        split = _split(bench, spot)
+    for ref in refs if kind == "parallel" else ():
+        order.append(ref)
+        split = _split(session, ref)
         if any(to in by_name for to in (*split["success"], *split["failure"])):
-            raise EditRefused(f"`{spot.name}` leads to another of them", hint="what runs side by side does not")
+            raise EditRefused(f"`{ref.name}` leads to another of them", hint="what runs side by side does not")
         for status in ways:
             ways[status] |= dict.fromkeys(split[status])
-    if len(order) < len(spots):
-        left = next(spot.name for spot in spots if spot not in order)
+    if len(order) < len(refs):
+        left = next(ref.name for ref in refs if ref not in order)
         raise EditRefused(
             f"`{left}` is not on the way from `{entry}`", hint=f"choose what follows one another as a {kind}"
         )
@@ -177,81 +177,81 @@ def _chain(bench: Bench, kind: str, spots: list[Spot], entry: str) -> tuple[list
     return order, {status: next(iter(targets)) for status, targets in ways.items() if targets}
 
 
-def _split(bench: Bench, spot: Spot) -> dict[str, list[str]]:
+def _split(session: EditSession, ref: NodeRef) -> dict[str, list[str]]:
     """Return where the good ends of a node lead, and the others."""
-    good = bench.ends(spot).success
-    wired = _transitions(spot)
-    others = [to for mapping, _, to in leads(spot.data) if mapping is not spot.data.get("transitions")]
+    good = session.ends(ref).success
+    wired = _transitions(ref)
+    others = [to for mapping, _, to in transition_entries(ref.data) if mapping is not ref.data.get("transitions")]
     return {
         "success": [to for outcome, to in wired.items() if outcome in good],
         "failure": [*(to for outcome, to in wired.items() if outcome not in good), *others],
     }
 
 
-def _in_tree(bench: Bench, edit: Group, home: Spot, spots: list[Spot]) -> None:
+def _in_tree(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
     if edit.kind not in GROUPS:
         raise EditRefused(
             f"inside a tree nodes are not grouped as a {edit.kind}", hint="use sequence, selector or parallel"
         )
-    made: Plain = {edit.kind: [spot.data for spot in spots]}
+    made: Plain = {edit.kind: [ref.data for ref in refs]}
     if edit.name is not None:
         made = {"name": edit.name, **made}
-    children = list(bench.outline.children(home))
-    places = [next(i for i, child in enumerate(children) if child.data is spot.data) for spot in spots]
+    children = list(session.outline.children(home))
+    places = [next(i for i, child in enumerate(children) if child.data is ref.data) for ref in refs]
     if places != list(range(places[0], places[0] + len(places))):
         raise EditRefused("these do not follow one another", hint="choose neighbours")
-    if home.kind in SLOTS and len(spots) > 1:
+    if home.kind in SLOTS and len(refs) > 1:
         raise EditRefused(f"the children of a {home.kind} have roles", hint="group one of them")
-    follow = Restructuring(bench)
+    follow = ReferenceUpdate(session)
     if home.kind in GROUPS:
         body = home.data[home.kind]
         listed = cast("list[object]", body if isinstance(body, list) else cast("Plain", body)["children"])
-        listed[places[0] : places[0] + len(spots)] = [made]
+        listed[places[0] : places[0] + len(refs)] = [made]
     elif home.kind == "tree":
         home.data["tree"] = made
     else:
-        home.body[spots[0].role or "child"] = made
+        home.body[refs[0].role or "child"] = made
     follow.finish()
-    bench.mark(made)
+    session.mark(made)
 
 
-def _around_one(bench: Bench, edit: Group, home: Spot, spots: list[Spot]) -> None:
+def _around_one(session: EditSession, edit: GroupNodes, home: NodeRef, refs: list[NodeRef]) -> None:
     """Put a container around a branch of a concurrency container, or what a foreach repeats."""
-    if len(spots) > 1:
+    if len(refs) > 1:
         hint = "conditions speak of each of them; put a container around one"
         raise EditRefused(f"branches of a {home.kind} cannot be grouped", hint=hint)
     if edit.kind not in MACHINES:
         raise EditRefused(f"a branch of a {home.kind} cannot be grouped as a {edit.kind}", hint="use a machine")
-    (spot,) = spots
-    outcomes = bench.ends(spot).outcomes
-    named = spot.name if home.kind == "concurrency" else "step"
-    made: Plain = {edit.kind: {"initial": named, "states": {named: spot.data}}}
-    name = edit.name or spot.name
-    follow = Restructuring(bench)
+    (ref,) = refs
+    outcomes = session.ends(ref).outcomes
+    named = ref.name if home.kind == "concurrency" else "step"
+    made: Plain = {edit.kind: {"initial": named, "states": {named: ref.data}}}
+    name = edit.name or ref.name
+    follow = ReferenceUpdate(session)
     if home.kind == "concurrency":
-        states = states_of(home)
-        kept = {name if key == spot.name else key: made if key == spot.name else each for key, each in states.items()}
+        states = named_children(home)
+        kept = {name if key == ref.name else key: made if key == ref.name else each for key, each in states.items()}
         states.clear()
         states.update(kept)
     else:
         home.body["child"] = made
-    follow.finish(instead={id(spot.data): name}, stray=lambda _, target: target)
-    spot.data["transitions"] = {outcome: outcome for outcome in outcomes}
-    bench.mark(made)
+    follow.finish(instead={id(ref.data): name}, stray=lambda _, target: target)
+    ref.data["transitions"] = {outcome: outcome for outcome in outcomes}
+    session.mark(made)
 
 
-def _transitions(spot: Spot) -> dict[str, str]:
-    wired = spot.data.get("transitions")
+def _transitions(ref: NodeRef) -> dict[str, str]:
+    wired = ref.data.get("transitions")
     found = cast("Plain", wired) if isinstance(wired, dict) else {}
     return {outcome: to for outcome, to in found.items() if isinstance(to, str)}
 
 
-def _points(bench: Bench, spots: list[Spot]) -> dict[str, tuple[float, float]]:
-    view = cast("Plain", bench.draft.data.get("view") or {})
+def _points(session: EditSession, refs: list[NodeRef]) -> dict[str, tuple[float, float]]:
+    view = cast("Plain", session.draft.data.get("view") or {})
     found: dict[str, tuple[float, float]] = {}
-    for spot in spots:
-        point = view.get(spot.path)
+    for ref in refs:
+        point = view.get(ref.path)
         if isinstance(point, list) and len(cast("list[float]", point)) == 2:
             x, y = cast("list[float]", point)
-            found[spot.path] = (x, y)
+            found[ref.path] = (x, y)
     return found

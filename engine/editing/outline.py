@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import cast
 
-from engine.document.node import KINDS, SLOTS, TREE_KINDS, WRAPPERS
 from engine.document.node_kind import numbered
+from engine.document.node_spec import KINDS, SLOTS, TREE_KINDS, WRAPPERS
 from engine.editing.draft import EditRefused
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 
 Plain = dict[str, object]
 Keys = tuple[str | int, ...]
@@ -26,7 +26,7 @@ CONTAINERS = (*NAMED, "tree", "foreach", *GROUPS, *SINGLES, *SLOTS, *WRAPPERS)
 
 
 @dataclass(frozen=True, eq=False)
-class Spot:
+class NodeRef:
     """A node in its place: `keys` lead to it from the document, `parent` is the node around it."""
 
     path: str
@@ -34,7 +34,7 @@ class Spot:
     kind: str
     data: Plain
     keys: Keys
-    parent: Spot | None
+    parent: NodeRef | None
 
     @property
     def in_tree(self) -> bool:
@@ -68,34 +68,34 @@ class Outline:
     """All nodes of a document by path, in document order, containers before their children."""
 
     def __init__(self, document: Plain) -> None:
-        self.spots: dict[str, Spot] = {}
+        self.refs: dict[str, NodeRef] = {}
         root = document.get("root")
         if isinstance(root, dict):
             self._walk(cast("Plain", root))
 
-    def at(self, path: str) -> Spot:
+    def at(self, path: str) -> NodeRef:
         """Return a node; raises EditRefused where there is none."""
-        if path not in self.spots:
-            raise EditRefused(f"there is no node `{path}`", hint=near_names(path, self.spots))
-        return self.spots[path]
+        if path not in self.refs:
+            raise EditRefused(f"there is no node `{path}`", hint=did_you_mean(path, self.refs))
+        return self.refs[path]
 
-    def children(self, spot: Spot) -> tuple[Spot, ...]:
+    def children(self, ref: NodeRef) -> tuple[NodeRef, ...]:
         """Return the nodes directly inside one."""
-        return tuple(self.spots[f"{spot.path}/{name}"] for name, _, _ in placed(spot.data))
+        return tuple(self.refs[f"{ref.path}/{name}"] for name, _, _ in child_entries(ref.data))
 
     def path_of(self, data: Plain) -> str:
         """Return the path of a node by its data."""
-        return next(path for path, spot in self.spots.items() if spot.data is data)
+        return next(path for path, ref in self.refs.items() if ref.data is data)
 
     def _walk(self, root: Plain) -> None:
-        due = [Spot("root", "root", kind_of(root), root, ("root",), None)]
+        due = [NodeRef("root", "root", kind_of(root), root, ("root",), None)]
         while due:
-            spot = due.pop()
-            self.spots[spot.path] = spot
+            ref = due.pop()
+            self.refs[ref.path] = ref
             inside = [
-                Spot(f"{spot.path}/{name}", name, kind_of(child, in_tree=spot.kind == "tree" or spot.is_part), child,
-                     (*spot.keys, *keys), spot)
-                for name, keys, child in placed(spot.data)
+                NodeRef(f"{ref.path}/{name}", name, kind_of(child, in_tree=ref.kind == "tree" or ref.is_part), child,
+                     (*ref.keys, *keys), ref)
+                for name, keys, child in child_entries(ref.data)
             ]  # fmt: skip
             due += reversed(inside)
 
@@ -111,7 +111,7 @@ def kind_of(node: Plain, *, in_tree: bool = False) -> str:
     return wrapping[0] if wrapping else ""
 
 
-def placed(node: Plain) -> list[tuple[str, Keys, Plain]]:
+def child_entries(node: Plain) -> list[tuple[str, Keys, Plain]]:
     """Return the children of a node: name, keys from the node inward, data."""
     kind = kind_of(node)
     body = node.get(kind)
@@ -157,7 +157,7 @@ def tree_names(children: list[Plain]) -> list[str]:
     return numbered(map(own_name, children))
 
 
-def leads(node: Plain) -> Iterator[tuple[Plain, str, str]]:
+def transition_entries(node: Plain) -> Iterator[tuple[Plain, str, str]]:
     """Go through where a node leads: the mapping that says so, the key in it, the target."""
     transitions = node.get("transitions")
     if isinstance(transitions, dict):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from engine.editing.apply import apply_edits
-from engine.editing.documents import Documents, Opened
+from engine.editing.document_repository import DocumentRepository, StoredDocument
 from engine.editing.draft import Draft
 from engine.editing.edit import AnyEdit, SetDocument, SetField
 from engine.editing.outline import Outline
@@ -16,7 +16,7 @@ from engine.errors import DocumentError
 
 
 @dataclass(frozen=True, kw_only=True)
-class Referrer:
+class ReferringBehavior:
     """A behavior that refers to another one: its id and name, and the nodes that do."""
 
     id: str
@@ -25,20 +25,20 @@ class Referrer:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moved:
+class MoveResult:
     """A document at its new place; `followed` are those whose references were changed, `left` those that were not."""
 
-    opened: Opened
+    opened: StoredDocument
     followed: tuple[str, ...] = ()
     left: tuple[str, ...] = ()
 
 
-def referrers(documents: Documents, document_id: str) -> tuple[Referrer, ...]:
+def referrers(documents: DocumentRepository, document_id: str) -> tuple[ReferringBehavior, ...]:
     """Return the behaviors of the project that refer to a document, sorted by id, itself left out."""
     return tuple(referrer for referrer, _ in _referring(documents, document_id))
 
 
-def move(documents: Documents, document_id: str, new_id: str, *, follow: bool) -> Moved:
+def move_with_references(documents: DocumentRepository, document_id: str, new_id: str, *, follow: bool) -> MoveResult:
     """Give a document another id; with `follow`, every reference to it, and its own, are written anew.
 
     A reference that cannot be followed, as its file has mistakes or changes meanwhile, is told as `left`.
@@ -59,12 +59,12 @@ def move(documents: Documents, document_id: str, new_id: str, *, follow: bool) -
         edits = list(_own_edits(own.text, document_id, new_id))
         if edits and not _rewrite(documents, own, edits):
             left.append(new_id)
-    return Moved(opened=documents.open(new_id), followed=tuple(followed), left=tuple(left))
+    return MoveResult(opened=documents.open(new_id), followed=tuple(followed), left=tuple(left))
 
 
-def _referring(documents: Documents, document_id: str) -> list[tuple[Referrer, Opened]]:
+def _referring(documents: DocumentRepository, document_id: str) -> list[tuple[ReferringBehavior, StoredDocument]]:
     target, name = documents.file_of(document_id), PurePosixPath(document_id).name
-    found: list[tuple[Referrer, Opened]] = []
+    found: list[tuple[ReferringBehavior, StoredDocument]] = []
     for other in sorted(documents.stamps()):
         try:
             # What does not even hold the name of the file is not worth being parsed.
@@ -75,11 +75,13 @@ def _referring(documents: Documents, document_id: str) -> list[tuple[Referrer, O
         except (DocumentError, OSError):
             continue  # no behavior, or not to be read: the list of behaviors says what is wrong with it
         folder = documents.file_of(other).parent
-        written = ((path, spot.data.get("behavior")) for path, spot in Outline(data).spots.items())
+        written = ((path, ref.data.get("behavior")) for path, ref in Outline(data).refs.items())
         paths = tuple(path for path, said in written if isinstance(said, str) and _names(folder, said, target))
         if paths:
             said = data.get("name")
-            found.append((Referrer(id=other, name=said if isinstance(said, str) else other, paths=paths), opened))
+            found.append(
+                (ReferringBehavior(id=other, name=said if isinstance(said, str) else other, paths=paths), opened)
+            )
     return found
 
 
@@ -98,8 +100,8 @@ def _own_edits(text: str, old_id: str, new_id: str) -> Iterator[AnyEdit]:
     """Return the edits that let what a document refers to be found from its new folder."""
     folder = PurePosixPath(old_id).parent
     data = Draft(text, file=new_id).data
-    for path, spot in Outline(data).spots.items():
-        written = spot.data.get("behavior")
+    for path, ref in Outline(data).refs.items():
+        written = ref.data.get("behavior")
         if isinstance(written, str):
             yield SetField(path=path, field="behavior", value=_relative(os.path.normpath(folder / written), new_id))
     cell = data.get("cell")
@@ -107,8 +109,8 @@ def _own_edits(text: str, old_id: str, new_id: str) -> Iterator[AnyEdit]:
         yield SetDocument(changes={"cell": _relative(os.path.normpath(folder / cell), new_id)})
 
 
-def _rewrite(documents: Documents, opened: Opened, edits: Sequence[AnyEdit]) -> bool:
-    done = apply_edits(opened.text, edits, file=opened.id, knowledge=documents.knowledge(opened.id))
+def _rewrite(documents: DocumentRepository, opened: StoredDocument, edits: Sequence[AnyEdit]) -> bool:
+    done = apply_edits(opened.text, edits, file=opened.id, context=documents.context(opened.id))
     if done.refused is not None:
         return False
     try:

@@ -13,7 +13,7 @@ from typing import Protocol, cast
 import msgspec
 import yaml
 
-from engine.document.yaml_source import SURROGATE_PAIR, StrictReading
+from engine.document.yaml_source import SURROGATE_PAIR, StrictReader
 from engine.errors import DocumentError, Position
 
 _VALUES = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent)
@@ -49,7 +49,7 @@ class Member(msgspec.Struct, eq=False, gc=False):
 class Collection(msgspec.Struct, eq=False, gc=False, tag=True):
     """A mapping or list; `data` is the plain dict or list made from it, `column` where its members stand."""
 
-    origin: Origin
+    origin: SourceText
     start: int
     end: int
     flow: bool
@@ -67,7 +67,7 @@ Syntax = Scalar | Collection
 
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
-class Origin:
+class SourceText:
     """A text that was read. It knows nothing of what stands in it, so that a tree goes as soon as nobody needs it."""
 
     text: str
@@ -83,7 +83,7 @@ class Origin:
 class SyntaxTree:
     """A text and its outermost value."""
 
-    origin: Origin
+    origin: SourceText
     root: Syntax
 
     def collections(self) -> Iterator[Collection]:
@@ -115,8 +115,8 @@ def read_syntax(text: str, *, file: str) -> SyntaxTree:
     Raises:
         DocumentError: the strict reader refuses it, or it is no mapping; `where` is the position.
     """
-    origin = Origin(text, file.endswith(".json"))
-    reading = StrictReading(text, file=file, places=False)
+    origin = SourceText(text, file.endswith(".json"))
+    reading = StrictReader(text, file=file, places=False)
     found = _Reader(origin, reading).read()
     if not isinstance(reading.source().data, dict) or found is None:
         where = Position(file=file, line=1, column=1)
@@ -127,7 +127,7 @@ def read_syntax(text: str, *, file: str) -> SyntaxTree:
 
 
 class _Reader:
-    def __init__(self, origin: Origin, reading: StrictReading) -> None:
+    def __init__(self, origin: SourceText, reading: StrictReader) -> None:
         self._origin = origin
         self._text = origin.text
         self._reading = reading

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import msgspec
 
-from engine.child_process import start_child
 from engine.editing.target_messages import TargetFindings, TargetRequest
 from engine.errors import RobotError
+from engine.host.child_process import start_child
 
 START = "from engine.editing.target_process import main; main()"
 LIMIT_S = 60.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
-from engine.library import FindingView
+from engine.library.behavior_library import FindingView
 
 
 class TargetRequest(msgspec.Struct, frozen=True, kw_only=True):

@@ -10,15 +10,15 @@ from pathlib import Path
 import msgspec
 
 from engine.check import check_targets
-from engine.child_process import end_with_parent
 from engine.document.loader import survey_behavior
+from engine.editing.diagnostics import draw_document, finding_view, sorted_findings
 from engine.editing.draft import Draft
-from engine.editing.examination import draw, in_order, view_of
-from engine.editing.knowledge import Knowledge
+from engine.editing.project_context import ProjectContext
 from engine.editing.target_messages import TargetFindings, TargetRequest
 from engine.errors import DocumentError, FlexcellError
-from engine.plan import Catalogue
+from engine.host.child_process import set_parent_death_signal
 from engine.registry import load_states
+from engine.runtime.plan import Catalogue
 
 _NICER_BY = 10
 
@@ -26,7 +26,7 @@ _NICER_BY = 10
 def main() -> None:
     """Answer on the socket whose descriptor is the first argument until the other end closes it."""
     connection = socket.socket(fileno=int(sys.argv[1]))
-    end_with_parent(connection)
+    set_parent_death_signal(connection)
     # Arms that move, and the answer to the next edit, go first.
     os.nice(_NICER_BY)
     catalogues: dict[str, Catalogue] = {}
@@ -51,13 +51,13 @@ def target_findings(text: str, file: Path, project: Path, catalogue: Catalogue) 
 
     A text that cannot be read, or leads out of the project, has none: the check says so.
     """
-    knowledge = Knowledge(catalogue, file.parent, project)
+    context = ProjectContext(catalogue, file.parent, project)
     try:
-        drawn = draw(Draft(text, file=str(file)), file=file, knowledge=knowledge)
+        drawn = draw_document(Draft(text, file=str(file)), file=file, context=context)
     except DocumentError:
         return TargetFindings()
     behavior = survey_behavior(file, text, within=project).behavior if not drawn.findings else None
     if behavior is None:
         return TargetFindings()
-    found = [view_of(each, file) for each in check_targets(behavior, catalogue) if each.severity == "warning"]
-    return TargetFindings(findings=in_order(found, drawn.graph))
+    found = [finding_view(each, file) for each in check_targets(behavior, catalogue) if each.severity == "warning"]
+    return TargetFindings(findings=sorted_findings(found, drawn.graph))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from engine.editing.notation import scalar_text
+from engine.editing.yaml_style import scalar_text
 from engine.errors import DocumentError
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 
 _HEAD = "flexcell: 1\nname: {name}\noutcomes: [finished, failed]\nsuccess: [finished]\nroot:\n"
 _TREE_HEAD = "flexcell: 1\nname: {name}\noutcomes: [success, failure]\nsuccess: [success]\nroot:\n"
@@ -24,5 +24,5 @@ def new_text(template: str, *, name: str) -> str:
         DocumentError: there is no such template.
     """
     if template not in TEMPLATES:
-        raise DocumentError(f"there is no template `{template}`", hint=near_names(template, TEMPLATES))
+        raise DocumentError(f"there is no template `{template}`", hint=did_you_mean(template, TEMPLATES))
     return TEMPLATES[template].format(name=scalar_text(name, json=False, flow=False))

@@ -4,64 +4,64 @@ from __future__ import annotations
 
 from typing import cast
 
-from engine.document.node import SLOTS
-from engine.editing.bench import Bench, Restructuring, states_of
+from engine.document.node_spec import SLOTS
 from engine.editing.draft import EditRefused
-from engine.editing.edit import Point, SetPositions, Ungroup
-from engine.editing.fields import set_positions
-from engine.editing.outline import GROUPS, MACHINES, NAMED, Plain, Spot
+from engine.editing.edit import CanvasPoint, SetPositions, UngroupNode
+from engine.editing.edit_session import EditSession, ReferenceUpdate, named_children
+from engine.editing.field_edits import set_positions
+from engine.editing.outline import GROUPS, MACHINES, NAMED, NodeRef, Plain
 
 _LOST = ("guard", "post", "timeout", "retry", "on_error", "autonomy", "resume")
 
 
-def ungroup(bench: Bench, edit: Ungroup) -> None:
+def ungroup(session: EditSession, edit: UngroupNode) -> None:
     """Put the children of a container in its place."""
-    spot = bench.at(edit.path)
-    home = spot.parent
+    ref = session.at(edit.path)
+    home = ref.parent
     if home is None:
         raise EditRefused("the outermost node has nothing around it", hint="ungroup what is inside")
-    children = bench.outline.children(spot)
+    children = session.outline.children(ref)
     if not children:
-        raise EditRefused(f"`{spot.path}` is empty", hint="remove it")
+        raise EditRefused(f"`{ref.path}` is empty", hint="remove it")
     for key in _LOST:
-        if key in spot.data and key != spot.kind:
-            raise EditRefused(f"the `{key}` of `{spot.path}` would be lost", hint="take it away first")
-    if spot.body.get("userdata"):
-        raise EditRefused(f"the userdata of `{spot.path}` would be lost", hint="declare it further outside first")
-    if home.kind in MACHINES and spot.kind == "machine":
-        _machine_in_machine(bench, home, spot, children)
-    elif home.kind in MACHINES and spot.kind == "tree":
-        _tree_in_machine(bench, home, spot)
+        if key in ref.data and key != ref.kind:
+            raise EditRefused(f"the `{key}` of `{ref.path}` would be lost", hint="take it away first")
+    if ref.body.get("userdata"):
+        raise EditRefused(f"the userdata of `{ref.path}` would be lost", hint="declare it further outside first")
+    if home.kind in MACHINES and ref.kind == "machine":
+        _machine_in_machine(session, home, ref, children)
+    elif home.kind in MACHINES and ref.kind == "tree":
+        _tree_in_machine(session, home, ref)
     elif home.is_part or home.kind == "tree":
-        _in_tree(bench, home, spot, children)
-    elif spot.kind in MACHINES and len(children) == 1:
-        _only_one(bench, home, spot, children[0])
+        _in_tree(session, home, ref, children)
+    elif ref.kind in MACHINES and len(children) == 1:
+        _only_one(session, home, ref, children[0])
     else:
         hint = "ungroup machines in machines, plain sequences, and parts of trees"
-        raise EditRefused(f"a {spot.kind} in a {home.kind} cannot be taken away and mean the same", hint=hint)
+        raise EditRefused(f"a {ref.kind} in a {home.kind} cannot be taken away and mean the same", hint=hint)
 
 
-def _machine_in_machine(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -> None:
-    leaving = cast("Plain", spot.data.get("transitions") or {})
-    initial = spot.body.get("initial")
+def _machine_in_machine(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
+    leaving = cast("Plain", ref.data.get("transitions") or {})
+    initial = ref.body.get("initial")
     entry = next((child for child in children if child.name == initial), children[0])
-    corner = _point(bench, spot)
-    points = {id(child.data): _point(bench, child) for child in children}
-    follow = Restructuring(bench)
-    names = _put_in_place(bench, home, spot, children)
+    corner = _point(session, ref)
+    points = {id(child.data): _point(session, child) for child in children}
+    follow = ReferenceUpdate(session)
+    names = _put_in_place(session, home, ref, children)
     follow.finish(
-        instead={id(spot.data): names[id(entry.data)]},
+        instead={id(ref.data): names[id(entry.data)]},
         stray=lambda _, target: cast("str | None", leaving.get(target)),
     )
-    _place(bench, children, points, corner)
+    _place(session, children, points, corner)
     for child in children:
-        bench.mark(child.data)
+        session.mark(child.data)
 
 
-def _put_in_place(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -> dict[int, str]:
+def _put_in_place(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> dict[int, str]:
     """Put children where their container was; returns their names by the id of their data."""
-    taken = {child.name for child in bench.outline.children(home)} - {spot.name}
-    taken |= set(bench.outcomes_inside(home))
+    taken = {child.name for child in session.outline.children(home)} - {ref.name}
+    taken |= set(session.outcomes_inside(home))
     names: dict[int, str] = {}
     for child in children:
         number, name = 2, child.name
@@ -69,38 +69,36 @@ def _put_in_place(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ..
             name, number = f"{child.name}_{number}", number + 1
         taken.add(name)
         names[id(child.data)] = name
-    states = states_of(home)
+    states = named_children(home)
     kept: Plain = {}
     for key, each in states.items():
-        kept |= {names[id(child.data)]: child.data for child in children} if key == spot.name else {key: each}
+        kept |= {names[id(child.data)]: child.data for child in children} if key == ref.name else {key: each}
     for child in children:
-        states_of(spot).pop(child.name, None)
+        named_children(ref).pop(child.name, None)
     states.clear()
     states.update(kept)
     return names
 
 
-def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
+def _tree_in_machine(session: EditSession, home: NodeRef, ref: NodeRef) -> None:
     """Turn a plain sequence or selector into states that follow one another."""
-    (part,) = bench.outline.children(spot)
-    steps = bench.outline.children(part)
+    (part,) = session.outline.children(ref)
+    steps = session.outline.children(part)
     if part.kind not in ("sequence", "selector") or not steps or any(step.is_part for step in steps):
         hint = "only a sequence or selector of states and containers can be"
-        raise EditRefused(f"`{spot.path}` cannot become states that follow one another", hint=hint)
+        raise EditRefused(f"`{ref.path}` cannot become states that follow one another", hint=hint)
     if isinstance(part.data.get(part.kind), dict) and part.body.get("memory") is False:
         raise EditRefused(
             f"`{part.path}` has no memory", hint="only one with memory runs its children one after the other"
         )
     if any("post" in step.data for step in steps):
-        raise EditRefused(f"a step of `{spot.path}` has a `post`, which would be lost", hint="take it away first")
+        raise EditRefused(f"a step of `{ref.path}` has a `post`, which would be lost", hint="take it away first")
     if any(_guard(step).get("to") == "skipped" for step in steps):
-        raise EditRefused(
-            f"a step of `{spot.path}` may be skipped, which a machine does not know", hint="guard it else"
-        )
-    leaving = cast("Plain", spot.data.get("transitions") or {})
-    ends = {id(step.data): bench.ends(step) for step in steps}
-    follow = Restructuring(bench)
-    taken = {child.name for child in bench.outline.children(home)} - {spot.name} | set(bench.outcomes_inside(home))
+        raise EditRefused(f"a step of `{ref.path}` may be skipped, which a machine does not know", hint="guard it else")
+    leaving = cast("Plain", ref.data.get("transitions") or {})
+    ends = {id(step.data): session.ends(step) for step in steps}
+    follow = ReferenceUpdate(session)
+    taken = {child.name for child in session.outline.children(home)} - {ref.name} | set(session.outcomes_inside(home))
     names: list[str] = []
     for step in steps:
         number, name = 2, step.name
@@ -121,19 +119,19 @@ def _tree_in_machine(bench: Bench, home: Spot, spot: Spot) -> None:
         _divert(step.data, leaving)
         if wired:
             step.data["transitions"] = wired
-    states = states_of(home)
+    states = named_children(home)
     kept: Plain = {}
     for key, each in states.items():
-        kept |= dict(zip(names, [s.data for s in steps], strict=True)) if key == spot.name else {key: each}
+        kept |= dict(zip(names, [s.data for s in steps], strict=True)) if key == ref.name else {key: each}
     states.clear()
     states.update(kept)
-    follow.finish(instead={id(spot.data): names[0]}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): names[0]}, stray=lambda _, target: target)
     for step in steps:
-        bench.mark(step.data)
+        session.mark(step.data)
 
 
-def _guard(spot: Spot) -> Plain:
-    guard = spot.data.get("guard")
+def _guard(ref: NodeRef) -> Plain:
+    guard = ref.data.get("guard")
     return cast("Plain", guard) if isinstance(guard, dict) else {}
 
 
@@ -148,52 +146,52 @@ def _divert(node: Plain, leaving: Plain) -> None:
         node["on_error"] = leaving.get(str(node["on_error"]), node["on_error"])
 
 
-def _in_tree(bench: Bench, home: Spot, spot: Spot, children: tuple[Spot, ...]) -> None:
-    if not spot.is_part:
-        raise EditRefused(f"a {spot.kind} cannot become parts of a tree", hint="ungroup composites and decorators")
-    if len(children) > 1 and (home.kind != spot.kind or spot.kind == "parallel" or spot.kind in SLOTS):
+def _in_tree(session: EditSession, home: NodeRef, ref: NodeRef, children: tuple[NodeRef, ...]) -> None:
+    if not ref.is_part:
+        raise EditRefused(f"a {ref.kind} cannot become parts of a tree", hint="ungroup composites and decorators")
+    if len(children) > 1 and (home.kind != ref.kind or ref.kind == "parallel" or ref.kind in SLOTS):
         raise EditRefused(
-            f"a {spot.kind} in a {home.kind} means something else without it", hint="change its kind first"
+            f"a {ref.kind} in a {home.kind} means something else without it", hint="change its kind first"
         )
     first = next(iter(children))
-    follow = Restructuring(bench)
+    follow = ReferenceUpdate(session)
     if home.kind in GROUPS:
         body = home.data[home.kind]
         listed = cast("list[object]", body if isinstance(body, list) else cast("Plain", body)["children"])
-        place = next(number for number, each in enumerate(listed) if each is spot.data)
+        place = next(number for number, each in enumerate(listed) if each is ref.data)
         listed[place : place + 1] = [child.data for child in children]
     elif home.kind == "tree":
         home.data["tree"] = first.data
     else:
-        home.body[spot.role or "child"] = first.data
+        home.body[ref.role or "child"] = first.data
     follow.finish()
     for child in children:
-        bench.mark(child.data)
+        session.mark(child.data)
 
 
-def _only_one(bench: Bench, home: Spot, spot: Spot, child: Spot) -> None:
+def _only_one(session: EditSession, home: NodeRef, ref: NodeRef, child: NodeRef) -> None:
     wired = cast("Plain", child.data.get("transitions") or {})
     if any(outcome != to for outcome, to in wired.items()):
         hint = "lead each outcome to one of the same name first"
-        raise EditRefused(f"the outcomes of `{spot.path}` have other names than those of `{child.name}`", hint=hint)
-    follow = Restructuring(bench)
+        raise EditRefused(f"the outcomes of `{ref.path}` have other names than those of `{child.name}`", hint=hint)
+    follow = ReferenceUpdate(session)
     if home.kind in NAMED:
-        states = states_of(home)
-        kept = {key: child.data if each is spot.data else each for key, each in states.items()}
+        states = named_children(home)
+        kept = {key: child.data if each is ref.data else each for key, each in states.items()}
         states.clear()
         states.update(kept)
-        name = spot.name
+        name = ref.name
     else:
         home.body["child"] = child.data
         name = "child"
-    follow.finish(instead={id(spot.data): name}, stray=lambda _, target: target)
+    follow.finish(instead={id(ref.data): name}, stray=lambda _, target: target)
     child.data.pop("transitions", None)
-    bench.mark(child.data)
+    session.mark(child.data)
 
 
-def _point(bench: Bench, spot: Spot) -> tuple[float, float] | None:
-    view = bench.draft.data.get("view")
-    point = cast("Plain", view).get(spot.path) if isinstance(view, dict) else None
+def _point(session: EditSession, ref: NodeRef) -> tuple[float, float] | None:
+    view = session.draft.data.get("view")
+    point = cast("Plain", view).get(ref.path) if isinstance(view, dict) else None
     if not isinstance(point, list) or len(cast("list[float]", point)) != 2:
         return None
     x, y = cast("list[float]", point)
@@ -201,15 +199,15 @@ def _point(bench: Bench, spot: Spot) -> tuple[float, float] | None:
 
 
 def _place(
-    bench: Bench,
-    children: tuple[Spot, ...],
+    session: EditSession,
+    children: tuple[NodeRef, ...],
     points: dict[int, tuple[float, float] | None],
     corner: tuple[float, float] | None,
 ) -> None:
-    positions: dict[str, Point | None] = {}
+    positions: dict[str, CanvasPoint | None] = {}
     for child in children:
         point = points[id(child.data)]
         if point is not None and corner is not None:
-            positions[bench.outline.path_of(child.data)] = (point[0] + corner[0], point[1] + corner[1])
+            positions[session.outline.path_of(child.data)] = (point[0] + corner[0], point[1] + corner[1])
     if positions:
-        set_positions(bench, SetPositions(positions=positions))
+        set_positions(session, SetPositions(positions=positions))

@@ -9,17 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from engine.editing.examination import hash_of
+from engine.editing.diagnostics import text_hash
 from engine.errors import DocumentError
 
-KEPT = 200
-"""So many versions of a document are kept; the oldest go first."""
+MAX_VERSIONS = 200
+"""Maximum number of versions kept for a document; the oldest are removed first."""
 _NAME = re.compile(r"(\d{13})-([0-9a-f]{64})(\.editor)?")
-By = Literal["editor", "file"]
+VersionAuthor = Literal["editor", "file"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Version:
+class DocumentVersion:
     """One version; `saved_at_s` is when it was first seen, seconds since 1970.
 
     `by` says whether the editor wrote it, or it was found in the file: written by another program, or before.
@@ -27,7 +27,7 @@ class Version:
 
     hash: str
     saved_at_s: float
-    by: By = "file"
+    by: VersionAuthor = "file"
 
 
 @dataclass(frozen=True)
@@ -36,26 +36,26 @@ class _Kept:
 
     stamp: int
     digest: str
-    by: By
+    by: VersionAuthor
 
     @property
     def name(self) -> str:
         return f"{self.stamp:013d}-{self.digest}{'.editor' if self.by == 'editor' else ''}"
 
-    def version(self) -> Version:
-        return Version(hash=self.digest, saved_at_s=self.stamp / 1000, by=self.by)
+    def version(self) -> DocumentVersion:
+        return DocumentVersion(hash=self.digest, saved_at_s=self.stamp / 1000, by=self.by)
 
 
-class Versions:
+class VersionHistory:
     """The versions under `folder`, a folder for each document by its id; `now_s` is the wall clock."""
 
     def __init__(self, folder: Path, *, now_s: Callable[[], float]) -> None:
         self._folder = folder
         self._now_s = now_s
 
-    def keep(self, document_id: str, text: str, *, by: By = "file") -> Version:
+    def keep(self, document_id: str, text: str, *, by: VersionAuthor = "file") -> DocumentVersion:
         """Keep a text unless it is kept already; what is kept again becomes the newest."""
-        digest = hash_of(text)
+        digest = text_hash(text)
         known = self._files(document_id)
         newest = known[-1] if known else None
         if newest is not None and newest.digest == digest:
@@ -68,12 +68,12 @@ class Versions:
         if old is not None:
             (folder / old.name).replace(folder / made.name)
         else:
-            write_whole(folder / made.name, text)
-        for gone in self._files(document_id)[:-KEPT]:
+            write_atomically(folder / made.name, text)
+        for gone in self._files(document_id)[:-MAX_VERSIONS]:
             (folder / gone.name).unlink(missing_ok=True)
         return made.version()
 
-    def all(self, document_id: str) -> tuple[Version, ...]:
+    def all(self, document_id: str) -> tuple[DocumentVersion, ...]:
         """Return the versions of a document, newest first."""
         return tuple(each.version() for each in reversed(self._files(document_id)))
 
@@ -115,7 +115,7 @@ class Versions:
         return sorted(kept, key=lambda each: (each.stamp, each.digest))
 
 
-def write_whole(file: Path, text: str) -> None:
+def write_atomically(file: Path, text: str) -> None:
     """Write a file so that everybody sees either the old or the new one, also after a loss of power."""
     fresh = file.with_name(f".{file.name}.new")
     try:

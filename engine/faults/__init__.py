@@ -5,6 +5,6 @@
 """
 
 from engine.document.faults import Fault, Faults, FaultsDocument, load_faults, parse_faults
-from engine.faults.port import FaultPort
+from engine.faults.fault_port import FaultPort
 
 __all__ = ["Fault", "FaultPort", "Faults", "FaultsDocument", "load_faults", "parse_faults"]

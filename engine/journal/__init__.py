@@ -7,9 +7,9 @@ plain cheap call and `await commit()` returns when all of it is on the disk.
 from engine.journal.batch import WorldState
 from engine.journal.codec import decode_event, encode_event, encode_event_log
 from engine.journal.journal import Journal, SqliteRunJournal, journal_path
-from engine.journal.memory import MemoryRunJournal
-from engine.journal.null import NullJournal, NullRunJournal
-from engine.journal.port import JournalPort, RunJournal, RunOrigin, RunRecord
+from engine.journal.journal_port import JournalPort, RunJournal, RunOrigin, RunRecord
+from engine.journal.memory_journal import MemoryRunJournal
+from engine.journal.null_journal import NullJournal, NullRunJournal
 from engine.journal.reader import find_run, list_runs, read_events, read_origin, read_world
 from engine.journal.snapshot import JournalSnapshot, open_snapshot
 

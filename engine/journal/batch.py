@@ -17,7 +17,7 @@ class WorldState:
 
 
 @dataclass(frozen=True)
-class Batch:
+class WriteBatch:
     """What one run wants written."""
 
     run: str

@@ -14,14 +14,14 @@ import msgspec
 
 from engine.errors import JournalError
 from engine.event import Event, RunEnded
-from engine.journal.batch import Batch
-from engine.journal.block import Block, new_blocks
+from engine.host.sqlite_file import advice, open_sqlite
+from engine.host.sqlite_migrations import SqliteMigrations
+from engine.journal.batch import WriteBatch
 from engine.journal.checksum import chain_start, checksum_of
-from engine.journal.port import RunOrigin
-from engine.sqlite_file import advice, open_sqlite
-from engine.sqlite_schema import Schema
+from engine.journal.event_block import EventBlock, new_blocks
+from engine.journal.journal_port import RunOrigin
 
-SCHEMA = Schema(
+SCHEMA = SqliteMigrations(
     (
         """
 CREATE TABLE IF NOT EXISTS run(
@@ -152,7 +152,7 @@ class JournalDatabase:
         self._ends[run_id] = end
         return int(row[0])
 
-    def store(self, batches: Sequence[Batch]) -> None:
+    def store(self, batches: Sequence[WriteBatch]) -> None:
         """Write what several runs have, in one durable transaction.
 
         Raises:
@@ -184,7 +184,7 @@ class JournalDatabase:
                 hint="stop this engine: the other one has resumed the run",
             )
 
-    def _insert_blocks(self, run: str, blocks: Sequence[Block]) -> None:
+    def _insert_blocks(self, run: str, blocks: Sequence[EventBlock]) -> None:
         if not blocks:
             return
         try:
@@ -194,7 +194,7 @@ class JournalDatabase:
         end = blocks[-1]
         self._connection.execute("UPDATE checksum SET seq = ?, chain = ? WHERE run = ?", (end.last, end.checksum, run))
 
-    def _store_world(self, batch: Batch) -> None:
+    def _store_world(self, batch: WriteBatch) -> None:
         if batch.world is not None:
             row = (batch.run, batch.world.seq, batch.world.data)
             self._connection.execute("INSERT OR REPLACE INTO world(run, seq, data) VALUES (?, ?, ?)", row)
@@ -262,7 +262,7 @@ def journal_fault(what: str, path: Path, error: sqlite3.Error | OSError) -> Jour
     return JournalError(f"the journal {what}: {error}", where=path, hint=advice(error))
 
 
-def _blocks(batch: Batch, end: _End) -> list[Block]:
+def _blocks(batch: WriteBatch, end: _End) -> list[EventBlock]:
     """Return the rows of the events of a batch, which must be those that come next."""
     events = batch.events
     if not events:

@@ -12,10 +12,16 @@ from engine.errors import JournalError
 from engine.event import Event
 from engine.journal.batch import WorldState
 from engine.journal.database import JournalDatabase, journal_fault
-from engine.journal.port import RunOrigin
-from engine.journal.presence import Presence
+from engine.journal.engine_presence import EnginePresence
+from engine.journal.group_commit import (
+    MAX_PENDING_EVENTS,
+    WAKE_AT_EVENTS,
+    CommitWaiter,
+    GroupCommitWriter,
+    RunWriteQueue,
+)
+from engine.journal.journal_port import RunOrigin
 from engine.journal.snapshot import open_snapshot
-from engine.journal.writer import MOST_WAITING, WAKE_AT_EVENTS, GroupWriter, Ledger, Waiter
 
 JOURNAL_FILE = "journal.db"
 
@@ -29,7 +35,7 @@ def journal_path(place: Path | str) -> Path:
 class SqliteRunJournal:
     """The part of a `Journal` that belongs to one run."""
 
-    def __init__(self, ledger: Ledger, writer: GroupWriter, *, place: Path) -> None:
+    def __init__(self, ledger: RunWriteQueue, writer: GroupCommitWriter, *, place: Path) -> None:
         self._place = place
         self._ledger = ledger
         self._writer = writer
@@ -67,12 +73,12 @@ class SqliteRunJournal:
         with open_snapshot(self._place) as journal:
             return tuple(journal.events(self.run_id))
 
-    async def keep_up(self) -> None:
+    async def apply_backpressure(self) -> None:
         """Return at once, unless so much waits that it would fill the memory."""
-        if len(self._events) > MOST_WAITING:
+        if len(self._events) > MAX_PENDING_EVENTS:
             await self.commit()
 
-    def keep_world(self, state: bytes) -> None:
+    def append_world_state(self, state: bytes) -> None:
         """Take the state of the simulated world; the next commit stores it together with the events so far."""
         self._ledger.worlds.append(WorldState(self._ledger.last_seq, state))
         self._writer.queue.append(self._ledger)
@@ -97,7 +103,7 @@ class SqliteRunJournal:
             if (failure := writer.failure or ledger.failure) is not None:
                 raise _again(failure)
             return
-        waiter = Waiter(ledger, asyncio.get_running_loop().create_future())
+        waiter = CommitWaiter(ledger, asyncio.get_running_loop().create_future())
         writer.queue.append(waiter)
         writer.wake()
         if (failure := writer.failure) is not None:
@@ -110,7 +116,7 @@ class SqliteRunJournal:
 class Journal:
     """All runs journaled in one file; open it with `Journal.open`, close it or use `with`."""
 
-    def __init__(self, database: JournalDatabase, writer: GroupWriter, presence: Presence) -> None:
+    def __init__(self, database: JournalDatabase, writer: GroupCommitWriter, presence: EnginePresence) -> None:
         self.path = database.path
         self._database = database
         self._writer = writer
@@ -132,11 +138,11 @@ class Journal:
         """
         database = JournalDatabase.open(journal_path(place), busy_timeout_s=busy_timeout_s)
         try:
-            presence = Presence.open(database.path)
+            presence = EnginePresence.open(database.path)
         except OSError as error:
             database.close()
             raise journal_fault("cannot be opened", database.path, error) from error
-        writer = GroupWriter(database)
+        writer = GroupCommitWriter(database)
         if not inline:
             writer.start()
         return cls(database, writer, presence)
@@ -159,7 +165,7 @@ class Journal:
                 origin=origin,
                 engine=self._presence.engine,
             )
-        return SqliteRunJournal(Ledger(run_id, epoch), self._writer, place=self.path)
+        return SqliteRunJournal(RunWriteQueue(run_id, epoch), self._writer, place=self.path)
 
     def resume(self, run_id: str) -> SqliteRunJournal:
         """Take over an existing run: from now on the engine that drove it before cannot commit.
@@ -170,7 +176,7 @@ class Journal:
         self._refuse_unusable()
         with self._writer.lock:
             epoch = self._database.take_over_run(run_id, engine=self._presence.engine)
-        return SqliteRunJournal(Ledger(run_id, epoch), self._writer, place=self.path)
+        return SqliteRunJournal(RunWriteQueue(run_id, epoch), self._writer, place=self.path)
 
     def close(self) -> None:
         """Write what is left and release the file; may be called again.

@@ -7,7 +7,7 @@ from pathlib import Path
 from engine.event import AnyEvent
 from engine.journal.batch import WorldState
 from engine.journal.journal import journal_path
-from engine.journal.port import RunOrigin, RunRecord
+from engine.journal.journal_port import RunOrigin, RunRecord
 from engine.journal.snapshot import open_snapshot
 
 

@@ -15,8 +15,8 @@ import msgspec
 
 from engine.errors import JournalError
 from engine.event import AnyEvent
+from engine.host.sqlite_file import BoundedConnection, read_sqlite, stored_bytes
 from engine.journal.batch import WorldState
-from engine.journal.block import Block
 from engine.journal.checksum import chain_start, checksum_of
 from engine.journal.database import (
     BLOCKS_SINCE_VERSION,
@@ -26,11 +26,11 @@ from engine.journal.database import (
     SCHEMA,
     journal_fault,
 )
+from engine.journal.engine_presence import living_engines
+from engine.journal.event_block import EventBlock
 from engine.journal.event_row import EventRow
-from engine.journal.port import RunOrigin, RunRecord
-from engine.journal.presence import living_engines
-from engine.nearness import near_names
-from engine.sqlite_file import BoundedConnection, read_sqlite, stored_bytes
+from engine.journal.journal_port import RunOrigin, RunRecord
+from engine.suggestions import did_you_mean
 
 T = TypeVar("T")
 
@@ -49,7 +49,7 @@ _BLOCKS = "SELECT run, seq, last, epoch, sums, data, checksum FROM block WHERE r
 _MAX_UNIX_S = 2**37
 
 
-Stored = EventRow | Block
+Stored = EventRow | EventBlock
 
 
 class RunRow(msgspec.Struct, frozen=True, array_like=True):
@@ -186,7 +186,7 @@ class JournalSnapshot:
             last = event.seq
         if self._has_blocks:
             for found in self._connection.execute(f"{_BLOCKS} ORDER BY seq", (row.id,)):
-                block = self._typed(found, Block, what=_after(last, row.id))
+                block = self._typed(found, EventBlock, what=_after(last, row.id))
                 yield block
                 last = block.last
 
@@ -194,13 +194,13 @@ class JournalSnapshot:
         end, what = "ORDER BY seq DESC LIMIT 1", f"the last event of run {row.id}"
         found = self._connection.execute(f"{_BLOCKS} {end}", (row.id,)).fetchone() if self._has_blocks else None
         if found is not None:
-            return self._typed(found, Block, what=what)
+            return self._typed(found, EventBlock, what=what)
         found = self._connection.execute(f"{self._events} {end}", (row.id,)).fetchone()
         return self._typed(found, EventRow, what=what) if found is not None else None
 
     def _checksum_before(self, stored: Stored) -> bytes | None:
         """Return the checksum of the row before this one; None where there is none, or it has none."""
-        for table in ("block", "event") if isinstance(stored, Block) else ("event",):
+        for table in ("block", "event") if isinstance(stored, EventBlock) else ("event",):
             query = f"SELECT {self._checksum if table == 'event' else 'checksum'} FROM {table}"
             where = "WHERE run = ? AND seq < ? ORDER BY seq DESC LIMIT 1"
             found = self._connection.execute(f"{query} {where}", (stored.run, stored.seq)).fetchone()
@@ -241,7 +241,7 @@ class JournalSnapshot:
     def _row(self, run_id: str) -> RunRow:
         row = self._rows.get(run_id)
         if row is None:
-            raise JournalError(f"there is no run {run_id}", where=self.path, hint=near_names(run_id, self._rows))
+            raise JournalError(f"there is no run {run_id}", where=self.path, hint=did_you_mean(run_id, self._rows))
         if row.fault:
             raise self._damaged(row.fault)
         return row

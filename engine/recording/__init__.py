@@ -4,19 +4,24 @@
 happens to its file, the run goes on.
 """
 
-from engine.recording.description import Description
-from engine.recording.documents import Documents, collect_documents, recorded_behavior, recorded_substitutes
-from engine.recording.finished_file import part_file, recovered_file
+from engine.recording.description import RecordingDescription
+from engine.recording.finalization import part_file, recovered_file
+from engine.recording.recorded_documents import (
+    RecordedDocuments,
+    collect_documents,
+    recorded_behavior,
+    recorded_substitutes,
+)
 from engine.recording.recording import RecordedEvent, Recording, load_recording
-from engine.recording.run_recording import DEFAULT_RATE_HZ, RecordingOrder, RunRecording
+from engine.recording.run_recording import DEFAULT_RATE_HZ, RecordingOptions, RunRecording
 
 __all__ = [
     "DEFAULT_RATE_HZ",
-    "Description",
-    "Documents",
+    "RecordedDocuments",
     "RecordedEvent",
     "Recording",
-    "RecordingOrder",
+    "RecordingDescription",
+    "RecordingOptions",
     "RunRecording",
     "collect_documents",
     "load_recording",

@@ -11,7 +11,7 @@ from typing import Literal
 import msgspec
 
 from engine.errors import RecordingError
-from engine.supervision import Supervision
+from engine.runtime.run_options import RunOptions
 
 FORMAT = 1
 RECORD_NAME = "flexcell"
@@ -19,7 +19,7 @@ RECORD_NAME = "flexcell"
 _CHECKSUM = "crc32"
 
 
-class Description(msgspec.Struct, frozen=True, kw_only=True):
+class RecordingDescription(msgspec.Struct, frozen=True, kw_only=True):
     """One run: which behavior, what it was given, on which clock, recorded how."""
 
     format: int = FORMAT
@@ -34,7 +34,7 @@ class Description(msgspec.Struct, frozen=True, kw_only=True):
     inputs: dict[str, object] = {}
     seed: int = 0
     clock: Literal["virtual", "real"]
-    supervision: Supervision = Supervision()
+    supervision: RunOptions = RunOptions()
     """How it was watched over from the start."""
     started_unix_s: float = 0.0
     epoch_ns: int = 0
@@ -55,14 +55,14 @@ def present_versions() -> dict[str, str]:
     }
 
 
-def to_metadata(description: Description) -> dict[str, str]:
+def to_metadata(description: RecordingDescription) -> dict[str, str]:
     """Return the key-value pairs of the metadata record: text as it is, everything else as JSON."""
     plain: dict[str, object] = msgspec.to_builtins(description)
     pairs = {key: each if isinstance(each, str) else msgspec.json.encode(each).decode() for key, each in plain.items()}
     return {**pairs, _CHECKSUM: _checksum(pairs)}
 
 
-def from_metadata(pairs: Mapping[str, str], *, where: object) -> Description:
+def from_metadata(pairs: Mapping[str, str], *, where: object) -> RecordingDescription:
     """Read a description back.
 
     Raises:
@@ -70,7 +70,7 @@ def from_metadata(pairs: Mapping[str, str], *, where: object) -> Description:
     """
     if pairs.get(_CHECKSUM) != _checksum(pairs):
         raise RecordingError("its description is damaged", where=where, hint="record it again")
-    texts = {field.encode_name for field in msgspec.structs.fields(Description) if field.type in (str, _CLOCK)}
+    texts = {field.encode_name for field in msgspec.structs.fields(RecordingDescription) if field.type in (str, _CLOCK)}
     try:
         known = {key: each for key, each in pairs.items() if key != _CHECKSUM}
         plain = {key: each if key in texts else msgspec.json.decode(each) for key, each in known.items()}
@@ -78,7 +78,7 @@ def from_metadata(pairs: Mapping[str, str], *, where: object) -> Description:
             raise RecordingError(
                 f"this recording has format {plain.get('format')}, not {FORMAT}", where=where, hint="record it again"
             )
-        return msgspec.convert(plain, Description)
+        return msgspec.convert(plain, RecordingDescription)
     except (msgspec.DecodeError, RecursionError) as error:
         raise RecordingError(
             f"its description does not fit this version: {error}", where=where, hint="record it again"

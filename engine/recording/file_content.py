@@ -1,7 +1,7 @@
 """The records of a recording as they lie in the file, whole or cut off in mid-record.
 
 Whatever is in a file that calls itself a recording, reading it ends in records or in one
-`RecordingError`, with no more time and memory than its size can be a reason for (`engine.recording.allowance`).
+`RecordingError`, with no more time and memory than its size can be a reason for (`engine.recording.read_budget`).
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ from mcap.records import (
 from mcap.writer import MCAP0_MAGIC
 
 from engine.errors import RecordingError
-from engine.recording.allowance import MAX_INDEX, Allowance
-from engine.recording.chunk import unfolded
+from engine.recording.chunk_decompression import decompress_chunk
+from engine.recording.read_budget import MAX_INDEX, ReadBudget
 
 _FRAME = 9  # opcode and length before the content of every record
 _FOOTER = _FRAME + 20
@@ -80,7 +80,7 @@ def read_content(path: Path, topic: str) -> FileContent:
     Raises:
         RecordingError: the file cannot be read, is no MCAP file, or is damaged.
     """
-    with reading(path) as stream:
+    with open_for_reading(path) as stream:
         return _by_index(stream, topic) or _in_sequence(stream, topic)
 
 
@@ -96,12 +96,12 @@ def open_records(path: Path) -> Generator[Callable[[], Iterator[McapRecord]]]:
         RecordingError: it is no MCAP file.
     """
     with path.open("rb") as stream:
-        keep_from_removal(stream)
+        lock_against_removal(stream)
         _require_magic(stream, path)
-        yield lambda: _records(stream, _MAGIC, allowance_of(stream))
+        yield lambda: _records(stream, _MAGIC, new_read_budget(stream))
 
 
-def keep_from_removal(stream: BinaryIO) -> None:
+def lock_against_removal(stream: BinaryIO) -> None:
     """Tell those who remove old recordings that this one is read, as long as it is open."""
     try:
         fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -110,7 +110,7 @@ def keep_from_removal(stream: BinaryIO) -> None:
 
 
 @contextmanager
-def reading(path: Path) -> Generator[BinaryIO]:
+def open_for_reading(path: Path) -> Generator[BinaryIO]:
     """Open a recording; whatever the parsing in the block stumbles over is told as a damaged file.
 
     Raises:
@@ -136,16 +136,16 @@ def _require_magic(stream: BinaryIO, path: Path) -> None:
         raise RecordingError("this is not an MCAP file", where=path, hint="give what --record wrote")
 
 
-def allowance_of(stream: BinaryIO) -> Allowance:
+def new_read_budget(stream: BinaryIO) -> ReadBudget:
     """Return what reading a file may take.
 
     Raises:
         ValueError: it is too large.
     """
-    return Allowance(stream.seek(0, 2))
+    return ReadBudget(stream.seek(0, 2))
 
 
-def read_index(stream: BinaryIO, allowance: Allowance) -> list[McapRecord] | None:
+def read_index(stream: BinaryIO, allowance: ReadBudget) -> list[McapRecord] | None:
     """Return the records of the index at the end of a file; None where there is none.
 
     Raises:
@@ -157,7 +157,7 @@ def read_index(stream: BinaryIO, allowance: Allowance) -> list[McapRecord] | Non
 
 def _by_index(stream: BinaryIO, topic: str) -> FileContent | None:
     """Read with the index at the end of the file; None where there is none."""
-    allowance = allowance_of(stream)
+    allowance = new_read_budget(stream)
     index = read_index(stream, allowance)
     if index is None:
         return None
@@ -222,7 +222,7 @@ def _verify_data(stream: BinaryIO, end: int) -> None:
 def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
     content = FileContent()
     wanted: set[int] = set()
-    allowance = allowance_of(stream)
+    allowance = new_read_budget(stream)
     for record in _records(stream, _MAGIC, allowance):
         match record:
             case Channel():
@@ -237,13 +237,13 @@ def _in_sequence(stream: BinaryIO, topic: str) -> FileContent:
     return content
 
 
-def _keep_message(record: McapRecord, wanted: set[int], content: FileContent, allowance: Allowance) -> None:
+def _keep_message(record: McapRecord, wanted: set[int], content: FileContent, allowance: ReadBudget) -> None:
     if isinstance(record, Message) and record.channel_id in wanted:
         allowance.take_message(len(record.data))
         content.messages.append(record)
 
 
-def _keep(record: McapRecord, content: FileContent, allowance: Allowance) -> None:
+def _keep(record: McapRecord, content: FileContent, allowance: ReadBudget) -> None:
     if isinstance(record, Metadata):
         allowance.take_document(sum(len(key) + len(value) for key, value in record.metadata.items()))
         content.metadata[record.name] = record.metadata
@@ -252,7 +252,7 @@ def _keep(record: McapRecord, content: FileContent, allowance: Allowance) -> Non
         content.attachments[record.name] = record.data
 
 
-def _records(stream: BinaryIO, offset: int, allowance: Allowance, *, only: bool = False) -> Iterator[McapRecord]:
+def _records(stream: BinaryIO, offset: int, allowance: ReadBudget, *, only: bool = False) -> Iterator[McapRecord]:
     """Go through the records from `offset` to the footer or to where the file was cut off."""
     size = stream.seek(0, 2)
     while offset + _FRAME <= size:
@@ -269,16 +269,16 @@ def _records(stream: BinaryIO, offset: int, allowance: Allowance, *, only: bool 
         offset += _FRAME + length
 
 
-def _parsed(opcode: int, content: bytes, allowance: Allowance) -> Iterator[McapRecord]:
+def _parsed(opcode: int, content: bytes, allowance: ReadBudget) -> Iterator[McapRecord]:
     if opcode == Opcode.CHUNK:
-        yield from _in_chunk(unfolded(Chunk.read(ReadDataStream(BytesIO(content))), allowance), allowance)
+        yield from _in_chunk(decompress_chunk(Chunk.read(ReadDataStream(BytesIO(content))), allowance), allowance)
         return
     if opcode == Opcode.ATTACHMENT and zlib.crc32(content[:-4]) != int.from_bytes(content[-4:], "little"):
         raise ValueError("the checksum of a document in it is wrong")
     yield _READ[opcode](content)
 
 
-def _in_chunk(data: bytes, allowance: Allowance) -> Iterator[McapRecord]:
+def _in_chunk(data: bytes, allowance: ReadBudget) -> Iterator[McapRecord]:
     offset, size = 0, len(data)
     while offset + _FRAME <= size:
         opcode, length = data[offset], int.from_bytes(data[offset + 1 : offset + _FRAME], "little")

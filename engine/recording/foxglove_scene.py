@@ -7,80 +7,89 @@ import struct
 import msgspec
 
 from engine.messages import SceneDescription, VisualGeometry
-from engine.recording.foxglove_types import Color, Pose, Quaternion, Time, Vector3, time_of
+from engine.recording.foxglove_types import (
+    FoxgloveColor,
+    FoxglovePose,
+    FoxgloveQuaternion,
+    FoxgloveTime,
+    FoxgloveVector3,
+    time_of,
+)
 
 
-class Cube(msgspec.Struct, frozen=True, kw_only=True):
+class FoxgloveCube(msgspec.Struct, frozen=True, kw_only=True):
     """`foxglove.CubePrimitive`; also the shape of `foxglove.SpherePrimitive`, whose size is a diameter."""
 
-    pose: Pose
-    size: Vector3
-    color: Color
+    pose: FoxglovePose
+    size: FoxgloveVector3
+    color: FoxgloveColor
 
 
-class Cylinder(msgspec.Struct, frozen=True, kw_only=True):
+class FoxgloveCylinder(msgspec.Struct, frozen=True, kw_only=True):
     """`foxglove.CylinderPrimitive`, along z."""
 
-    pose: Pose
-    size: Vector3
+    pose: FoxglovePose
+    size: FoxgloveVector3
     bottom_scale: float = 1.0
     top_scale: float = 1.0
-    color: Color
+    color: FoxgloveColor
 
 
-class Triangles(msgspec.Struct, frozen=True, kw_only=True):
+class FoxgloveTriangles(msgspec.Struct, frozen=True, kw_only=True):
     """`foxglove.TriangleListPrimitive`."""
 
-    pose: Pose
-    points: tuple[Vector3, ...]
-    color: Color
+    pose: FoxglovePose
+    points: tuple[FoxgloveVector3, ...]
+    color: FoxgloveColor
     indices: tuple[int, ...]
 
 
-class SceneEntity(msgspec.Struct, frozen=True, kw_only=True):
-    """`foxglove.SceneEntity`: it stays, and moves with its frame."""
+class FoxgloveSceneEntity(msgspec.Struct, frozen=True, kw_only=True):
+    """`foxglove.FoxgloveSceneEntity`: it stays, and moves with its frame."""
 
-    timestamp: Time
+    timestamp: FoxgloveTime
     frame_id: str
     id: str
-    lifetime: Time = Time(0, 0)
+    lifetime: FoxgloveTime = FoxgloveTime(0, 0)
     frame_locked: bool = True
-    cubes: tuple[Cube, ...] = ()
-    spheres: tuple[Cube, ...] = ()
-    cylinders: tuple[Cylinder, ...] = ()
-    triangles: tuple[Triangles, ...] = ()
+    cubes: tuple[FoxgloveCube, ...] = ()
+    spheres: tuple[FoxgloveCube, ...] = ()
+    cylinders: tuple[FoxgloveCylinder, ...] = ()
+    triangles: tuple[FoxgloveTriangles, ...] = ()
 
 
-class SceneUpdate(msgspec.Struct, frozen=True, kw_only=True):
-    """`foxglove.SceneUpdate`."""
+class FoxgloveSceneUpdate(msgspec.Struct, frozen=True, kw_only=True):
+    """`foxglove.FoxgloveSceneUpdate`."""
 
-    entities: tuple[SceneEntity, ...]
+    entities: tuple[FoxgloveSceneEntity, ...]
 
 
-def scene_update(scene: SceneDescription, at_ns: int) -> SceneUpdate:
+def scene_update(scene: SceneDescription, at_ns: int) -> FoxgloveSceneUpdate:
     """Return what the 3D panel draws; bodies of a kind that it has no primitive for are left out."""
     stamp = time_of(at_ns)
     entities = (_entity(body, stamp) for body in scene.geometries)
-    return SceneUpdate(entities=tuple(entity for entity in entities if entity is not None))
+    return FoxgloveSceneUpdate(entities=tuple(entity for entity in entities if entity is not None))
 
 
-def _entity(body: VisualGeometry, stamp: Time) -> SceneEntity | None:
-    pose = Pose(position=Vector3(*body.xyz), orientation=Quaternion(*body.xyzw))
-    color = Color(*body.rgba)
+def _entity(body: VisualGeometry, stamp: FoxgloveTime) -> FoxgloveSceneEntity | None:
+    pose = FoxglovePose(position=FoxgloveVector3(*body.xyz), orientation=FoxgloveQuaternion(*body.xyzw))
+    color = FoxgloveColor(*body.rgba)
     match body.kind, body.size_m:
         case "box", (x, y, z):
-            cubes = (Cube(pose=pose, size=Vector3(x, y, z), color=color),)
-            return SceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, cubes=cubes)
+            cubes = (FoxgloveCube(pose=pose, size=FoxgloveVector3(x, y, z), color=color),)
+            return FoxgloveSceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, cubes=cubes)
         case "sphere", (radius, *_):
-            spheres = (Cube(pose=pose, size=Vector3(2 * radius, 2 * radius, 2 * radius), color=color),)
-            return SceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, spheres=spheres)
+            spheres = (FoxgloveCube(pose=pose, size=FoxgloveVector3(2 * radius, 2 * radius, 2 * radius), color=color),)
+            return FoxgloveSceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, spheres=spheres)
         case "cylinder", (radius, length, *_):
-            cylinders = (Cylinder(pose=pose, size=Vector3(2 * radius, 2 * radius, length), color=color),)
-            return SceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, cylinders=cylinders)
+            cylinders = (
+                FoxgloveCylinder(pose=pose, size=FoxgloveVector3(2 * radius, 2 * radius, length), color=color),
+            )
+            return FoxgloveSceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, cylinders=cylinders)
         case "mesh", _:
-            points = tuple(Vector3(*each) for each in struct.iter_unpack("<3f", body.vertices))
+            points = tuple(FoxgloveVector3(*each) for each in struct.iter_unpack("<3f", body.vertices))
             indices = tuple(each for (each,) in struct.iter_unpack("<I", body.faces))
-            triangles = (Triangles(pose=pose, points=points, color=color, indices=indices),)
-            return SceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, triangles=triangles)
+            triangles = (FoxgloveTriangles(pose=pose, points=points, color=color, indices=indices),)
+            return FoxgloveSceneEntity(timestamp=stamp, frame_id=body.frame, id=body.name, triangles=triangles)
         case _:
             return None

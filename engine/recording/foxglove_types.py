@@ -5,14 +5,14 @@ from __future__ import annotations
 import msgspec
 
 
-class Time(msgspec.Struct, frozen=True):
+class FoxgloveTime(msgspec.Struct, frozen=True):
     """An instant, or a duration."""
 
     sec: int
     nsec: int
 
 
-class Vector3(msgspec.Struct, frozen=True):
+class FoxgloveVector3(msgspec.Struct, frozen=True):
     """Metres, or factors."""
 
     x: float
@@ -20,7 +20,7 @@ class Vector3(msgspec.Struct, frozen=True):
     z: float
 
 
-class Quaternion(msgspec.Struct, frozen=True):
+class FoxgloveQuaternion(msgspec.Struct, frozen=True):
     """A unit quaternion."""
 
     x: float
@@ -29,14 +29,14 @@ class Quaternion(msgspec.Struct, frozen=True):
     w: float
 
 
-class Pose(msgspec.Struct, frozen=True, kw_only=True):
+class FoxglovePose(msgspec.Struct, frozen=True, kw_only=True):
     """`foxglove.Pose`."""
 
-    position: Vector3
-    orientation: Quaternion
+    position: FoxgloveVector3
+    orientation: FoxgloveQuaternion
 
 
-class Color(msgspec.Struct, frozen=True):
+class FoxgloveColor(msgspec.Struct, frozen=True):
     """Parts from 0 to 1."""
 
     r: float
@@ -45,6 +45,6 @@ class Color(msgspec.Struct, frozen=True):
     a: float
 
 
-def time_of(at_ns: int) -> Time:
+def time_of(at_ns: int) -> FoxgloveTime:
     """Return nanoseconds as seconds and the rest."""
-    return Time(at_ns // 1_000_000_000, at_ns % 1_000_000_000)
+    return FoxgloveTime(at_ns // 1_000_000_000, at_ns % 1_000_000_000)

@@ -19,7 +19,7 @@ from mcap.exceptions import McapError
 from mcap.writer import Writer
 
 from engine.errors import RecordingError
-from engine.private_files import open_private
+from engine.host.private_files import open_private
 
 PROFILE = "flexcell"
 MAX_TOPIC_BACKLOG = 32 * 2**20

@@ -11,10 +11,10 @@ from mcap.records import Message
 from engine.errors import JournalError, RecordingError
 from engine.event import AnyEvent, RunEnded
 from engine.journal import decode_event
-from engine.recording.description import RECORD_NAME, Description, from_metadata
-from engine.recording.documents import Documents
+from engine.recording.description import RECORD_NAME, RecordingDescription, from_metadata
 from engine.recording.file_content import FileContent, read_content
-from engine.recording.finished_file import EVENT_TOPIC, PART, part_file
+from engine.recording.finalization import EVENT_TOPIC, PART, part_file
+from engine.recording.recorded_documents import RecordedDocuments
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +30,8 @@ class Recording:
     """One recorded run."""
 
     path: Path
-    description: Description
-    documents: Documents
+    description: RecordingDescription
+    documents: RecordedDocuments
     events: tuple[RecordedEvent, ...]
     resolution_s: float = 1e-9
     """How finely `at_s` is known."""
@@ -58,7 +58,7 @@ def load_recording(path: Path) -> Recording:
     if RECORD_NAME not in content.metadata:
         raise RecordingError("this is not a recording of a run", where=file, hint="give what --record wrote")
     description = from_metadata(content.metadata[RECORD_NAME], where=file)
-    documents = Documents(
+    documents = RecordedDocuments(
         behavior=description.behavior_file, cell=description.cell_file, texts=dict(content.attachments)
     )
     events = tuple(_events(content, file))

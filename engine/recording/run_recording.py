@@ -17,14 +17,14 @@ from engine.errors import JournalError, RecordingError
 from engine.event import AnyEvent, Event
 from engine.journal import encode_event
 from engine.recording.channel_schema import channel_schema
-from engine.recording.description import RECORD_NAME, Description, present_versions, to_metadata
-from engine.recording.documents import YAML_TYPE, Documents
-from engine.recording.finished_file import EVENT_TOPIC, finish, part_file, recovered_file
-from engine.recording.foxglove import Log, log_line
+from engine.recording.description import RECORD_NAME, RecordingDescription, present_versions, to_metadata
+from engine.recording.finalization import EVENT_TOPIC, finalize_recording, part_file, recovered_file
+from engine.recording.foxglove_views import FoxgloveLog, log_line
 from engine.recording.live_file import LiveFile, require_unused
+from engine.recording.recorded_documents import YAML_TYPE, RecordedDocuments
 from engine.recording.topic_tap import TopicTap
-from engine.run import Run
-from engine.supervision import Supervision
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
 
 DEFAULT_RATE_HZ = 50.0
 LOG_TOPIC = "/foxglove/log"
@@ -33,18 +33,18 @@ _log = logging.getLogger("flexcell.recording")
 
 
 @dataclass(frozen=True, kw_only=True)
-class RecordingOrder:
+class RecordingOptions:
     """What to record, and where to."""
 
     path: Path
-    documents: Documents
+    documents: RecordedDocuments
     rate_hz: float = DEFAULT_RATE_HZ
     """At most that many messages of a topic are kept a second; 0 keeps none."""
     topics: Sequence[str] = ("*",)
     """Names of topics, may hold `*` and `?`."""
     left_out: Sequence[str] = ()
     """Names of topics that are not recorded, whatever `topics` says."""
-    overheard: Sequence[str] = ()
+    passive_topics: Sequence[str] = ()
     """Names of topics that are recorded while somebody else listens, for what costs much to make."""
     max_topic_bytes: int | None = None
     """What topics may take before only events are recorded; of the growing file, which is not compressed."""
@@ -57,7 +57,7 @@ class RunRecording:
     `attach` the run before it is executed. Nothing that happens to the file reaches the run.
     """
 
-    def __init__(self, order: RecordingOrder, file: LiveFile) -> None:
+    def __init__(self, order: RecordingOptions, file: LiveFile) -> None:
         self._order = order
         self._file = file
         self._tap: TopicTap | None = None
@@ -70,7 +70,7 @@ class RunRecording:
         self._log_channel = 0
 
     @classmethod
-    def open(cls, order: RecordingOrder, *, inline: bool) -> Self:
+    def open(cls, order: RecordingOptions, *, inline: bool) -> Self:
         """Create the file; what a killed process left of an earlier one is kept beside it.
 
         Args:
@@ -85,7 +85,7 @@ class RunRecording:
         if part.is_file():
             kept = recovered_file(order.path)
             try:
-                finish(part, kept)
+                finalize_recording(part, kept)
                 _log.warning("a recording was cut off here; what there is of it is in %s", kept)
             except RecordingError as error:
                 # What cannot be read any more is no reason to refuse the next recording.
@@ -99,14 +99,14 @@ class RunRecording:
         *,
         started_unix_s: float,
         inputs: Mapping[str, object] | None = None,
-        supervision: Supervision | None = None,
+        supervision: RunOptions | None = None,
     ) -> None:
         """Record this run from its first event on."""
         order, file = self._order, self._file
         self._run, self._bus = run, bus
         self._zero_s = bus.clock.now_s()
         self._epoch_ns = 0 if bus.clock.virtual else round(started_unix_s * 1e9)
-        description = Description(
+        description = RecordingDescription(
             run=run.id,
             behavior=run.plan.name,
             document=run.plan.document_hash,
@@ -116,7 +116,7 @@ class RunRecording:
             inputs=msgspec.to_builtins(dict(inputs or {})),
             seed=run.seed,
             clock="virtual" if bus.clock.virtual else "real",
-            supervision=supervision or Supervision(),
+            supervision=supervision or RunOptions(),
             started_unix_s=started_unix_s,
             epoch_ns=self._epoch_ns,
             topic_rate_hz=order.rate_hz,
@@ -135,7 +135,7 @@ class RunRecording:
                 rate_hz=order.rate_hz,
                 patterns=order.topics,
                 left_out=order.left_out,
-                overheard=order.overheard,
+                passive_topics=order.passive_topics,
             )
             self._tap.open(bus)
 
@@ -167,7 +167,7 @@ class RunRecording:
     def _finish(self) -> None:
         self.close()
         try:
-            finish(part_file(self._order.path), self._order.path)
+            finalize_recording(part_file(self._order.path), self._order.path)
         except RecordingError as error:
             _log.warning("%s", error)
 
@@ -175,7 +175,7 @@ class RunRecording:
         file = self._file
         events = channel_schema(AnyEvent, title="flexcell.Event")
         self._event_channel = file.channel(EVENT_TOPIC, "flexcell.Event", events, metadata={})
-        log = channel_schema(Log, title="foxglove.Log")
+        log = channel_schema(FoxgloveLog, title="foxglove.Log")
         self._log_channel = file.channel(LOG_TOPIC, "foxglove.Log", log, metadata={})
 
     def _take(self, event: Event) -> None:

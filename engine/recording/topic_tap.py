@@ -12,7 +12,7 @@ import msgspec
 
 from engine.bus import SkillBus, Subscription, Topic
 from engine.recording.channel_schema import channel_schema
-from engine.recording.foxglove import VIEWS, View
+from engine.recording.foxglove_views import VIEWS, FoxgloveView
 from engine.recording.live_file import LiveFile
 
 _SLACK_NS = 1000
@@ -26,7 +26,7 @@ class _Recorded:
     """One topic on its way into the file."""
 
     channel: int
-    view: View | None
+    view: FoxgloveView | None
     view_channel: int
     due_ns: int = 0
     last: object = None
@@ -42,7 +42,7 @@ class TopicTap:
         rate_hz: At most that many messages of a topic are kept a second.
         patterns: Names, may hold `*` and `?`.
         left_out: Names that are not recorded all the same.
-        overheard: Names that are recorded without being asked for.
+        passive_topics: Names that are recorded without being asked for.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class TopicTap:
         rate_hz: float,
         patterns: Sequence[str],
         left_out: Sequence[str] = (),
-        overheard: Sequence[str] = (),
+        passive_topics: Sequence[str] = (),
     ) -> None:
         self._file = file
         self._now_ns = now_ns
@@ -61,7 +61,7 @@ class TopicTap:
         self._rate_hz = rate_hz
         self._patterns = tuple(patterns)
         self._left_out = tuple(left_out)
-        self._overheard = tuple(overheard)
+        self._overheard = tuple(passive_topics)
         self._recorded: dict[str, _Recorded] = {}
         self._subscriptions: list[tuple[Topic[Any], Subscription[Any]]] = []
         self._unwatch: Callable[[], None] = lambda: None
@@ -98,7 +98,7 @@ class TopicTap:
             # Types and messages are a robot's; what cannot be written must not hurt who publishes it.
             _log.exception("topic %s is not recorded", topic.name)
             return
-        listen = topic.overhear if _matches(topic.name, self._overheard) else topic.subscribe
+        listen = topic.subscribe_passively if _matches(topic.name, self._overheard) else topic.subscribe
         subscription = listen(lambda message: self._take(topic.name, message))
         self._subscriptions.append((topic, subscription))
 

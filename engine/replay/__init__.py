@@ -3,8 +3,8 @@
 `replay(load_recording(path), load_states())` runs it; `report.difference` is the first difference.
 """
 
-from engine.replay.difference import Difference
-from engine.replay.journaled import recording_of
-from engine.replay.replaying import ReplayReport, replay
+from engine.replay.journal_recording import recording_from_journal
+from engine.replay.replay_difference import ReplayDifference
+from engine.replay.replayer import ReplayReport, replay
 
-__all__ = ["Difference", "ReplayReport", "recording_of", "replay"]
+__all__ = ["ReplayDifference", "ReplayReport", "recording_from_journal", "replay"]

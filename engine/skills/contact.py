@@ -1,4 +1,4 @@
-"""The guarded move: on until something is touched, answered under the arm's name."""
+"""The guarded move: moves until contact; served under the arm's name."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import msgspec
 
 from engine.messages import Message, Pose, Vector3, Wrench
 from engine.skill import Action
-from engine.skills.direction import Axes
+from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback
 
-Way = Annotated[float, msgspec.Meta(gt=0.0, description="Longest way", extra_json_schema={"unit": "m"})]
-Approach = Annotated[
+MaxDistance = Annotated[float, msgspec.Meta(gt=0.0, description="Longest way", extra_json_schema={"unit": "m"})]
+ApproachSpeed = Annotated[
     float, msgspec.Meta(gt=0.0, le=0.25, description="Greatest speed on the way", extra_json_schema={"unit": "m/s"})
 ]
 ContactForce = Annotated[
@@ -44,7 +44,7 @@ class MoveUntilContact(Action[ContactResult, CartMotionFeedback], frozen=True, k
     """
 
     direction: Vector3
-    distance_m: Way
+    distance_m: MaxDistance
     frame: Axes = "world"
-    speed_m_s: Approach = 0.02
+    speed_m_s: ApproachSpeed = 0.02
     force_n: ContactForce = 10.0

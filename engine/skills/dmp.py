@@ -1,6 +1,6 @@
 """Skills on dynamic movement primitives of one arm, answered under the arm's name (RCL 4.3.5 to 4.3.7, RCY 7.1).
 
-The parameters are those of RCL tables 6 to 8, see `engine.primitive`. A preempted or failed goal
+The parameters are those of RCL tables 6 to 8, see `engine.messages.primitives`. A preempted or failed goal
 leaves the arm at rest and ready for the next.
 """
 
@@ -10,11 +10,11 @@ from typing import Annotated
 
 import msgspec
 
-from engine.demonstration import Trajectory
 from engine.messages import Message, Pose, Wrench
-from engine.primitive import CartDmp, CartOffsets, ForceReference, JointDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service
-from engine.skills.direction import Axes
+from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
 
 Six = tuple[float, float, float, float, float, float]
@@ -115,7 +115,7 @@ class CartAdmitDMP(Action[CartAdmitResult, CartAdmitFeedback], frozen=True, kw_o
     start_reach_rad: Annotated[float, msgspec.Meta(ge=0.0)] = 0.2
 
 
-class Cut(Message, frozen=True, kw_only=True):
+class TrimInterval(Message, frozen=True, kw_only=True):
     """What was used of a recording: from `start_s` to `end_s`, counted from its first sample."""
 
     start_s: float
@@ -134,7 +134,7 @@ class JointFit(Message, frozen=True, kw_only=True):
     max_rad: float
     end_rad: float
     joint: int
-    cut: Cut
+    cut: TrimInterval
     rms_m: float | None = None
     max_m: float | None = None
 
@@ -149,7 +149,7 @@ class CartFit(Message, frozen=True, kw_only=True):
     rms_rad: float
     max_rad: float
     end_rad: float
-    cut: Cut
+    cut: TrimInterval
 
 
 class LearnedJointDmp(Message, frozen=True, kw_only=True):

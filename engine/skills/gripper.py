@@ -15,7 +15,7 @@ FingerSpeed = Annotated[
 ]
 
 
-class GripperAction(Message, frozen=True, kw_only=True):
+class GripperSetting(Message, frozen=True, kw_only=True):
     """What a gripper was doing when it was taught: `held` something `width_m` wide, or stood that far open.
 
     `force_n` is what it pressed with, 0 where nobody said.
@@ -43,7 +43,7 @@ class GraspResult(Message, frozen=True, kw_only=True):
     width_m: float
     force_n: float
     reason: str = ""
-    start: GripperAction | msgspec.UnsetType = msgspec.UNSET
+    start: GripperSetting | msgspec.UnsetType = msgspec.UNSET
 
 
 class GripperOpen(Action[GraspResult, GripperFeedback], frozen=True, kw_only=True):

@@ -9,11 +9,11 @@ import msgspec
 from engine.messages import Message, Pose
 from engine.skill import Action, Service
 
-Period = Annotated[
+SamplePeriod = Annotated[
     float, msgspec.Meta(ge=0.002, le=1.0, description="Time between two samples", extra_json_schema={"unit": "s"})
 ]
-LongestGuide = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long", extra_json_schema={"unit": "s"})]
-Looseness = Annotated[
+GuideDuration = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long", extra_json_schema={"unit": "s"})]
+DampingShare = Annotated[
     float, msgspec.Meta(ge=0.0, le=1.0, description="Share of the nominal damping that is left in the joints")
 ]
 
@@ -47,17 +47,17 @@ class GuideArm(Action[GuideResult, GuideFeedback], frozen=True, kw_only=True):
     replacing what is there. Time in which the goal is held is left out.
     """
 
-    damping: Looseness = 0.1
-    duration_s: LongestGuide | None = None
+    damping: DampingShare = 0.1
+    duration_s: GuideDuration | None = None
     record: str = ""
-    sample_s: Period = 0.01
+    sample_s: SamplePeriod = 0.01
 
 
-class GuidingFinished(Message, frozen=True, kw_only=True):
+class FinishGuidingResult(Message, frozen=True, kw_only=True):
     """The arm holds itself again."""
 
     joints: tuple[float, ...]
 
 
-class FinishGuiding(Service[GuidingFinished], frozen=True, kw_only=True):
+class FinishGuiding(Service[FinishGuidingResult], frozen=True, kw_only=True):
     """End the guiding under way, whoever began it, also a paused one; return when the arm holds itself."""

@@ -13,12 +13,14 @@ import msgspec
 
 from engine.messages import Message, Pose, Vector3
 from engine.skill import Action
-from engine.skills.direction import Axes
+from engine.skills.axes import Axes
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult, Speed
 from engine.skills.planning import Margin
 
-Silence = Annotated[float, msgspec.Meta(gt=0.0, le=2.0, description="Come to rest after so long a silence, in seconds")]
-Patience = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long a silence, in seconds")]
+WatchdogTime = Annotated[
+    float, msgspec.Meta(gt=0.0, le=2.0, description="Come to rest after so long a silence, in seconds")
+]
+IdleTimeout = Annotated[float, msgspec.Meta(gt=0.0, description="End after so long a silence, in seconds")]
 Duration = Annotated[float, msgspec.Meta(gt=0.0, description="Travel time in seconds")]
 _STILL: Vector3 = (0.0, 0.0, 0.0)
 
@@ -29,7 +31,7 @@ class JogCommand(Message, frozen=True, kw_only=True):
     velocity: tuple[float, ...]
 
 
-class JogScene(Message, frozen=True, kw_only=True):
+class JogCollisionOptions(Message, frozen=True, kw_only=True):
     """What of the planning scene a jog minds: nothing where it is not `minded`.
 
     It stays `margin_m` away from obstacles, other arms and what cameras see, but for the names in `may_touch`,
@@ -63,9 +65,9 @@ class JogJoints(Action[JointMotionResult, JointJogFeedback], frozen=True, kw_onl
 
     velocity_rad_s: tuple[float, ...] = ()
     duration_s: Duration | None = None
-    watchdog_s: Silence = 0.2
-    idle_s: Patience = 5.0
-    scene: JogScene = JogScene()
+    watchdog_s: WatchdogTime = 0.2
+    idle_s: IdleTimeout = 5.0
+    scene: JogCollisionOptions = JogCollisionOptions()
 
 
 class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=True):
@@ -78,9 +80,9 @@ class JogTool(Action[CartMotionResult, ToolJogFeedback], frozen=True, kw_only=Tr
     velocity: tuple[float, ...] = ()
     frame: Axes = "world"
     duration_s: Duration | None = None
-    watchdog_s: Silence = 0.2
-    idle_s: Patience = 5.0
-    scene: JogScene = JogScene()
+    watchdog_s: WatchdogTime = 0.2
+    idle_s: IdleTimeout = 5.0
+    scene: JogCollisionOptions = JogCollisionOptions()
 
 
 class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw_only=True):
@@ -88,7 +90,7 @@ class StepJoints(Action[JointMotionResult, JointMotionFeedback], frozen=True, kw
 
     step_rad: tuple[float, ...]
     speed: Speed = 0.1
-    scene: JogScene = JogScene()
+    scene: JogCollisionOptions = JogCollisionOptions()
 
 
 class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_only=True):
@@ -98,4 +100,4 @@ class StepTool(Action[CartMotionResult, CartMotionFeedback], frozen=True, kw_onl
     turn_rad: Vector3 = _STILL
     frame: Axes = "world"
     speed_m_s: Annotated[float, msgspec.Meta(gt=0.0, le=0.5, description="Greatest speed on the way")] = 0.05
-    scene: JogScene = JogScene()
+    scene: JogCollisionOptions = JogCollisionOptions()

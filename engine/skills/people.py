@@ -19,7 +19,7 @@ HandSpeed = Annotated[
 StayTime = Annotated[float, msgspec.Meta(ge=0.0, le=3600.0, extra_json_schema={"unit": "s"})]
 
 
-class PersonReaching(Message, frozen=True, kw_only=True):
+class ReachResult(Message, frozen=True, kw_only=True):
     """Whose hand is on its way, where to and how long it takes to get there."""
 
     person: str
@@ -27,7 +27,7 @@ class PersonReaching(Message, frozen=True, kw_only=True):
     arrives_in_s: float
 
 
-class Reach(Service[PersonReaching], frozen=True, kw_only=True):
+class Reach(Service[ReachResult], frozen=True, kw_only=True):
     """Let the hand of a person move to `hand_m` (world) on a straight line, from now on; replaces what it did.
 
     It ends at rest and is nowhere faster than `speed_m_s`; a hand that is on its way turns off it smoothly, and may
@@ -41,7 +41,7 @@ class Reach(Service[PersonReaching], frozen=True, kw_only=True):
     stay_s: StayTime | None = None
 
 
-class Withdraw(Service[PersonReaching], frozen=True, kw_only=True):
+class Withdraw(Service[ReachResult], frozen=True, kw_only=True):
     """Let the hand of a person go back to where it rests."""
 
     person: str

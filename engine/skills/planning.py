@@ -29,7 +29,7 @@ Margin = Annotated[
     float,
     msgspec.Meta(ge=0.0, le=0.2, description="Least distance from obstacles", extra_json_schema={"unit": "m"}),
 ]
-Patience = Annotated[
+BlockedPathTimeout = Annotated[
     float,
     msgspec.Meta(ge=0.0, le=3600.0, description="Longest wait for a free way", extra_json_schema={"unit": "s"}),
 ]
@@ -59,7 +59,7 @@ class MotionTarget(Message, frozen=True, kw_only=True):
 
 
 class PlanOptions(Message, frozen=True, kw_only=True):
-    """How to look for a way: who, how long, from which seed, how far from obstacles, how fast the arm shall go."""
+    """Options of a planning request: planner, time limit, seed, distance from obstacles, speed."""
 
     planner: PlannerName = "fast"
     time_s: PlanningTime = 1.0
@@ -93,7 +93,7 @@ class PlanFeedback(Message, frozen=True, kw_only=True):
 
 
 class PlanMotion(Action[PlannedMotion, PlanFeedback], frozen=True, kw_only=True):
-    """Find a way to `target` that touches nothing, and show it; the arm does not move and may be moving.
+    """Plan a collision-free path to `target` and publish it; the arm is not commanded and may be moving.
 
     From `start` (radians), or from where the arm is set to stand where it is empty. Fails with the reason: what
     is touched at the start or at the goal, that the arm does not reach the goal, or that no way was found.
@@ -143,11 +143,11 @@ class Adaptation(Message, frozen=True, kw_only=True):
     """
 
     watch: bool = True
-    patience_s: Patience = 60.0
+    patience_s: BlockedPathTimeout = 60.0
 
 
 class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_only=True):
-    """Go along a way that was planned before, from its start.
+    """Execute a path that was planned before, from its start.
 
     Rejected where the arm stands elsewhere, or where the way is no longer free and nothing may be adapted.
     """
@@ -158,7 +158,7 @@ class ExecutePlan(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_
 
 
 class MoveFree(Action[FreeMotionResult, FreeMotionFeedback], frozen=True, kw_only=True):
-    """Find a way to `target` that touches nothing, and go it; see `Adaptation` for what happens on the way.
+    """Plan a collision-free path to `target` and execute it; `Adaptation` says what happens on the path.
 
     Rejected with the reason where there is none and none will be; where only somebody, or another arm, is in
     every way, it is accepted and waits.

@@ -7,7 +7,7 @@ Names are those of obstacles and parts, and `<arm>/<link>`; an arm's name stands
 from __future__ import annotations
 
 from engine.messages import Message, Pose
-from engine.shapes import AT_ORIGIN, Obstacle, Solid
+from engine.messages.shapes import AT_ORIGIN, Obstacle, Solid
 from engine.skill import Service
 
 FARTHEST_M = 1000.0

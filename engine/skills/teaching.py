@@ -6,13 +6,13 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from engine.demonstration import Trajectory
 from engine.messages import Message, Pose
-from engine.primitive import CartDmp, JointDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, JointDmp
 from engine.skill import Service
 from engine.skills.dmp import CartFit, JointFit
 from engine.skills.entries import EntryRecord
-from engine.skills.gripper import GripperAction
+from engine.skills.gripper import GripperSetting
 
 TriggerType = Literal["rising_edge", "falling_edge", "hold"]
 Callback = Literal["joint_save", "pose_save", "tf_save", "gripper_save", "joint_dmp_save", "cart_dmp_save", "grav_comp"]
@@ -84,7 +84,7 @@ class Capture(Message, frozen=True, kw_only=True):
     joint_fit: JointFit | None = None
     cart_dmp: CartDmp | None = None
     cart_fit: CartFit | None = None
-    gripper: GripperAction | None = None
+    gripper: GripperSetting | None = None
 
 
 class TriggerStatus(Message, frozen=True, kw_only=True):

@@ -12,7 +12,7 @@ from typing import Annotated, cast
 import msgspec
 
 from engine.messages import Message, Pose, Vector3
-from engine.pose_algebra import composed, rotated
+from engine.messages.pose_algebra import compose_poses, rotate_vector
 from engine.skill import Service
 
 Score = Annotated[float, msgspec.Meta(ge=0.0, le=1.0, description="How sure the detector is, 0 to 1")]
@@ -44,7 +44,7 @@ class Detection(Message, frozen=True, kw_only=True):
         corners: list[Vector3] = []
         for signs in product((-0.5, 0.5), repeat=3):
             x, y, z = (sign * edge for sign, edge in zip(signs, self.size_m, strict=True))
-            a, b, c = rotated(self.pose.xyzw, (x, y, z))
+            a, b, c = rotate_vector(self.pose.xyzw, (x, y, z))
             corners.append((self.pose.xyz[0] + a, self.pose.xyz[1] + b, self.pose.xyz[2] + c))
         return cast("Vertices", tuple(corners))
 
@@ -66,7 +66,7 @@ class Detections(Message, frozen=True, kw_only=True):
 
     def in_world(self, detection: Detection) -> Pose:
         """Return where the box of one of the detections was in the world."""
-        return composed(self.frame_pose, detection.pose)
+        return compose_poses(self.frame_pose, detection.pose)
 
     def only(self, *, labels: tuple[str, ...] = (), minimal_score: float = 0.0) -> Detections:
         """Return those with one of the labels, any where there are none, whose score is high enough."""

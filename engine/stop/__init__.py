@@ -4,8 +4,8 @@ The relay's process takes STOP from HTTP and signals and passes it to every *sto
 of a controller or driver reads by itself. The engine is told at the same time; whether it answers changes nothing.
 """
 
-from engine.stop.line import StopLine
-from engine.stop.messages import DeviceStop, StopNotice, StopStatus
 from engine.stop.relay import StopEndpoint, StopRelay
+from engine.stop.relay_messages import DeviceStop, StopNotice, StopStatus
+from engine.stop.stop_line import StopLine
 
 __all__ = ["DeviceStop", "StopEndpoint", "StopLine", "StopNotice", "StopRelay", "StopStatus"]

@@ -11,27 +11,27 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from engine.stop.messages import (
+from engine.stop.outbox import Outbox
+from engine.stop.relay_messages import (
     CloseRelay,
     DeviceStop,
     EngineProbe,
     FromRelay,
     MessageReader,
-    NewLine,
+    NewStopLine,
     ProbeReply,
     RelayReady,
     RelaySettings,
-    StopAcknowledged,
+    StopAcknowledgement,
+    StopCommand,
+    StopCommandReply,
     StopNotice,
-    StopOrder,
-    StopOrdered,
     StopRelease,
     StopStatus,
     ToDevice,
     ToRelay,
-    encoded,
+    encode_message,
 )
-from engine.stop.outbox import Outbox
 
 _READ_BYTES = 65536
 _MAX_DESCRIPTORS = 16
@@ -171,11 +171,11 @@ class StopDispatcher:
             case RelaySettings():
                 self.token, self.origins = message.token, frozenset(message.origins)
                 self._stops_at_signals = message.stops_at_signals
-            case NewLine():
+            case NewStopLine():
                 self._add_line(message.device, socket.socket(fileno=self._descriptors.popleft()))
-            case StopOrder():
+            case StopCommand():
                 stop = self.stop(message.reason, "engine")
-                self._tell_engine(StopOrdered(stop=stop, request=message.request))
+                self._tell_engine(StopCommandReply(stop=stop, request=message.request))
             case StopRelease():
                 for line in self._lines.values():
                     self._tell(line, message)
@@ -193,13 +193,15 @@ class StopDispatcher:
         if before is not None and before.connected:
             self._cut(before)
         connection.setblocking(False)
-        line = self._lines[device] = _Line(device=device, connection=connection, reader=MessageReader(StopAcknowledged))
+        line = self._lines[device] = _Line(
+            device=device, connection=connection, reader=MessageReader(StopAcknowledgement)
+        )
         self._loop.add_reader(connection.fileno(), self._read_line, line)
 
     def _read_line(self, line: _Line) -> None:
         messages, is_over = line.reader.receive(line.connection)
         for message in messages:
-            if isinstance(message, StopAcknowledged):
+            if isinstance(message, StopAcknowledgement):
                 line.acknowledged = max(line.acknowledged, message.stop)
                 line.at_rest = max(line.at_rest, message.stop if message.at_rest else 0)
         if is_over:
@@ -258,13 +260,13 @@ class StopDispatcher:
 
     def _tell_engine(self, message: FromRelay) -> None:
         if not self._engine_ended:
-            self._to_engine.send(encoded(message))
+            self._to_engine.send(encode_message(message))
 
     def _tell(self, line: _Line, message: ToDevice) -> None:
         if not line.connected:
             return
         try:
-            line.connection.send(encoded(message))
+            line.connection.send(encode_message(message))
         except OSError:
             self._cut(line)
 

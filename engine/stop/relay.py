@@ -15,29 +15,28 @@ from types import TracebackType
 from typing import Self
 from urllib.parse import urlsplit
 
-from engine.cell_connection import CONNECT_AGAIN
-from engine.child_process import exit_in_words, start_child
-from engine.errors import CellError, FlexcellError, RobotError
-from engine.loopback import bound_socket, host_in_url
-from engine.stop.messages import (
+from engine.errors import CONNECT_AGAIN, CellError, FlexcellError, RobotError
+from engine.host.child_process import exit_code_text, start_child
+from engine.host.loopback import bound_socket, host_in_url
+from engine.stop.outbox import Outbox
+from engine.stop.relay_messages import (
     CloseRelay,
     EngineProbe,
     FromRelay,
     MessageReader,
-    NewLine,
+    NewStopLine,
     ProbeReply,
     RelayReady,
     RelaySettings,
+    StopCommand,
+    StopCommandReply,
     StopNotice,
-    StopOrder,
-    StopOrdered,
     StopRelease,
     ToRelay,
-    encoded,
+    encode_message,
 )
-from engine.stop.outbox import Outbox
 
-_START = "from engine.stop.process import main; main()"
+_START = "from engine.stop.relay_process import main; main()"
 _WHAT = "the stop relay"
 _START_S = 20.0
 _ORDER_S = 0.3
@@ -174,8 +173,8 @@ class StopRelay:
         try:
             self._outbox.send()
             if not self._outbox.empty:
-                raise BlockingIOError("it does not read what it is told")
-            socket.send_fds(self._control, [encoded(NewLine(device=device))], [ours.fileno()])
+                raise BlockingIOError("it does not read its messages")
+            socket.send_fds(self._control, [encode_message(NewStopLine(device=device))], [ours.fileno()])
         except OSError as error:
             theirs.close()
             raise CellError(f"the stop relay takes no line: {error}", where=device) from error
@@ -190,7 +189,7 @@ class StopRelay:
         self._requests += 1
         request = self._requests
         ordered = self._orders[request] = asyncio.get_running_loop().create_future()
-        self._send(StopOrder(reason=reason, request=request))
+        self._send(StopCommand(reason=reason, request=request))
         try:
             async with asyncio.timeout(_ORDER_S):
                 return await ordered
@@ -264,7 +263,7 @@ class StopRelay:
                     self._ready.set_result(None)
             case EngineProbe():
                 self._send(ProbeReply(number=message.number))
-            case StopOrdered():
+            case StopCommandReply():
                 ordered = self._orders.get(message.request)
                 if ordered is not None and not ordered.done():
                     ordered.set_result(message.stop)
@@ -307,7 +306,7 @@ class StopRelay:
 
     def _send(self, message: ToRelay) -> None:
         if self._outbox is not None:
-            self._outbox.send(encoded(message))
+            self._outbox.send(encode_message(message))
 
     def _forget_control(self) -> None:
         control, self._control = self._control, None
@@ -341,5 +340,5 @@ def _how(process: subprocess.Popen[bytes] | None) -> str:
     if process is None:
         return ""
     with suppress(subprocess.TimeoutExpired):
-        return f" {exit_in_words(process.wait(timeout=_WORDS_S))}"
+        return f" {exit_code_text(process.wait(timeout=_WORDS_S))}"
     return ""

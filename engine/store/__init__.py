@@ -4,16 +4,16 @@
 server (which needs pymongo); `register_store` puts a store on the bus.
 """
 
-from engine.demonstration import Trajectory
-from engine.detection_template import DetectionTemplate, TemplateImage
-from engine.primitive import CartDmp, CartOffsets, JointDmp
-from engine.skills.gripper import GripperAction
+from engine.messages.demonstrations import Trajectory
+from engine.messages.detection_template import DetectionTemplate, TemplateImage
+from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
+from engine.skills.gripper import GripperSetting
 from engine.store.contract import ChangeListener, EntryChange, EntryKey, Store, Value
-from engine.store.kinds import RECORD, STANDARD_KINDS, EntryKind, Joints, read_as, verified_value
+from engine.store.entry_kinds import RECORD, STANDARD_KINDS, EntryKind, Joints, decode_entry, verified_value
+from engine.store.entry_services import publish_changes, register_store
 from engine.store.migration import Migration, migrate
-from engine.store.opening import open_store
-from engine.store.skills import publish_changes, register_store
-from engine.store.sqlite import SqliteStore
+from engine.store.sqlite.sqlite_store import SqliteStore
+from engine.store.store_factory import open_store
 
 __all__ = [
     "RECORD",
@@ -25,7 +25,7 @@ __all__ = [
     "EntryChange",
     "EntryKey",
     "EntryKind",
-    "GripperAction",
+    "GripperSetting",
     "JointDmp",
     "Joints",
     "Migration",
@@ -34,10 +34,10 @@ __all__ = [
     "TemplateImage",
     "Trajectory",
     "Value",
+    "decode_entry",
     "migrate",
     "open_store",
     "publish_changes",
-    "read_as",
     "register_store",
     "verified_value",
 ]

@@ -9,9 +9,9 @@ from typing import Protocol, Self
 import msgspec
 
 from engine.skills.entries import EntryRecord
-from engine.store.models import Model
+from engine.store.pydantic_models import PydanticModel
 
-Value = Mapping[str, object] | msgspec.Struct | Model
+Value = Mapping[str, object] | msgspec.Struct | PydanticModel
 """An entry's value on its way in: its fields, or a message or pydantic model that has them."""
 
 
@@ -149,7 +149,7 @@ class Store(Protocol):
         """Return every change of an entry, oldest first; empty when it never was."""
         ...
 
-    async def ever(self) -> tuple[tuple[str, str], ...]:
+    async def all_names(self) -> tuple[tuple[str, str], ...]:
         """Return kind and name of every entry that ever was, also of deleted ones, sorted."""
         ...
 
@@ -173,7 +173,7 @@ class Store(Protocol):
         """
         ...
 
-    async def adopt(self, histories: Iterable[Sequence[EntryChange]]) -> int:
+    async def import_histories(self, histories: Iterable[Sequence[EntryChange]]) -> int:
         """Take over entries with their whole histories from another store; return how many changes were new.
 
         Raises:

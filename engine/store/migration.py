@@ -36,10 +36,12 @@ async def migrate(source: Store, target: Store, *, progress: Callable[[int, int]
         EntryConflict: an entry has another history in `target`.
         StoreError: `target` does not give back what was written, or `source` was changed meanwhile.
     """
-    names = await source.ever()
+    names = await source.all_names()
     new = 0
     for at in range(0, len(names), _BATCH):
-        new += await target.adopt([await source.history(kind, name) for kind, name in names[at : at + _BATCH]])
+        new += await target.import_histories(
+            [await source.history(kind, name) for kind, name in names[at : at + _BATCH]]
+        )
         if progress is not None:
             progress(min(at + _BATCH, len(names)), len(names))
     changes, digest = await _verify(source, target, names)

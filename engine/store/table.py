@@ -7,14 +7,14 @@ from threading import Event
 from typing import Protocol
 
 from engine.errors import EntryConflict, EntryNotFound
-from engine.nearness import near_names
-from engine.store.row import Draft, Row, Selection, Stamp
+from engine.store.rows import ChangeStamp, EntryDraft, EntryQuery, RevisionRow
+from engine.suggestions import did_you_mean
 
 
-class Feed(Protocol):
+class ChangeSource(Protocol):
     """The changes that anybody commits, from the moment it was opened; used by one thread of its own."""
 
-    def wait(self, stop: Event) -> tuple[Row, ...]:
+    def wait(self, stop: Event) -> tuple[RevisionRow, ...]:
         """Return the next changes; none after a while without any, or soon after `stop` is set."""
         ...
 
@@ -23,7 +23,7 @@ class Feed(Protocol):
         ...
 
 
-class Table(Protocol):
+class EntryTable(Protocol):
     """Entries and all their revisions in a database; every method raises StoreError where it fails."""
 
     @property
@@ -31,43 +31,43 @@ class Table(Protocol):
         """Where the database is, without secrets."""
         ...
 
-    def get(self, kind: str, name: str) -> Row:
+    def get(self, kind: str, name: str) -> RevisionRow:
         """Return an entry; raises EntryNotFound."""
         ...
 
-    def select(self, selection: Selection, *, values: bool) -> tuple[Row, ...]:
+    def select(self, selection: EntryQuery, *, values: bool) -> tuple[RevisionRow, ...]:
         """Return entries sorted by kind and name; their values on request."""
         ...
 
-    def ever(self) -> tuple[tuple[str, str], ...]:
+    def all_names(self) -> tuple[tuple[str, str], ...]:
         """Return kind and name of every entry that ever was, sorted."""
         ...
 
-    def changes(self, kind: str, name: str) -> tuple[Row, ...]:
+    def changes(self, kind: str, name: str) -> tuple[RevisionRow, ...]:
         """Return every revision of an entry, oldest first."""
         ...
 
-    def put(self, draft: Draft, stamp: Stamp, *, expected_revision: int | None) -> Row:
+    def put(self, draft: EntryDraft, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
         """Write an entry; raises EntryConflict."""
         ...
 
-    def delete(self, kind: str, name: str, stamp: Stamp, *, expected_revision: int | None) -> Row:
+    def delete(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
         """Remove an entry and return its last revision; raises EntryNotFound, EntryConflict."""
         ...
 
-    def undo(self, kind: str, name: str, stamp: Stamp, *, expected_revision: int | None) -> Row:
+    def undo(self, kind: str, name: str, stamp: ChangeStamp, *, expected_revision: int | None) -> RevisionRow:
         """Bring back what was before the last change; raises EntryNotFound, EntryConflict."""
         ...
 
-    def seed(self, drafts: Sequence[Draft], stamp: Stamp, *, overwrite: bool) -> tuple[Row, ...]:
+    def seed(self, drafts: Sequence[EntryDraft], stamp: ChangeStamp, *, overwrite: bool) -> tuple[RevisionRow, ...]:
         """Write those that are missing or, with `overwrite`, differ; return what was written."""
         ...
 
-    def adopt(self, histories: Sequence[Sequence[Row]]) -> tuple[Row, ...]:
+    def import_histories(self, histories: Sequence[Sequence[RevisionRow]]) -> tuple[RevisionRow, ...]:
         """Take over entries with their revisions; return those that were new. Raises EntryConflict."""
         ...
 
-    def feed(self) -> Feed | None:
+    def feed(self) -> ChangeSource | None:
         """Open a feed of changes; None where nobody else can reach the database."""
         ...
 
@@ -76,7 +76,7 @@ class Table(Protocol):
         ...
 
 
-def verify_revision(kind: str, name: str, there: Row | None, expected: int | None) -> None:
+def verify_revision(kind: str, name: str, there: RevisionRow | None, expected: int | None) -> None:
     """Refuse a change where the entry has another revision than expected; `there` may be a deletion."""
     revision = 0 if there is None or there.value is None else there.revision
     if expected is None or revision == expected:
@@ -85,7 +85,7 @@ def verify_revision(kind: str, name: str, there: Row | None, expected: int | Non
     raise EntryConflict(
         f"{state}, revision {expected} was expected" if expected else f"{state}, none was expected",
         where=f"{kind} {name}",
-        hint="read it again and decide anew",
+        hint="read it again and retry",
     )
 
 
@@ -98,11 +98,11 @@ def entry_not_found(kind: str, name: str, *, elsewhere: Sequence[str], names: Se
         elsewhere: The kinds that have an entry of this name.
         names: Of the entries of its kind.
     """
-    hint = f"there is a {elsewhere[0]} of this name" if elsewhere else near_names(name, names)
+    hint = f"there is a {elsewhere[0]} of this name" if elsewhere else did_you_mean(name, names)
     return EntryNotFound(f"there is no {kind} entry called {name}", where="store", hint=hint)
 
 
-def missing_revisions(have: Sequence[Row], given: Sequence[Row]) -> Sequence[Row]:
+def missing_revisions(have: Sequence[RevisionRow], given: Sequence[RevisionRow]) -> Sequence[RevisionRow]:
     """Return what `given`, a whole history, has beyond `have`.
 
     Raises:
@@ -124,5 +124,5 @@ def missing_revisions(have: Sequence[Row], given: Sequence[Row]) -> Sequence[Row
     return given[len(have) :]
 
 
-def _content(row: Row) -> tuple[object, ...]:
+def _content(row: RevisionRow) -> tuple[object, ...]:
     return (row.revision, row.value, row.tags, row.changed_unix_ms, row.by, row.reason, row.restores)

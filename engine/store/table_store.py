@@ -12,14 +12,14 @@ from typing import Self, TypeVar
 
 from engine.errors import StoreError
 from engine.skills.entries import EntryRecord
+from engine.store.change_feed import ChangeFeed
 from engine.store.contract import ChangeListener, EntryChange, EntryKey, Value
-from engine.store.following import Following
-from engine.store.kinds import EntryKind, verified_value
+from engine.store.entry_kinds import EntryKind, verified_value
 from engine.store.limits import encode_value, is_name_start, verify_name, verify_note, verify_tags
-from engine.store.row import Draft, Row, Selection, Stamp
-from engine.store.shapes import change_of, exported_of, key_of, record_of, row_from
-from engine.store.table import Table
-from engine.store.words import searched
+from engine.store.row_mapping import change_of, exported_of, key_of, record_of, row_from
+from engine.store.rows import ChangeStamp, EntryDraft, EntryQuery, RevisionRow
+from engine.store.search_terms import query_terms
+from engine.store.table import EntryTable
 
 T = TypeVar("T")
 
@@ -27,13 +27,13 @@ T = TypeVar("T")
 class TableStore:
     """The `Store` that every database has in common; one worker thread, or none when `inline`."""
 
-    def __init__(self, table: Table, *, inline: bool, kinds: Mapping[str, EntryKind]) -> None:
+    def __init__(self, table: EntryTable, *, inline: bool, kinds: Mapping[str, EntryKind]) -> None:
         self._table = table
         self._worker = None if inline else ThreadPoolExecutor(max_workers=1, thread_name_prefix="store")
         self._kinds = kinds
         self._listeners: dict[object, ChangeListener] = {}
         self._writer = uuid.uuid4().hex
-        self._following: Following | None = None
+        self._following: ChangeFeed | None = None
         self._closed = False
 
     @property
@@ -60,7 +60,7 @@ class TableStore:
         """Write an entry durably; raises StoreError when refused or when another revision is there."""
         stamp = self._stamp(f"{kind} {name}", by, reason)
 
-        def write() -> tuple[Row, ...]:
+        def write() -> tuple[RevisionRow, ...]:
             draft = self._draft(kind, name, value, tags)
             return (self._table.put(draft, stamp, expected_revision=expected_revision),)
 
@@ -77,11 +77,11 @@ class TableStore:
         limit: int | None = None,
     ) -> tuple[EntryKey, ...]:
         """Return the entries that meet all conditions, sorted by kind and name."""
-        selection = Selection(
+        selection = EntryQuery(
             kind=kind,
             prefix=prefix,
             tags=tuple(tags),
-            words=searched(text),
+            words=query_terms(text),
             after=None if after is None else (after.kind, after.name),
             limit=limit,
         )
@@ -112,13 +112,13 @@ class TableStore:
         verify_name(kind, name)
         return await self._do(lambda: tuple(map(change_of, self._table.changes(kind, name))))
 
-    async def ever(self) -> tuple[tuple[str, str], ...]:
+    async def all_names(self) -> tuple[tuple[str, str], ...]:
         """Return kind and name of every entry that ever was, sorted."""
-        return await self._do(self._table.ever)
+        return await self._do(self._table.all_names)
 
     async def export(self, *, kind: str = "", prefix: str = "") -> tuple[EntryRecord, ...]:
         """Return entries with their values and tags, sorted by kind and name."""
-        selection = Selection(kind=kind, prefix=prefix)
+        selection = EntryQuery(kind=kind, prefix=prefix)
         return await self._do(lambda: tuple(map(exported_of, self._table.select(selection, values=True))))
 
     async def seed(
@@ -128,18 +128,18 @@ class TableStore:
         given = tuple(entries)
         stamp = self._stamp("seed", by, reason)
 
-        def write() -> tuple[Row, ...]:
+        def write() -> tuple[RevisionRow, ...]:
             drafts = [self._draft(entry.kind, entry.name, entry.value, entry.tags) for entry in given]
             return self._table.seed(drafts, stamp, overwrite=overwrite)
 
         return tuple(map(key_of, await self._change(write)))
 
-    async def adopt(self, histories: Iterable[Sequence[EntryChange]]) -> int:
+    async def import_histories(self, histories: Iterable[Sequence[EntryChange]]) -> int:
         """Take over entries with their whole histories; raises EntryConflict where others are here."""
         given = tuple(histories)
 
-        def write() -> tuple[Row, ...]:
-            return self._table.adopt([[self._adopted(change) for change in history] for history in given])
+        def write() -> tuple[RevisionRow, ...]:
+            return self._table.import_histories([[self._adopted(change) for change in history] for history in given])
 
         return len(await self._change(write))
 
@@ -162,7 +162,7 @@ class TableStore:
             feed = await self._do(self._table.feed)
             if feed is None:
                 return end_watching
-            self._following = Following(feed, writer=self._writer, loop=asyncio.get_running_loop())
+            self._following = ChangeFeed(feed, writer=self._writer, loop=asyncio.get_running_loop())
             self._following.start()
         end_hearing = self._following.tell(listener)
 
@@ -193,17 +193,19 @@ class TableStore:
     ) -> None:
         await self.close()
 
-    def _draft(self, kind: str, name: str, value: Value, tags: Iterable[str] | None) -> Draft:
+    def _draft(self, kind: str, name: str, value: Value, tags: Iterable[str] | None) -> EntryDraft:
         verify_name(kind, name)
         where = f"{kind} {name}"
         encoded = encode_value(verified_value(self._kinds, kind, value, where=where), where=where)
-        return Draft(kind=kind, name=name, value=encoded, tags=None if tags is None else verify_tags(tags, where=where))
+        return EntryDraft(
+            kind=kind, name=name, value=encoded, tags=None if tags is None else verify_tags(tags, where=where)
+        )
 
-    def _stamp(self, where: str, by: str, reason: str) -> Stamp:
+    def _stamp(self, where: str, by: str, reason: str) -> ChangeStamp:
         verify_note(by, reason, where=where)
-        return Stamp(by=by, reason=reason, changed_unix_ms=time.time_ns() // 1_000_000, writer=self._writer)
+        return ChangeStamp(by=by, reason=reason, changed_unix_ms=time.time_ns() // 1_000_000, writer=self._writer)
 
-    def _adopted(self, change: EntryChange) -> Row:
+    def _adopted(self, change: EntryChange) -> RevisionRow:
         verify_name(change.kind, change.name)
         where = f"{change.kind} {change.name}"
         verify_tags(change.tags, where=where)
@@ -219,10 +221,10 @@ class TableStore:
             return work()
         return await asyncio.get_running_loop().run_in_executor(self._worker, work)
 
-    async def _change(self, work: Callable[[], tuple[Row, ...]]) -> tuple[Row, ...]:
+    async def _change(self, work: Callable[[], tuple[RevisionRow, ...]]) -> tuple[RevisionRow, ...]:
         loop = asyncio.get_running_loop()
 
-        def work_and_tell() -> tuple[Row, ...]:
+        def work_and_tell() -> tuple[RevisionRow, ...]:
             rows = work()
             # Told from here, so that a caller cancelled in the meantime does not hide the change.
             loop.call_soon_threadsafe(self._tell, rows)
@@ -234,7 +236,7 @@ class TableStore:
         self._tell(rows)
         return rows
 
-    def _tell(self, rows: tuple[Row, ...]) -> None:
+    def _tell(self, rows: tuple[RevisionRow, ...]) -> None:
         for row in rows:
             for listener in tuple(self._listeners.values()):
                 listener(change_of(row))

@@ -4,9 +4,17 @@ Knows the bus and its skills only: triggers come from any topic, robots answer t
 takes what is saved.
 """
 
-from engine.teaching.buffer import CaptureBuffer
-from engine.teaching.document import TeachDocument, load_triggers
-from engine.teaching.edges import Edge, EdgeDetector
-from engine.teaching.helping_hand import HelpingHand, teachable
+from engine.teaching.capture_buffer import CaptureBuffer
+from engine.teaching.edge_detection import ButtonEdge, EdgeDetector
+from engine.teaching.helping_hand import HelpingHand, guidable_robots
+from engine.teaching.teach_document import TeachDocument, load_triggers
 
-__all__ = ["CaptureBuffer", "Edge", "EdgeDetector", "HelpingHand", "TeachDocument", "load_triggers", "teachable"]
+__all__ = [
+    "ButtonEdge",
+    "CaptureBuffer",
+    "EdgeDetector",
+    "HelpingHand",
+    "TeachDocument",
+    "guidable_robots",
+    "load_triggers",
+]

@@ -6,8 +6,8 @@ import msgspec
 
 from engine.errors import SkillFailed
 from engine.messages import FramePoses, Pose
-from engine.nearness import near_names
-from engine.pose_algebra import composed, inverse
+from engine.messages.pose_algebra import compose_poses, invert_pose
+from engine.suggestions import did_you_mean
 
 WORLD = "world"
 
@@ -21,13 +21,13 @@ def relative_pose(poses: FramePoses, source: str, target: str) -> Pose:
     pose = _of(poses, source)
     if target == WORLD:
         return pose
-    return msgspec.structs.replace(composed(inverse(_of(poses, target)), pose), frame=target)
+    return msgspec.structs.replace(compose_poses(invert_pose(_of(poses, target)), pose), frame=target)
 
 
 def _of(poses: FramePoses, name: str) -> Pose:
     if name == WORLD:
         return Pose(xyz=(0.0, 0.0, 0.0))
     if name not in poses.names:
-        raise SkillFailed(f"there is no frame {name}", where="cell/frames", hint=near_names(name, poses.names))
+        raise SkillFailed(f"there is no frame {name}", where="cell/frames", hint=did_you_mean(name, poses.names))
     row = poses.names.index(name)
     return Pose(xyz=poses.xyz[row], xyzw=poses.xyzw[row])

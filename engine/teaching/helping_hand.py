@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, Self
 
 from engine.bus import GoalHandle, SkillBus
-from engine.cause import cause_of, describe
+from engine.cause_chain import cause_of, describe_cause
 from engine.errors import BusError, DocumentError, FlexcellError, SkillFailed
 from engine.skills.entries import EntryRecord
 from engine.skills.guiding import FinishGuiding, GuideArm
@@ -31,12 +31,12 @@ from engine.skills.teaching import (
     TriggerStatus,
 )
 from engine.skills.trigger_document import ReadTriggerDocument, TriggerDocument, WriteTriggerDocument
-from engine.teaching.buffer import CaptureBuffer
-from engine.teaching.capturing import Capturing
-from engine.teaching.edges import Edge, EdgeDetector
-from engine.teaching.proposing import propose
-from engine.teaching.recording import JointRecording
-from engine.teaching.saving import save
+from engine.teaching.capture_buffer import CaptureBuffer
+from engine.teaching.capture_builder import CaptureBuilder
+from engine.teaching.capture_saving import save_capture
+from engine.teaching.edge_detection import ButtonEdge, EdgeDetector
+from engine.teaching.joint_recording import JointRecording
+from engine.teaching.proposal_service import propose
 from engine.teaching.trigger_file import TriggerFile
 
 NAMESPACE = "teach"
@@ -46,14 +46,14 @@ _BY_HAND = "by hand"
 _log = logging.getLogger("flexcell.teaching")
 
 
-def teachable(bus: SkillBus) -> tuple[str, ...]:
+def guidable_robots(bus: SkillBus) -> tuple[str, ...]:
     """Return the robots on a bus that can be led by hand, sorted."""
     ending = f"/{GuideArm.skill_name()}"
     return tuple(sorted(row.name.removesuffix(ending) for row in bus.listing() if row.name.endswith(ending)))
 
 
 @dataclass(kw_only=True)
-class _Listening:
+class _TriggerSubscription:
     """One trigger and its subscription."""
 
     trigger: Trigger
@@ -89,9 +89,9 @@ class HelpingHand:
         self._bus = bus
         self._robots = tuple(robots)
         self._buffer = CaptureBuffer(folder)
-        self._capturing = Capturing(bus, self._buffer)
+        self._capturing = CaptureBuilder(bus, self._buffer)
         self._file = TriggerFile(file, triggers)
-        self._listening: list[_Listening] = []
+        self._listening: list[_TriggerSubscription] = []
         self._recordings: dict[str, tuple[Trigger, JointRecording]] = {}
         self._guides: dict[str, GoalHandle[Any, Any]] = {}
         self._due: asyncio.Queue[tuple[Trigger, Callable[[], Any]]] = asyncio.Queue()
@@ -116,7 +116,7 @@ class HelpingHand:
             self._listen(self._file.load())
         except DocumentError as error:
             # The rest of teaching works without triggers; whoever mends the file sees the line.
-            self._say(f"the triggers are not in force: {describe(cause_of(error))}")
+            self._say(f"the triggers are not in force: {describe_cause(cause_of(error))}")
         return self
 
     async def __aexit__(
@@ -156,16 +156,16 @@ class HelpingHand:
             said=self._said,
         )
 
-    def fired(self, trigger: Trigger, edge: Edge) -> None:
+    def fired(self, trigger: Trigger, edge: ButtonEdge) -> None:
         """Do what a trigger is for; `edge` is what its button did."""
         held = trigger.trig_type == "hold"
-        wanted = Edge.RELEASED if trigger.trig_type == "falling_edge" else Edge.PRESSED
+        wanted = ButtonEdge.RELEASED if trigger.trig_type == "falling_edge" else ButtonEdge.PRESSED
         if trigger.trig_callback in _RECORDS:
             robot = self._robot_of(trigger)
             if robot is None:
                 return
             running = robot in self._recordings
-            if held and edge is Edge.RELEASED:
+            if held and edge is ButtonEdge.RELEASED:
                 self._end_recording(robot, of=trigger)
             elif edge is wanted and not (held and running):
                 self._end_recording(robot) if running else self._begin_recording(robot, trigger)
@@ -214,7 +214,7 @@ class HelpingHand:
             self._recordings[robot] = (trigger, JointRecording(self._bus, robot))
             self._say(f"{robot} is being recorded")
         except BusError as error:
-            self._say(describe(cause_of(error)))
+            self._say(describe_cause(cause_of(error)))
 
     def _end_recording(self, robot: str, *, of: Trigger | None = None) -> None:
         """End a recording, only that of one trigger with `of`; what was recorded is worked on in its turn."""
@@ -248,7 +248,7 @@ class HelpingHand:
             try:
                 await work()
             except FlexcellError as error:
-                self._say(f"{trigger.trig_name}: {describe(cause_of(error))}")
+                self._say(f"{trigger.trig_name}: {describe_cause(cause_of(error))}")
             except Exception:
                 # One capture that fails must not end teaching.
                 _log.exception("%s failed", trigger.trig_name)
@@ -261,8 +261,8 @@ class HelpingHand:
         self._listening = [self._listen_to(trigger) for trigger in triggers]
         self._tell()
 
-    def _listen_to(self, trigger: Trigger) -> _Listening:
-        listening = _Listening(trigger=trigger)
+    def _listen_to(self, trigger: Trigger) -> _TriggerSubscription:
+        listening = _TriggerSubscription(trigger=trigger)
         name = trigger.trig_topic.strip("/")
         try:
             topic = self._bus.find_topic(name)
@@ -273,7 +273,7 @@ class HelpingHand:
         try:
             detector = EdgeDetector(topic.kind, field=trigger.field, value=trigger.trig_value)
         except BusError as error:
-            listening.fault = describe(cause_of(error))
+            listening.fault = describe_cause(cause_of(error))
             return listening
 
         def take(message: object) -> None:
@@ -282,7 +282,7 @@ class HelpingHand:
                 self.fired(trigger, edge)
 
         listening.detector = detector
-        subscription = topic.obey(take) if topic.kind is ButtonState else topic.subscribe(take)
+        subscription = topic.subscribe_commands(take) if topic.kind is ButtonState else topic.subscribe(take)
         listening.close = subscription.close
         return listening
 
@@ -335,14 +335,14 @@ class HelpingHand:
                 source_frame=request.source_frame,
                 target_frame=request.target_frame,
             )
-            self.fired(trigger, Edge.PRESSED if request.pressed else Edge.RELEASED)
+            self.fired(trigger, ButtonEdge.PRESSED if request.pressed else ButtonEdge.RELEASED)
         await self._due.join()
         return self.status
 
     async def _fire_trigger(self, request: FireTrigger) -> TeachStatus:
         for one in self._listening:
             if one.trigger.trig_name == request.trig_name:
-                self.fired(one.trigger, Edge.PRESSED if request.pressed else Edge.RELEASED)
+                self.fired(one.trigger, ButtonEdge.PRESSED if request.pressed else ButtonEdge.RELEASED)
                 await self._due.join()
                 return self.status
         known = ", ".join(one.trigger.trig_name for one in self._listening)
@@ -353,7 +353,7 @@ class HelpingHand:
 
     async def _save_capture(self, request: SaveCapture) -> EntryRecord:
         capture = self._buffer.get(request.id)
-        record, kept = await save(self._bus, capture, request)
+        record, kept = await save_capture(self._bus, capture, request)
         self._buffer.put(kept)
         self._say(f"capture {request.id} is the entry {record.kind} {record.name}")
         return record

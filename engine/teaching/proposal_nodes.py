@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from engine.skills.proposing import ToolName
-from engine.teaching.roles import Taught
+from engine.teaching.step_roles import ObservedStep
 
 Node = dict[str, object]
 SPEED, LINE_SPEED, APPROACH = "${speed}", "${line_speed_m_s}", "${approach_m}"
@@ -21,7 +21,7 @@ _ASKS = {"gripper": "gripper.CheckHeld", "hand": "hand.CheckHeld", "magnet": "ma
 
 
 @dataclass
-class Nodes:
+class ProposalNodeBuilder:
     """Makes nodes for one arm and its tool, and remembers which parameters and outcomes they need."""
 
     arm: str
@@ -29,17 +29,17 @@ class Nodes:
     needed: dict[str, None] = field(default_factory=dict[str, None])
     outcomes: dict[str, None] = field(default_factory=dict[str, None])
 
-    def free(self, place: Taught, then: str, words: str, *, before: bool = False) -> Node:
+    def free(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:
         """Move to a place free of collisions, or to in front of it."""
         where = "joints" if place.step.kind == "joints" else "pose"
         given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
         return self._free(given, then, words)
 
-    def free_to_start(self, motion: Taught, then: str, words: str) -> Node:
+    def free_to_start(self, motion: ObservedStep, then: str, words: str) -> Node:
         """Move to where a taught motion begins, free of collisions."""
         return self._free({"robot": self.arm, "start_of": {motion.step.kind: motion.step.name}}, then, words)
 
-    def straight(self, place: Taught, then: str, words: str, *, before: bool = False) -> Node:
+    def straight(self, place: ObservedStep, then: str, words: str, *, before: bool = False) -> Node:
         """Move the tool straight to a place, or to in front of it."""
         where = "joints" if place.step.kind == "joints" else "target"
         given: Node = {"robot": self.arm, where: {"entry": place.step.name}, **(self._back() if before else {})}
@@ -51,7 +51,7 @@ class Nodes:
             given["duration_s"] = LINE_S
         return self._state("motion.MoveLinear", given, {"reached": then}, words)
 
-    def follow(self, motion: Taught, then: str, words: str) -> Node:
+    def follow(self, motion: ObservedStep, then: str, words: str) -> Node:
         """Carry out a taught motion."""
         state, key = {
             "trajectory": ("motion.FollowRecording", "recording"),
@@ -65,7 +65,7 @@ class Nodes:
         state, outcome = _LETS_GO[self.tool]
         return self._state(state, {**self._tool(), **_named(part)}, {outcome: then}, words)
 
-    def hold(self, then: str, missed: str, words: str, *, part: str, width: str, like: Taught | None) -> Node:
+    def hold(self, then: str, missed: str, words: str, *, part: str, width: str, like: ObservedStep | None) -> Node:
         """Close the tool, or switch it on; `width` is the parameter of the width, empty where nobody knows it."""
         given = {**self._tool(), **_named(part)}
         if self.tool == "hand":

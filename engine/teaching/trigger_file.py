@@ -8,11 +8,11 @@ from pathlib import Path
 import msgspec
 
 from engine.document.yaml_source import parse_source
-from engine.editing.notation import scalar_text
+from engine.editing.yaml_style import scalar_text
 from engine.errors import DocumentError, StoreError
-from engine.private_files import make_private_folder, open_private
+from engine.host.private_files import make_private_folder, open_private
 from engine.skills.teaching import Trigger
-from engine.teaching.document import parse_triggers
+from engine.teaching.teach_document import parse_triggers
 
 UNNAMED = "triggers.yaml"
 _HEAD = "flexcell: 1\ntriggers:"
@@ -29,7 +29,7 @@ class TriggerFile:
 
     def __init__(self, path: Path | None, triggers: Sequence[Trigger] = ()) -> None:
         self._path = path
-        self.text = rewritten("", tuple(triggers))
+        self.text = rewrite_triggers("", tuple(triggers))
 
     @property
     def name(self) -> str:
@@ -55,7 +55,7 @@ class TriggerFile:
         Raises:
             StoreError: the file cannot be written; nothing is changed.
         """
-        return self.write_text(rewritten(self.text, tuple(triggers)))
+        return self.write_text(rewrite_triggers(self.text, tuple(triggers)))
 
     def write_text(self, text: str) -> tuple[Trigger, ...]:
         """Write a whole document and return its triggers.
@@ -80,7 +80,7 @@ class TriggerFile:
         return triggers
 
 
-def rewritten(text: str, triggers: tuple[Trigger, ...]) -> str:
+def rewrite_triggers(text: str, triggers: tuple[Trigger, ...]) -> str:
     """Return `text` with these triggers: those it has already keep their lines, with the comments above them."""
     head, known = _blocks(text)
     if not triggers:

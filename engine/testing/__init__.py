@@ -1,10 +1,10 @@
 """Tests of behaviors: run one headless in virtual time, replay a recording.
 
-With pytest all of it comes by itself, see `engine.pytest_plugin`.
+With pytest all of it comes by itself, see `engine.testing.pytest_plugin`.
 """
 
-from engine.document.substitutes import Ending
-from engine.testing.behavior import Ran, RunBehavior, run_behavior
-from engine.testing.replaying import ReplayFile, replay_file
+from engine.document.substitutes import SubstituteEnding
+from engine.testing.behavior_run import BehaviorRunner, CompletedRun, run_behavior
+from engine.testing.recording_replay import RecordingReplayer, replay_file
 
-__all__ = ["Ending", "Ran", "ReplayFile", "RunBehavior", "replay_file", "run_behavior"]
+__all__ = ["BehaviorRunner", "CompletedRun", "RecordingReplayer", "SubstituteEnding", "replay_file", "run_behavior"]

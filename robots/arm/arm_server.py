@@ -11,26 +11,26 @@ from engine.clock import Clock
 from engine.errors import RobotError
 from engine.messages import Pose, RobotDescription
 from engine.robot import DeviceStatus
-from robots.arm.arm_control import ArmControl
-from robots.arm.arm_status import StatusReport
-from robots.arm.carrying import CarryCheck
+from robots.arm.arm_control_services import ArmControlServices
+from robots.arm.arm_status import ArmStatusPublisher
+from robots.arm.attached_part_guard import AttachedPartGuard
 from robots.arm.contact_motions import ContactMotions
 from robots.arm.direct_control import DirectControl
 from robots.arm.dmp_motions import DmpMotions
 from robots.arm.force_motions import ForceMotions
+from robots.arm.forward_preview import ForwardPreview
 from robots.arm.free_motions import FreeMotions
-from robots.arm.guiding import Guiding
-from robots.arm.inverse_motions import InverseMotions
-from robots.arm.jogging import Jogging
+from robots.arm.guiding_motions import GuidingMotions
+from robots.arm.inverse_kinematics_services import InverseKinematicsServices
+from robots.arm.jog_motions import JogMotions
 from robots.arm.motion_runner import MotionRunner
-from robots.arm.outputs import Outputs
+from robots.arm.output_services import OutputServices
 from robots.arm.path_motions import PathMotions
 from robots.arm.tool_frames import WORLD
-from robots.arm.tracing import Tracing
-from robots.gripper.grip_judgement import Grip
+from robots.gripper.grasp_check import GraspCommand
 from robots.gripper.tool_server import ToolServer
-from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
+from robots.model.transform import RigidTransform
 from robots.port import ArmPort, Tolerance
 from robots.workspace.workspace import Workspace
 
@@ -68,32 +68,32 @@ class ArmServer:
         port: ArmPort,
         clock: Clock,
         gripper: ToolServer | None = None,
-        outputs: Outputs | None = None,
+        outputs: OutputServices | None = None,
         tolerance: Tolerance | None = None,
         workspace: Workspace | None = None,
     ) -> None:
         self._runner = runner = MotionRunner(
             name=name,
             model=model,
-            base=Rigid.from_pose(base),
+            base=RigidTransform.from_pose(base),
             port=port,
             clock=clock,
             tolerance=tolerance or Tolerance(),
-            carry=CarryCheck(name, workspace) if workspace is not None else None,
+            carry=AttachedPartGuard(name, workspace) if workspace is not None else None,
         )
         self._gripper = gripper
-        self._report = report = StatusReport(runner)
+        self._report = report = ArmStatusPublisher(runner)
         self._groups: tuple[SkillGroup, ...] = (
             PathMotions(runner),
-            InverseMotions(runner),
-            Tracing(runner),
+            InverseKinematicsServices(runner),
+            ForwardPreview(runner),
             DmpMotions(runner),
             ForceMotions(runner),
             ContactMotions(runner),
-            Jogging(runner, workspace),
-            Guiding(runner),
+            JogMotions(runner, workspace),
+            GuidingMotions(runner),
             DirectControl(runner),
-            ArmControl(runner, report),
+            ArmControlServices(runner, report),
             report,
             *((outputs,) if outputs is not None else ()),
             *((FreeMotions(runner, workspace),) if workspace is not None else ()),
@@ -144,12 +144,12 @@ class ArmServer:
             calibration=model.calibration,
         )
 
-    def grips(self) -> dict[str, Grip]:
+    def grips(self) -> dict[str, GraspCommand]:
         """What the gripper was told to grasp and hold, by its name; empty when nothing."""
         gripper = self._gripper
         return {} if gripper is None or gripper.grip is None else {gripper.name: gripper.grip}
 
-    def recall(self, grips: Mapping[str, Grip]) -> None:
+    def recall(self, grips: Mapping[str, GraspCommand]) -> None:
         """Judge by `grips` from now on whether the gripper holds what it was told to grasp."""
         if self._gripper is not None:
             self._gripper.grip = grips.get(self._gripper.name)
@@ -158,7 +158,7 @@ class ArmServer:
         """Take no goals, and say why."""
         self._runner.lose(reason)
 
-    def world_back(self) -> None:
+    def world_restored(self) -> None:
         """Take goals again."""
         self._runner.find()
 

@@ -9,11 +9,11 @@ from engine.bus import SkillBus
 from engine.bus.topic import Topic
 from engine.skills.arm_control import ArmStatus, ControlSettings, ReadArm
 from robots.arm.motion_runner import MotionRunner
-from robots.arm.wrench import to_wrench
 from robots.port import ArmSettings
+from robots.port.wrench import to_wrench
 
 
-class StatusReport:
+class ArmStatusPublisher:
     """Answers ReadArm and publishes `<arm>/status`."""
 
     def __init__(self, runner: MotionRunner) -> None:

@@ -10,13 +10,13 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.errors import GoalRejected
 from engine.skills.contact import ContactResult, MoveUntilContact
 from engine.skills.motion import CartMotionFeedback
-from robots.arm.followed import tell_pose
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.tool_frames import WORLD
-from robots.arm.wrench import to_wrench
-from robots.model.rigid import Rigid
+from robots.arm.trajectory_goal import publish_pose_feedback
+from robots.model.transform import RigidTransform
 from robots.motion.min_jerk import PEAK_SPEED
-from robots.port import Array, Contact, JointTrajectory, Motion
+from robots.port import Array, ContactCondition, JointTrajectory, Motion
+from robots.port.wrench import to_wrench
 
 _NO_DIRECTION = 1e-6
 
@@ -37,7 +37,7 @@ class ContactMotions:
         runner.require_ready(handle)
         start = runner.kinematics.tool_pose(runner.port.sample().desired_rad)
         way = self._way(goal, start, handle)
-        end = Rigid(xyz=start.xyz + goal.distance_m * way, xyzw=start.xyzw)
+        end = RigidTransform(xyz=start.xyz + goal.distance_m * way, xyzw=start.xyzw)
         duration_s = PEAK_SPEED * goal.distance_m / goal.speed_m_s
         trajectory = await runner.planned(
             handle, lambda joints: runner.planner.along_line(joints, end, duration_s=duration_s)
@@ -46,7 +46,7 @@ class ContactMotions:
         ended = await runner.carry_out(
             lambda: self._follow(trajectory, goal.force_n, way),
             handle,
-            lambda motion: tell_pose(runner, handle, motion),
+            lambda motion: publish_pose_feedback(runner, handle, motion),
         )
         there, wrench = runner.measured_tool(), runner.port.sample().wrench
         return ContactResult(
@@ -58,7 +58,7 @@ class ContactMotions:
             duration_s=ended.duration_s,
         )
 
-    def _way(self, goal: MoveUntilContact, tool: Rigid, handle: ActiveGoal[CartMotionFeedback]) -> Array:
+    def _way(self, goal: MoveUntilContact, tool: RigidTransform, handle: ActiveGoal[CartMotionFeedback]) -> Array:
         """Return the unit vector of the way in the world, (3,)."""
         direction = np.array(goal.direction)
         length = math.hypot(*goal.direction)
@@ -71,5 +71,5 @@ class ContactMotions:
     def _follow(self, trajectory: JointTrajectory, force_n: float, way: Array) -> Motion:
         runner = self._runner
         x, y, z = (-way).tolist()
-        until = Contact(force_n=force_n, direction=(x, y, z))
+        until = ContactCondition(force_n=force_n, direction=(x, y, z))
         return runner.port.follow(trajectory, tolerance=runner.tolerance, until=until)

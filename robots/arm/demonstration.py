@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from engine.bus import ActiveGoal, GoalStatus
-from engine.demonstration import Trajectory
+from engine.messages.demonstrations import Trajectory
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.tool_frames import WORLD
 
@@ -15,7 +15,7 @@ MOST_SAMPLES = 30_000
 _DIGITS = 6
 
 
-class Demonstration:
+class DemonstrationRecorder:
     """Records while its goal is not held; `run` until cancelled, then `trajectory`.
 
     Args:

@@ -6,11 +6,11 @@ import logging
 
 from engine.bus import SkillBus
 from engine.errors import RobotError
-from engine.skills.direct import JointCommand, SwitchDirectControl
-from engine.skills.switched import Switched
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
+from engine.skills.switch_result import SwitchResult
 from robots.arm.motion_runner import MotionRunner
-from robots.arm.numbers import are_numbers
-from robots.port import MotionEnd, Stream
+from robots.arm.validate_numbers import are_numbers
+from robots.port import MotionEnd, MotionStream
 
 _log = logging.getLogger("flexcell.arm")
 _WORDS = "direct joint control"
@@ -22,55 +22,55 @@ class DirectControl:
     def __init__(self, runner: MotionRunner) -> None:
         self._runner = runner
         self._bus: SkillBus | None = None
-        self._stream: Stream | None = None
+        self._stream: MotionStream | None = None
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the service under the arm's name; refused to others while a run holds the arm."""
         name = self._runner.name
         self._bus = bus
         bus.advertise_service(SwitchDirectControl, self._switch, namespace=name, commands=name)
-        bus.topic(f"{name}/direct_joints", JointCommand).obey(self._take)
+        bus.topic(f"{name}/direct_joints", JointCommand).subscribe_commands(self._take)
 
     @property
     def on(self) -> bool:
         """True while set points are taken."""
         return self._stream is not None and self._runner.reserved_for == _WORDS
 
-    async def _switch(self, request: SwitchDirectControl) -> Switched:
+    async def _switch(self, request: SwitchDirectControl) -> SwitchResult:
         if request.on:
             return self._turn_on(request.watchdog_s)
         return await self._turn_off()
 
-    def _turn_on(self, watchdog_s: float) -> Switched:
+    def _turn_on(self, watchdog_s: float) -> SwitchResult:
         runner = self._runner
         if self.on:
-            return Switched(success=True, message=f"{_WORDS} is on already")
+            return SwitchResult(success=True, message=f"{_WORDS} is on already")
         reason, hint = runner.obstacle()
         if runner.busy:
             reason, hint = f"the arm is busy with {runner.activity or 'a goal'}", "wait for its end or cancel it"
         if reason:
-            return Switched(success=False, message=f"{reason} ({hint})")
+            return SwitchResult(success=False, message=f"{reason} ({hint})")
         try:
             stream = runner.port.stream("joint_position", watchdog_s=watchdog_s)
         except RobotError as error:
-            return Switched(success=False, message=str(error))
+            return SwitchResult(success=False, message=str(error))
         self._stream = stream
         runner.occupy(stream, mode="direct", activity=SwitchDirectControl.skill_name(), reserved_for=_WORDS)
         if self._bus is not None:
             # Whoever holds the arm turned it on; what he leaves behind must not lead the arm.
             self._bus.leases.when_freed(runner.name, stream.cancel)
-        return Switched(success=True, message=f"{_WORDS} is on")
+        return SwitchResult(success=True, message=f"{_WORDS} is on")
 
-    async def _turn_off(self) -> Switched:
+    async def _turn_off(self) -> SwitchResult:
         stream = self._stream
         if stream is None or not self.on:
-            return Switched(success=True, message=f"{_WORDS} is off")
+            return SwitchResult(success=True, message=f"{_WORDS} is off")
         stream.finish()
         report = await stream.report()
         await self._runner.freed()
         if report.end is MotionEnd.FAILED:
-            return Switched(success=True, message=f"{_WORDS} is off: {report.reason}")
-        return Switched(success=True, message=f"{_WORDS} is off")
+            return SwitchResult(success=True, message=f"{_WORDS} is off: {report.reason}")
+        return SwitchResult(success=True, message=f"{_WORDS} is off")
 
     def _take(self, command: JointCommand) -> None:
         if self._stream is None or not self.on:

@@ -10,19 +10,19 @@ import msgspec
 import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
-from engine.demonstration import Trajectory
 from engine.errors import RobotError, SkillFailed
 from engine.messages import Pose
-from engine.primitive import CartDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp
 from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnedCartDmp, LearnedJointDmp, LearnJointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import CartMotionFeedback, CartMotionResult, JointMotionFeedback, JointMotionResult
-from engine.store.kinds import read_as
-from robots.arm.followed import follow_joints, follow_tool
+from engine.store.entry_kinds import decode_entry
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.tool_frames import WORLD
+from robots.arm.trajectory_goal import follow_joints, follow_tool
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.motion.dmp import learn_cart_dmp, learn_joint_dmp, plan_cart_dmp, plan_joint_dmp
 from robots.port import Array, JointTrajectory
 
@@ -62,7 +62,7 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned_carrying(
+        trajectory = await runner.planned_with_attached_parts(
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
         return await follow_joints(runner, trajectory, handle)
@@ -83,7 +83,7 @@ class DmpMotions:
                 start_reach_rad=goal.start_reach_rad,
             )
 
-        trajectory = await runner.planned_carrying(
+        trajectory = await runner.planned_with_attached_parts(
             handle, lambda start: runner.planner.make(lambda kinematics: plan(kinematics, start))
         )
         return await follow_tool(runner, trajectory, handle)
@@ -140,10 +140,10 @@ class DmpMotions:
         if request.trajectory is not None:
             return request.trajectory
         assert self._bus is not None
-        return read_as(await self._bus.call(ReadEntry(kind=_KIND, name=request.entry), to=_STORE), Trajectory)
+        return decode_entry(await self._bus.call(ReadEntry(kind=_KIND, name=request.entry), to=_STORE), Trajectory)
 
 
-def frame_of(runner: MotionRunner, dmp: CartDmp, handle: ActiveGoal[Any]) -> Rigid:
+def frame_of(runner: MotionRunner, dmp: CartDmp, handle: ActiveGoal[Any]) -> RigidTransform:
     """Return where in the world the frame lies that a primitive is given in; GoalRejected where it is not known."""
     return runner.target(Pose(xyz=(0.0, 0.0, 0.0), frame=dmp.frame), handle)
 

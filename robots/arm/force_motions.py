@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.bus import ActiveGoal, SkillBus
-from engine.primitive import CartOffsets
+from engine.messages.primitives import CartOffsets
 from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, CartAdmitResult, Compliance
 from robots.arm.dmp_motions import frame_of
 from robots.arm.motion_runner import MotionRunner
-from robots.arm.wrench import to_wrench
 from robots.model.kinematics import ArmKinematics
 from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, plan_cart_dmp, wrench_at
-from robots.motion.dmp.turns import of_matrix
+from robots.motion.dmp.quaternions import of_matrix
 from robots.port import Admittance, Array, ForceRecord, ForceTask, Motion
+from robots.port.wrench import to_wrench
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,18 +25,18 @@ from engine.skills.planning import (
     PlannedMotion,
     PlanOptions,
 )
-from robots.arm.adapting import AdaptingMotion
-from robots.arm.carrying import CarryCheck
+from robots.arm.adaptive_motion import AdaptiveMotion
+from robots.arm.adaptive_motion_report import AdaptiveMotionReport
+from robots.arm.attached_part_guard import AttachedPartGuard
 from robots.arm.motion_runner import MotionRunner
-from robots.arm.numbers import are_numbers
-from robots.arm.path_preview import Preview, sampled, tool_path
-from robots.arm.tally import Tally
+from robots.arm.path_planner import TRANSIENT_REASONS, PathPlanner, PathSegment, PlanningGoal, describe_contacts
+from robots.arm.path_preview import PathPreviewPublisher, compute_tool_path, sample_trajectory
 from robots.arm.tool_frames import WORLD
-from robots.arm.way_finder import MAY_PASS, Goal, Leg, WayFinder, in_words
-from robots.attend import FEEDBACK_S
-from robots.planning.request import JointGoal, PoseGoal, Refusal, WayGoal
+from robots.arm.validate_numbers import are_numbers
+from robots.planning.request import JointGoal, PathGoal, PlanRefusal, PoseGoal
 from robots.port import Array
 from robots.port.settings import NO_FRAME
+from robots.supervise_goal import FEEDBACK_S
 from robots.workspace.workspace import Workspace
 
 # A scene may change while a way is looked for; the third way that is blocked when it is found is given up.
@@ -50,8 +50,8 @@ class FreeMotions:
     def __init__(self, runner: MotionRunner, workspace: Workspace) -> None:
         self._runner = runner
         self._workspace = workspace
-        self._preview = Preview(runner)
-        self._carry = CarryCheck(runner.name, workspace)
+        self._preview = PathPreviewPublisher(runner)
+        self._carry = AttachedPartGuard(runner.name, workspace)
 
     def register(self, bus: SkillBus) -> None:
         """Advertise the skills under the arm's name."""
@@ -74,7 +74,7 @@ class FreeMotions:
         finally:
             finding.cancel()
         found = finding.result()
-        if isinstance(found, Refusal):
+        if isinstance(found, PlanRefusal):
             raise SkillFailed(found.message, where=handle.address, hint=found.hint or None)
         self._preview.show(found.trajectory, state="proposed")
         return self._planned(found, goal.options, planning_s=runner.clock.now_s() - began_s)
@@ -100,11 +100,11 @@ class FreeMotions:
             )
         options = msgspec.structs.replace(goal.options, speed=plan.speed)
         onward = self._finder(JointGoal(joints_rad=(rows[-1],)), options)
-        first = self._finder(WayGoal(waypoints_rad=rows), options)
+        first = self._finder(PathGoal(waypoints_rad=rows), options)
         return await self._go(first, onward, goal.adaptation, handle)
 
     async def _go(
-        self, first: WayFinder, onward: WayFinder, adaptation: Adaptation, handle: ActiveGoal[FreeMotionFeedback]
+        self, first: PathPlanner, onward: PathPlanner, adaptation: Adaptation, handle: ActiveGoal[FreeMotionFeedback]
     ) -> FreeMotionResult:
         """Find the first way, or reject the goal; go it, and what `onward` finds where it is blocked."""
         runner, workspace = self._runner, self._workspace
@@ -112,10 +112,12 @@ class FreeMotions:
         workspace.require()
         try:
             leg = await runner.planned(handle, lambda start: self._first_leg(first, onward, start, adaptation))
-            shown = _Shown(lambda phase, motion: handle.feedback(self._feedback(phase, motion)), runner, self._preview)
+            shown = _MotionDisplay(
+                lambda phase, motion: handle.feedback(self._feedback(phase, motion)), runner, self._preview
+            )
 
-            def start() -> AdaptingMotion:
-                motion = AdaptingMotion(
+            def start() -> AdaptiveMotion:
+                motion = AdaptiveMotion(
                     leg, runner=runner, finder=onward, workspace=workspace, adaptation=adaptation, shown=shown
                 )
                 shown.motion = motion
@@ -129,7 +131,9 @@ class FreeMotions:
             workspace.release()
             self._preview.clear()
 
-    async def _first_leg(self, first: WayFinder, onward: WayFinder, start: Array, adaptation: Adaptation) -> Leg | str:
+    async def _first_leg(
+        self, first: PathPlanner, onward: PathPlanner, start: Array, adaptation: Adaptation
+    ) -> PathSegment | str:
         """Return a way that is free when it is returned, or why to wait for one.
 
         Raises:
@@ -141,12 +145,12 @@ class FreeMotions:
         patient = adaptation.watch and adaptation.patience_s > 0.0
         for _ in range(_TRIES):
             found = await finder.find(start)
-            if isinstance(found, Refusal):
+            if isinstance(found, PlanRefusal):
                 if finder is first and first is not onward and adaptation.watch:
                     # A planned way that is blocked meanwhile is a change like any other.
                     finder = onward
                     continue
-                if patient and found.reason in MAY_PASS and not await onward.is_barred(start):
+                if patient and found.reason in TRANSIENT_REASONS and not await onward.is_permanently_blocked(start):
                     return found.message
                 raise found.error()
             if self._workspace.lies(self._runner.name):
@@ -158,12 +162,12 @@ class FreeMotions:
             check = await finder.check(found, from_s=0.0, margin_m=finder.margin_m)
             if check.blocked_at_s is None:
                 return found
-            reason = in_words(check.pairs)
+            reason = describe_contacts(check.pairs)
         if patient:
             return reason
         raise RobotError(f"every way that was found is blocked by now: {reason}", hint="clear the way")
 
-    async def _seen(self, find: Callable[[], Awaitable[Leg | Refusal]]) -> Leg | Refusal:
+    async def _seen(self, find: Callable[[], Awaitable[PathSegment | PlanRefusal]]) -> PathSegment | PlanRefusal:
         """Find a way with cameras that see the cell."""
         self._workspace.require()
         try:
@@ -173,13 +177,13 @@ class FreeMotions:
         finally:
             self._workspace.release()
 
-    def _finder(self, goal: Goal, options: PlanOptions) -> WayFinder:
+    def _finder(self, goal: PlanningGoal, options: PlanOptions) -> PathPlanner:
         settings = self._runner.port.settings
         at = (settings.tool_xyz_m, settings.tool_xyzw)
         tool = None if at == NO_FRAME else Pose(xyz=at[0], xyzw=at[1], frame="tool")
-        return WayFinder(self._runner.name, self._workspace, goal=goal, options=options, tool=tool)
+        return PathPlanner(self._runner.name, self._workspace, goal=goal, options=options, tool=tool)
 
-    def _goal(self, target: MotionTarget, handle: ActiveGoal[Any]) -> Goal:
+    def _goal(self, target: MotionTarget, handle: ActiveGoal[Any]) -> PlanningGoal:
         if bool(target.joints) == (target.pose is not None):
             raise GoalRejected("a target is either `joints` or `pose`", where=handle.address, hint="give one of them")
         if target.pose is None:
@@ -199,18 +203,18 @@ class FreeMotions:
             raise GoalRejected(f"the joints {joints} are not finite", where=handle.address)
         return row
 
-    def _planned(self, leg: Leg, options: PlanOptions, *, planning_s: float) -> PlannedMotion:
+    def _planned(self, leg: PathSegment, options: PlanOptions, *, planning_s: float) -> PlannedMotion:
         return PlannedMotion(
             robot=self._runner.name,
             waypoints=leg.plan.waypoints_rad,
             speed=options.speed,
             duration_s=leg.trajectory.duration_s,
-            tool_path=tool_path(self._runner, sampled(leg.trajectory)),
+            tool_path=compute_tool_path(self._runner, sample_trajectory(leg.trajectory)),
             found_by=leg.plan.stats.found_by,
             planning_s=planning_s,
         )
 
-    def _feedback(self, phase: MotionPhase, motion: AdaptingMotion | None = None) -> FreeMotionFeedback:
+    def _feedback(self, phase: MotionPhase, motion: AdaptiveMotion | None = None) -> FreeMotionFeedback:
         return FreeMotionFeedback(
             phase=phase,
             joints=self._runner.measured(),
@@ -221,16 +225,19 @@ class FreeMotions:
         )
 
 
-class _Shown:
+class _MotionDisplay:
     """Tells the goal and the preview what a motion does."""
 
     def __init__(
-        self, tell: Callable[[MotionPhase, AdaptingMotion | None], None], runner: MotionRunner, preview: Preview
+        self,
+        tell: Callable[[MotionPhase, AdaptiveMotion | None], None],
+        runner: MotionRunner,
+        preview: PathPreviewPublisher,
     ) -> None:
         self._tell = tell
         self._runner = runner
         self._preview = preview
-        self.motion: AdaptingMotion | None = None
+        self.motion: AdaptiveMotion | None = None
 
     def entered(self, phase: MotionPhase, reason: str) -> None:
         """Tell at once."""
@@ -240,14 +247,14 @@ class _Shown:
             self._preview.mark("blocked", reason)
         self._tell(phase, self.motion)
 
-    def follows(self, leg: Leg) -> None:
+    def follows(self, leg: PathSegment) -> None:
         """Show the way."""
         self._preview.show(leg.trajectory, state="moving")
 
     def result(self, duration_s: float) -> FreeMotionResult:
         """Return where the arm is and what the motion took."""
         motion = self.motion
-        tally = motion.tally if motion is not None else Tally()
+        tally = motion.tally if motion is not None else AdaptiveMotionReport()
         return FreeMotionResult(
             joints=self._runner.measured(),
             duration_s=duration_s,

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import FlexcellError
-from engine.skills.jogging import JogScene
+from engine.skills.jogging import JogCollisionOptions
 from robots.arm.motion_runner import MotionRunner
+from robots.arm.path_planner import describe_contacts
 from robots.arm.scene_check import SceneCheck
-from robots.arm.way_finder import in_words
 from robots.port import Array, JointTrajectory
 from robots.workspace.workspace import Workspace
 
@@ -36,7 +36,7 @@ _log = logging.getLogger("flexcell.arm")
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Leave:
+class _SpeedLimit:
     """How fast a jog may go in a direction, of length 1, by what was looked at last."""
 
     direction: Array
@@ -53,14 +53,16 @@ class JogGuard:
         to_joints: What the told velocities mean for the joints.
     """
 
-    def __init__(self, runner: MotionRunner, workspace: Workspace, *, rule: JogScene, to_joints: ToJoints) -> None:
+    def __init__(
+        self, runner: MotionRunner, workspace: Workspace, *, rule: JogCollisionOptions, to_joints: ToJoints
+    ) -> None:
         self._runner = runner
         self._workspace = workspace
         self._scene = SceneCheck(runner.name, workspace, rule=rule)
         self._to_joints = to_joints
         self._braking_rad_s2 = np.array(runner.model.limits.acceleration_rad_s2) * _BRAKING_SHARE
         self._told = np.zeros(0)
-        self._leave: _Leave | None = None
+        self._leave: _SpeedLimit | None = None
         self._news = asyncio.Event()
         self._looking: asyncio.Task[None] | None = None
         self.held_by = ""
@@ -80,7 +82,7 @@ class JogGuard:
             self._workspace.release()
             raise
 
-    def look_on(self, again: Callable[[], None]) -> None:
+    def watch_ahead(self, again: Callable[[], None]) -> None:
         """Look ahead from now on; `again` tells the arm anew what it is told."""
         self._looking = asyncio.create_task(self._look_on(again), name=f"looking ahead of {self._runner.name}")
 
@@ -115,7 +117,7 @@ class JogGuard:
             if reason and not self.held_by:
                 _log.info("%s: the jog is held back: %s", self._runner.name, reason)
             self.held_by = reason
-            self._leave = _Leave(direction=told / np.linalg.norm(told), fastest=fastest)
+            self._leave = _SpeedLimit(direction=told / np.linalg.norm(told), fastest=fastest)
             again()
             with suppress(TimeoutError):
                 async with asyncio.timeout(_LOOK_S):
@@ -123,21 +125,21 @@ class JogGuard:
 
     async def _look(self, told: Array) -> tuple[float, str]:
         """Return how fast the arm may go where `told` points, and why no faster."""
-        if self._scene.blind:
-            return 0.0, self._scene.blind
+        if self._scene.unobserved_reason:
+            return 0.0, self._scene.unobserved_reason
         way, gone_s, slowing_s = self._ahead(told)
         try:
             async with asyncio.timeout(_SILENT_S):
                 check = await self._scene.check(way)
         except TimeoutError:
-            return 0.0, f"its way was not looked at within {_SILENT_S:g} s"
+            return 0.0, f"its path was not checked within {_SILENT_S:g} s"
         except FlexcellError as error:
-            return 0.0, f"nobody looks at its way: {error.message}"
+            return 0.0, f"path monitoring is not available: {error.message}"
         if check.blocked_at_s is None:
             return float(np.linalg.norm(told)), ""
         # What is free ends with the sample before the one that touches.
         free_s = float(gone_s[max(0, round(check.blocked_at_s / _STEP_S) - 1)])
-        return float(np.linalg.norm(told)) * _stoppable(free_s * _USED_SHARE, slowing_s), in_words(check.pairs)
+        return float(np.linalg.norm(told)) * _stoppable(free_s * _USED_SHARE, slowing_s), describe_contacts(check.pairs)
 
     def _ahead(self, told: Array) -> tuple[JointTrajectory, Array, float]:
         """Return where the arm goes that is told this until it heeds the next look, and then stops.

@@ -12,11 +12,11 @@ from engine.bus import ActiveGoal
 from engine.clock import Clock
 from engine.errors import GoalRejected, RobotError
 from engine.skills.jogging import JogCommand, JogJoints, JogTool
-from robots.arm.countdown import Countdown
 from robots.arm.jog_guard import JogGuard
-from robots.arm.numbers import are_numbers
-from robots.attend import FEEDBACK_S
-from robots.port import Stream
+from robots.arm.stream_deadline import StreamDeadline
+from robots.arm.validate_numbers import are_numbers
+from robots.port import MotionStream
+from robots.supervise_goal import FEEDBACK_S
 
 Row = tuple[float, ...]
 _REPEATED_S = 4.0 * FEEDBACK_S
@@ -60,8 +60,8 @@ class JogRun:
         self._guard = guard
         self._told: Row = (0.0,) * width
         self._told_s = clock.now_s()
-        self._stream: Stream | None = None
-        self._countdown: Countdown | None = None
+        self._stream: MotionStream | None = None
+        self._countdown: StreamDeadline | None = None
         # Its own velocity is repeated with the feedback, which is no silence of anybody.
         self.watchdog_s = max(goal.watchdog_s, _REPEATED_S) if velocity else goal.watchdog_s
         if bool(velocity) != (goal.duration_s is not None):
@@ -73,13 +73,13 @@ class JogRun:
         if velocity and (fault := self._fault(velocity)):
             raise GoalRejected(fault, where=handle.address)
 
-    def start(self, stream: Stream) -> Stream:
+    def start(self, stream: MotionStream) -> MotionStream:
         """Lead `stream` from now on."""
         self._stream = stream
-        self._countdown = Countdown(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
+        self._countdown = StreamDeadline(stream, self._handle, clock=self._clock, duration_s=self._duration_s)
         self.look()
         if self._guard is not None:
-            self._guard.look_on(self._looked)
+            self._guard.watch_ahead(self._looked)
         return stream
 
     def look(self) -> None:

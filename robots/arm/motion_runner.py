@@ -11,23 +11,22 @@ from typing import Any, TypeVar
 import numpy as np
 
 from engine.bus import ActiveGoal
-from engine.cause import cause_of, describe
-from engine.cell_connection import CONNECT_AGAIN
+from engine.cause_chain import cause_of, describe_cause
 from engine.clock import Clock
-from engine.errors import GoalRejected, PathBlocked, RobotError, SkillFailed
+from engine.errors import CONNECT_AGAIN, GoalRejected, PathBlocked, RobotError, SkillFailed
 from engine.messages import Pose, Quaternion, Vector3
 from engine.robot import DeviceStatus
 from engine.skills.arm_control import ArmMode
-from robots.arm.carrying import CarryCheck
-from robots.arm.loading import Loading
-from robots.arm.planner import ArmPlanner
+from robots.arm.arm_planner import ArmPlanner
+from robots.arm.attached_part_guard import AttachedPartGuard
 from robots.arm.tool_frames import WORLD, ToolFrames
-from robots.attend import attend
+from robots.arm.warm_up import WarmUp
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
-from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, MotionReport, Stream, Tolerance
+from robots.model.transform import RigidTransform
+from robots.port import ArmPort, Array, JointTrajectory, Motion, MotionEnd, MotionReport, MotionStream, Tolerance
 from robots.port.settings import NO_FRAME
+from robots.supervise_goal import supervise_goal
 
 T = TypeVar("T")
 M = TypeVar("M", bound=Motion)
@@ -41,7 +40,7 @@ _log = logging.getLogger("flexcell.arm")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ended:
+class MotionCompletion:
     """A motion that came to its end without a failure: how, and after how long."""
 
     report: MotionReport
@@ -66,11 +65,11 @@ class MotionRunner:
         *,
         name: str,
         model: RobotModel,
-        base: Rigid,
+        base: RigidTransform,
         port: ArmPort,
         clock: Clock,
         tolerance: Tolerance,
-        carry: CarryCheck | None = None,
+        carry: AttachedPartGuard | None = None,
     ) -> None:
         self.name = name
         self.model = model
@@ -81,7 +80,7 @@ class MotionRunner:
         self._at_link = self._kinematics = ArmKinematics(model, base=base)
         self._tool: tuple[Vector3, Quaternion] = NO_FRAME
         self._planner = self._new_planner()
-        self.loading = Loading(name, self._planner.prepare)
+        self.loading = WarmUp(name, self._planner.prepare)
         self.frames = ToolFrames(arm=name, base_link=model.base_link, base=base)
         self.status = DeviceStatus.DISCONNECTED
         self.reserved_for = ""
@@ -141,11 +140,11 @@ class MotionRunner:
         """Return the measured pose of the tool centre point in the world."""
         return self.measured_tool().to_pose(WORLD)
 
-    def measured_tool(self) -> Rigid:
+    def measured_tool(self) -> RigidTransform:
         """Return the measured tool centre point in the world, as numbers."""
         return self.kinematics.tool_pose(self.port.sample().position_rad)
 
-    def target(self, pose: Pose, handle: ActiveGoal[Any]) -> Rigid:
+    def target(self, pose: Pose, handle: ActiveGoal[Any]) -> RigidTransform:
         """Return the pose of a goal in the world; GoalRejected where its frame is not known."""
         try:
             return self.frames.to_world(pose)
@@ -178,7 +177,7 @@ class MotionRunner:
         self.accept(handle)
         return planned
 
-    async def planned_carrying(
+    async def planned_with_attached_parts(
         self, handle: ActiveGoal[Any], plan: Callable[[Array], Awaitable[JointTrajectory]]
     ) -> JointTrajectory:
         """Plan a way that nobody looks for, as `planned` does; reject the goal where what the arm holds is in its way.
@@ -245,7 +244,7 @@ class MotionRunner:
         words: str = "the arm",
         mode: ArmMode = "moving",
         left: Callable[[float], object] | None = None,
-    ) -> Ended:
+    ) -> MotionCompletion:
         """Start a motion and return how it ended; a cancelled goal returns as well, at rest.
 
         `left` makes the result of a motion that failed after so many seconds: where it has left the arm.
@@ -261,17 +260,17 @@ class MotionRunner:
         self.error = ""
         self._begin(motion, mode, handle.address.rpartition("/")[2])
         try:
-            await attend(motion, handle, tell=lambda: tell(motion), device=self.name, words=words)
+            await supervise_goal(motion, handle, tell=lambda: tell(motion), device=self.name, words=words)
         except (SkillFailed, RobotError) as error:
-            self.error = describe(cause_of(error))
+            self.error = describe_cause(cause_of(error))
             if left is not None and isinstance(error, SkillFailed):
                 error.result = left(self.clock.now_s() - started_s)
             raise
         finally:
             self._end()
-        return Ended(report=await motion.report(), duration_s=self.clock.now_s() - started_s)
+        return MotionCompletion(report=await motion.report(), duration_s=self.clock.now_s() - started_s)
 
-    def occupy(self, stream: Stream, *, mode: ArmMode, activity: str, reserved_for: str) -> None:
+    def occupy(self, stream: MotionStream, *, mode: ArmMode, activity: str, reserved_for: str) -> None:
         """Take no goals until `stream`, which no goal began, has ended."""
         self.reserved_for = reserved_for
         self._begin(stream, mode, activity)
@@ -344,7 +343,7 @@ class MotionRunner:
         self._motion, self.activity = None, ""
         self.changed()
 
-    async def _until_free(self, stream: Stream) -> None:
+    async def _until_free(self, stream: MotionStream) -> None:
         report = await stream.report()
         self.error = report.reason if report.end is MotionEnd.FAILED else ""
         self.reserved_for = ""
@@ -358,7 +357,7 @@ class MotionRunner:
         if tool == self._tool:
             return
         self._tool = tool
-        self._kinematics = self._at_link if tool == NO_FRAME else self._at_link.with_tool(Rigid.of(*tool))
+        self._kinematics = self._at_link if tool == NO_FRAME else self._at_link.with_tool(RigidTransform.of(*tool))
         self._planner = self._new_planner()
 
     def _new_planner(self) -> ArmPlanner:

@@ -19,11 +19,11 @@ from engine.skills.motion import (
     JointMotionResult,
     JointTrapVel,
 )
-from robots.arm.followed import follow_joints, follow_tool
 from robots.arm.motion_runner import MotionRunner
 from robots.arm.tool_frames import WORLD
-from robots.model.inverse_kinematics import Match
-from robots.model.rigid import Rigid
+from robots.arm.trajectory_goal import follow_joints, follow_tool
+from robots.model.inverse_kinematics import PoseMatch
+from robots.model.transform import RigidTransform
 from robots.port import Array, JointTrajectory
 
 
@@ -43,13 +43,13 @@ class PathMotions:
 
     async def _joint_trap_vel(self, goal: JointTrapVel, handle: ActiveGoal[JointMotionFeedback]) -> JointMotionResult:
         runner = self._runner
-        trajectory = await runner.planned_carrying(
+        trajectory = await runner.planned_with_attached_parts(
             handle, lambda start: runner.planner.to_joints(start, np.array(goal.joints), speed=goal.speed)
         )
         return await follow_joints(runner, trajectory, handle)
 
     async def _cart_trap_vel(self, goal: CartTrapVel, handle: ActiveGoal[CartMotionFeedback]) -> CartMotionResult:
-        planner, match = self._runner.planner, Match.of(goal.match)
+        planner, match = self._runner.planner, PoseMatch.of(goal.match)
         return await self._cartesian(
             goal.pose, handle, lambda start, pose: planner.to_pose(start, pose, speed=goal.speed, match=match)
         )
@@ -76,9 +76,9 @@ class PathMotions:
         self,
         pose: Pose,
         handle: ActiveGoal[CartMotionFeedback],
-        plan: Callable[[Array, Rigid], Awaitable[JointTrajectory]],
+        plan: Callable[[Array, RigidTransform], Awaitable[JointTrajectory]],
     ) -> CartMotionResult:
         runner = self._runner
         target = runner.target(pose, handle)
-        trajectory = await runner.planned_carrying(handle, lambda start: plan(start, target))
+        trajectory = await runner.planned_with_attached_parts(handle, lambda start: plan(start, target))
         return await follow_tool(runner, trajectory, handle)

@@ -16,7 +16,7 @@ from robots.port import JointTrajectory
 _SHOWN = 60
 
 
-class Preview:
+class PathPreviewPublisher:
     """Publishes what one arm is about to go, or goes."""
 
     def __init__(self, runner: MotionRunner) -> None:
@@ -31,14 +31,14 @@ class Preview:
 
     def show(self, trajectory: JointTrajectory, *, state: Literal["proposed", "moving"]) -> None:
         """Show a way."""
-        rows = sampled(trajectory)
+        rows = sample_trajectory(trajectory)
         self._publish(
             PathPreview(
                 robot=self._runner.name,
                 state=state,
                 joint_names=self._runner.model.arm_joints,
                 joints=rows,
-                tool_path=tool_path(self._runner, rows),
+                tool_path=compute_tool_path(self._runner, rows),
             )
         )
 
@@ -68,14 +68,14 @@ class Preview:
             self._topic.publish(preview)
 
 
-def sampled(trajectory: JointTrajectory) -> tuple[tuple[float, ...], ...]:
+def sample_trajectory(trajectory: JointTrajectory) -> tuple[tuple[float, ...], ...]:
     """Return configurations along a trajectory, both ends among them, radians."""
     last = len(trajectory.position_rad) - 1
     picked = np.unique(np.linspace(0, last, min(_SHOWN, last + 1)).round().astype(int))
     return tuple(tuple(row) for row in trajectory.position_rad[picked].tolist())
 
 
-def tool_path(runner: MotionRunner, rows: tuple[tuple[float, ...], ...]) -> tuple[Vector3, ...]:
+def compute_tool_path(runner: MotionRunner, rows: tuple[tuple[float, ...], ...]) -> tuple[Vector3, ...]:
     """Return the tool centre points of configurations, in the world."""
     kinematics = runner.kinematics
     points: list[Vector3] = []

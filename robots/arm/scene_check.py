@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 
 from engine.errors import RobotError
-from engine.skills.jogging import JogScene
-from robots.arm.way_finder import in_words
-from robots.planning.request import SampledWay, WayCheck, WayRequest
+from engine.skills.jogging import JogCollisionOptions
+from robots.arm.path_planner import describe_contacts
+from robots.planning.request import PathCheck, PathCheckRequest, SampledTrajectory
 from robots.port import JointTrajectory
 from robots.workspace.workspace import Workspace
 
@@ -21,18 +21,18 @@ class SceneCheck:
         rule: How far from what.
     """
 
-    def __init__(self, arm: str, workspace: Workspace, *, rule: JogScene) -> None:
+    def __init__(self, arm: str, workspace: Workspace, *, rule: JogCollisionOptions) -> None:
         self._arm = arm
         self._workspace = workspace
         self._rule = rule
 
     @property
-    def blind(self) -> str:
+    def unobserved_reason(self) -> str:
         """Why nothing can be known of the scene; empty where it can."""
         stale = self._workspace.stale_reason
-        return f"what the cameras see is not known: {stale}" if stale else ""
+        return f"the occupancy map is not valid: {stale}" if stale else ""
 
-    async def check(self, way: JointTrajectory) -> WayCheck:
+    async def check(self, way: JointTrajectory) -> PathCheck:
         """Return where a way is blocked in the scene as it is now.
 
         Raises:
@@ -42,11 +42,11 @@ class SceneCheck:
         await self._workspace.ready()
         scene = self._workspace.scene_for(self._arm)
         touched = tuple((self._arm, name) for name in self._rule.may_touch)
-        return await self._workspace.planners.check_way(
-            WayRequest(
+        return await self._workspace.planners.check_path(
+            PathCheckRequest(
                 scene=msgspec.structs.replace(scene, allowed=scene.allowed + touched) if touched else scene,
                 arm=self._arm,
-                way=SampledWay.of(way),
+                way=SampledTrajectory.of(way),
                 from_s=0.0,
                 occupancy=self._workspace.occupancy,
                 margin_m=self._rule.margin_m,
@@ -69,7 +69,7 @@ class SceneCheck:
         if check.blocked_at_s is not None:
             share = check.blocked_at_s / max(way.dt_s, way.dt_s * (len(way.position_rad) - 1))
             raise RobotError(
-                f"{in_words(check.pairs)} after {share:.0%} of the step",
+                f"{describe_contacts(check.pairs)} after {share:.0%} of the step",
                 where=self._arm,
                 hint="step elsewhere, name it in `scene.may_touch`, or give `scene.minded: false`",
             )

@@ -6,7 +6,7 @@ import numpy as np
 
 from engine.errors import RobotError
 from engine.messages import Pose
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 WORLD = "world"
@@ -23,25 +23,25 @@ class ToolFrames:
         base: Pose of the base in the world.
     """
 
-    def __init__(self, *, arm: str, base_link: str, base: Rigid) -> None:
+    def __init__(self, *, arm: str, base_link: str, base: RigidTransform) -> None:
         self._arm = arm
         self.base_frame = f"{arm}/{base_link}"
         self.base = base
 
-    def axes(self, frame: str, *, tool: Rigid) -> Array:
+    def axes(self, frame: str, *, tool: RigidTransform) -> Array:
         """Return the axes of `world`, `base` or `tool` in the world as columns, (3, 3); `tool` is where the tool is."""
         if frame == "tool":
             return tool.rotation
         return self.base.rotation if frame == "base" else np.eye(3)
 
-    def to_world(self, pose: Pose) -> Rigid:
+    def to_world(self, pose: Pose) -> RigidTransform:
         """Return the pose in the world.
 
         Raises:
             RobotError: its frame is not known here, or its numbers are not a pose.
         """
         try:
-            given = Rigid.from_pose(pose)
+            given = RigidTransform.from_pose(pose)
         except ValueError as error:
             raise RobotError(str(error), where=self._arm, hint="xyzw is a unit quaternion") from error
         farthest = max(map(abs, pose.xyz))

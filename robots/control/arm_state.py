@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 
@@ -18,11 +18,11 @@ class ToolKinematics(Protocol):
         """Number of joints n."""
         ...
 
-    def tool_pose(self, joints: Array) -> Rigid:
+    def tool_pose(self, joints: Array) -> RigidTransform:
         """Pose of the tool centre point in the world for joints of shape (n,)."""
         ...
 
-    def tool_pose_and_jacobian(self, joints: Array) -> tuple[Rigid, Array]:
+    def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
         """The tool pose and the Jacobian, shape (6, n): m/s, then rad/s, in world axes."""
         ...
 
@@ -45,7 +45,7 @@ class ArmState:
         self.velocity = np.zeros(n)
         self.external_nm = np.zeros(n)
         self.wrench = np.zeros(6)
-        self._tool: tuple[Rigid, Array] | None = None
+        self._tool: tuple[RigidTransform, Array] | None = None
 
     def refill(self, position: Array, velocity: Array) -> None:
         """Take the joints of a new control period."""
@@ -54,7 +54,7 @@ class ArmState:
         self._tool = None
 
     @property
-    def tool(self) -> Rigid:
+    def tool(self) -> RigidTransform:
         """Measured pose of the tool centre point in the world."""
         return self._at_tool()[0]
 
@@ -63,7 +63,7 @@ class ArmState:
         """Jacobian at the tool centre point, (6, n), world axes."""
         return self._at_tool()[1]
 
-    def _at_tool(self) -> tuple[Rigid, Array]:
+    def _at_tool(self) -> tuple[RigidTransform, Array]:
         if self._tool is None:
             self._tool = self.kinematics.tool_pose_and_jacobian(self.position)
         return self._tool

@@ -6,7 +6,7 @@ import numpy as np
 
 from robots.control.arm_state import ArmState
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid, cross
+from robots.model.transform import RigidTransform, cross
 from robots.port import ArmSettings, Array
 
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -40,7 +40,7 @@ class CarriedLoad:
     def take(self, settings: ArmSettings) -> None:
         """Carry the load of `settings` from now on."""
         self._mass_kg = settings.load_kg
-        self._at = self._kinematics.with_tool(Rigid.of(settings.load_com_m, _UPRIGHT))
+        self._at = self._kinematics.with_tool(RigidTransform.of(settings.load_com_m, _UPRIGHT))
         self._velocity = None
 
     def forget_motion(self) -> None:

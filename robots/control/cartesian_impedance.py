@@ -36,7 +36,7 @@ class CartesianImpedance:
     def __init__(self, limits: JointLimits, *, mass_matrix: Callable[[Array], Array], base_rotation: Array) -> None:
         from robots.control import kernels
 
-        self._hang_tool, self._pose_error = kernels.hang_tool, kernels.pose_error
+        self._hang_tool, self._pose_error = kernels.impedance_torque, kernels.pose_error
         self._upper_nm = np.array(limits.effort_nm)
         self._lower_nm = -self._upper_nm
         self._mass_matrix = mass_matrix

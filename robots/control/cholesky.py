@@ -7,7 +7,7 @@ import numpy as np
 from robots.port import Array
 
 
-def solved(matrix: Array, right: Array) -> Array:
+def solve_positive_definite(matrix: Array, right: Array) -> Array:
     """Return matrix⁻¹ · right for a symmetric positive definite `matrix`, (n, n), and `right`, (n, m) or (n,).
 
     Raises:

@@ -17,7 +17,7 @@ _FORCE_SHARE = 0.95
 _PATIENCE_S = 2.0
 
 
-class Opening(Protocol):
+class GripperLimits(Protocol):
     """What the servo must know of a gripper."""
 
     @property
@@ -61,7 +61,7 @@ class FingerServo:
         finger_kg: What the motor must move of each finger, its own inertia included.
     """
 
-    def __init__(self, opening: Opening, *, min_force_n: float = 0.0, finger_kg: float = 0.2) -> None:
+    def __init__(self, opening: GripperLimits, *, min_force_n: float = 0.0, finger_kg: float = 0.2) -> None:
         self._opening = opening
         self._min_force_n = min_force_n
         self._stiffness_n_m = _STIFFNESS_PER_S2 * finger_kg

@@ -7,10 +7,10 @@ import numpy as np
 from robots.control.admittance import AdmittanceLoop
 from robots.control.arm_state import ArmState
 from robots.control.force_recorder import ForceRecorder
-from robots.control.playback import Playback
 from robots.control.tool_tracker import ToolTracker
-from robots.model.rigid import Rigid, product, quaternion_of
+from robots.control.trajectory_playback import TrajectoryPlayback
 from robots.model.robot_model import JointLimits
+from robots.model.transform import RigidTransform, product, quaternion_of
 from robots.port import Array, ForceTask
 
 # The feed-forward offset of the first sample is faded in over this time.
@@ -47,11 +47,11 @@ class ForceTracking:
         self._task = task
         self._joints = joints
         self._limits = limits
-        self._playback = Playback(task.trajectory, acceleration_rad_s2=np.array(limits.acceleration_rad_s2))
+        self._playback = TrajectoryPlayback(task.trajectory, acceleration_rad_s2=np.array(limits.acceleration_rad_s2))
         self._admittance = AdmittanceLoop(task.admittance)
         self._tracker = ToolTracker(limits=limits, start=self._playback.position)
         self._recorder = ForceRecorder(task.record_s)
-        self._task_axes = Rigid.of((0.0, 0.0, 0.0), task.task_xyzw).rotation
+        self._task_axes = RigidTransform.of((0.0, 0.0, 0.0), task.task_xyzw).rotation
         # Feed-forward offset and wanted wrench side by side, so that both are looked up at once.
         self._rows = np.hstack((task.offset, task.wrench))
         self._row = self._rows[0]
@@ -167,7 +167,7 @@ class ForceTracking:
             return
         path = state.kinematics.tool_pose(nominal)
         total = self._admittance.total.reshape(2, 3) @ self._task_axes.T
-        target = Rigid(xyz=path.xyz + total[0], xyzw=product(quaternion_of(total[1]), path.xyzw))
+        target = RigidTransform(xyz=path.xyz + total[0], xyzw=product(quaternion_of(total[1]), path.xyzw))
         tracker.step(step_s, target=target, nominal=nominal, kinematics=state.kinematics, returning=self._playback.pace)
         if self._missing() > _MOST_MISSING:
             self._failure = self._reason()

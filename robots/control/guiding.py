@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.control.joint_shaper import JointShaper
-from robots.control.listening import Listening
+from robots.control.online_trajectory import OnlineTrajectoryGenerator
+from robots.control.setpoint_stream import SetpointStream
 from robots.model.robot_model import JointLimits
 from robots.port import Array
 
 
-class Guiding(Listening):
+class GuidingGenerator(SetpointStream):
     """The set point is the measured arm, kept `margin_rad` inside the position limits.
 
     While `leads` is False the arm is to float: its controller compensates gravity and leaves a spring
@@ -26,7 +26,9 @@ class Guiding(Listening):
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, margin_rad: float = 0.03) -> None:
-        super().__init__(shaper=JointShaper(limits=limits, start=start), values=0, watchdog_s=float("inf"))
+        super().__init__(
+            shaper=OnlineTrajectoryGenerator(limits=limits, start=start), values=0, watchdog_s=float("inf")
+        )
         self._silence_s = 0.0
         self._lower = np.minimum(np.array(limits.lower_rad) + margin_rad, start)
         self._upper = np.maximum(np.array(limits.upper_rad) - margin_rad, start)

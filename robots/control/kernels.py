@@ -17,7 +17,7 @@ _ROW, _TABLE, _ANY = "f8[::1]", "f8[:,::1]", "f8[:,:]"
 
 
 @compiled(f"void({_TABLE}, {_TABLE}, i8, f8, f8, f8, f8, f8, {_ROW}, {_ROW}, {_ROW})")
-def pass_along(
+def interpolate_setpoint(
     points: Array,
     slopes: Array,
     index: int,
@@ -105,7 +105,7 @@ def solve_in_place(matrix: Array, right: Array) -> bool:
 
 
 @compiled(f"b1({_ANY}, {_TABLE}, {_ANY}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, {_ROW}, f8, f8, f8, {_ROW})")
-def hang_tool(
+def impedance_torque(
     world_jacobian: Array,
     base_rotation: Array,
     mass: Array,

@@ -6,8 +6,8 @@ import numpy as np
 
 from robots.control.arm_state import ArmState
 from robots.control.damped_inverse import joint_velocity, twist_rows
-from robots.control.joint_shaper import JointShaper
-from robots.control.listening import Listening
+from robots.control.online_trajectory import OnlineTrajectoryGenerator
+from robots.control.setpoint_stream import SetpointStream
 from robots.model.robot_model import JointLimits
 from robots.port import Array
 
@@ -20,7 +20,7 @@ _SLOW = 1e-9
 _FASTEST = 100.0
 
 
-class ToolJogging(Listening):
+class ToolJogGenerator(SetpointStream):
     """A stream of velocities of the tool centre point in world axes: m/s, then rad/s, (6,).
 
     Where a joint's speed or position limit is in the way, all joints slow down alike, so that the
@@ -35,7 +35,7 @@ class ToolJogging(Listening):
     """
 
     def __init__(self, *, limits: JointLimits, start: Array, watchdog_s: float) -> None:
-        shaper = JointShaper(limits=limits, start=start, share=_GOING_SHARE)
+        shaper = OnlineTrajectoryGenerator(limits=limits, start=start, share=_GOING_SHARE)
         super().__init__(shaper=shaper, values=6, watchdog_s=watchdog_s)
         # The twist of the last period and the joint velocities that it needed.
         self._twist = np.zeros(0)

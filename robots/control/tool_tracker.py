@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_state import ToolKinematics
-from robots.control.cholesky import solved
+from robots.control.cholesky import solve_positive_definite
 from robots.model.inverse_kinematics import pose_error
-from robots.model.rigid import Rigid
 from robots.model.robot_model import JointLimits
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 _DAMPING = 1e-7
@@ -44,7 +44,7 @@ class ToolTracker:
         """The joint that was farthest from going as fast as the pose needs."""
 
     def step(
-        self, step_s: float, *, target: Rigid, nominal: Array, kinematics: ToolKinematics, returning: float
+        self, step_s: float, *, target: RigidTransform, nominal: Array, kinematics: ToolKinematics, returning: float
     ) -> None:
         """Move on to `target` (world); `nominal` are the joints of the path without deviation.
 
@@ -64,7 +64,7 @@ class ToolTracker:
         """Come to rest."""
         self._go(step_s, np.zeros_like(self.velocity))
 
-    def _error(self, pose: Rigid, target: Rigid) -> Array:
+    def _error(self, pose: RigidTransform, target: RigidTransform) -> Array:
         error = pose_error(pose, target)[: self._rows]
         self.missing_m = float(np.sqrt(error[:3] @ error[:3]))
         if self._rows == _FULL_POSE:
@@ -72,7 +72,7 @@ class ToolTracker:
         return error
 
     def _newton(self, jacobian: Array, error: Array) -> Array:
-        return jacobian.T @ solved(jacobian @ jacobian.T + self._damping, error)
+        return jacobian.T @ solve_positive_definite(jacobian @ jacobian.T + self._damping, error)
 
     def _go(self, step_s: float, wanted: Array) -> None:
         change = self._acceleration * step_s

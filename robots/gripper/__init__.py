@@ -1,20 +1,20 @@
 """The tools at the flange of an arm on the bus: grippers, hands and magnets over their ports, simulated or real."""
 
-from robots.gripper.grip_judgement import Grip, judge
+from robots.gripper.grasp_check import GraspCommand, check_grasp
 from robots.gripper.gripper_server import GripperServer
-from robots.gripper.hand_judgement import Holding, judge_hand
+from robots.gripper.hand_grasp_check import HandGrasp, check_hand_grasp
 from robots.gripper.hand_server import HandServer
-from robots.gripper.magnet_server import MagnetServer, judge_magnet
+from robots.gripper.magnet_server import MagnetServer, check_magnet_grasp
 from robots.gripper.tool_server import ToolServer
 
 __all__ = [
-    "Grip",
+    "GraspCommand",
     "GripperServer",
+    "HandGrasp",
     "HandServer",
-    "Holding",
     "MagnetServer",
     "ToolServer",
-    "judge",
-    "judge_hand",
-    "judge_magnet",
+    "check_grasp",
+    "check_hand_grasp",
+    "check_magnet_grasp",
 ]

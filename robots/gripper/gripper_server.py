@@ -7,14 +7,14 @@ from engine.errors import GoalRejected, SkillFailed
 from engine.messages import GripperState
 from engine.skills.gripper import (
     GraspResult,
-    GripperAction,
     GripperFeedback,
     GripperGrasp,
     GripperMove,
     GripperOpen,
+    GripperSetting,
     ReadGripper,
 )
-from robots.gripper.grip_judgement import Grip, judge
+from robots.gripper.grasp_check import GraspCommand, check_grasp
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import GripperPort, GripperSample
 
@@ -29,7 +29,7 @@ class GripperServer:
         self.name = name
         self._port = port
         self._motion = ToolMotion(device=name, words="the gripper")
-        self.grip: Grip | None = None
+        self.grip: GraspCommand | None = None
         """What it was told to grasp and hold; None once it was told otherwise."""
 
     @property
@@ -67,14 +67,14 @@ class GripperServer:
             )
         handle.accept()
         start = self._state()
-        self.grip = Grip(
+        self.grip = GraspCommand(
             least_m=goal.width_m - goal.tolerance_inner_m,
             most_m=goal.width_m + goal.tolerance_outer_m,
             force_n=goal.force_n,
         )
         await self._carry_out(0.0, goal.speed_m_s, goal.force_n, handle)
         sample = self._port.sample()
-        reason = judge(sample, self.grip)
+        reason = check_grasp(sample, self.grip)
         return GraspResult(held=not reason, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
 
     async def _read(self, request: ReadGripper) -> GripperState:
@@ -83,7 +83,7 @@ class GripperServer:
             time_s=sample.time_s,
             width_m=sample.width_m,
             force_n=sample.force_n,
-            held=self.grip is not None and not judge(sample, self.grip),
+            held=self.grip is not None and not check_grasp(sample, self.grip),
         )
 
     async def _move_to(self, width_m: float, speed_m_s: float, handle: ActiveGoal[GripperFeedback]) -> GraspResult:
@@ -101,12 +101,12 @@ class GripperServer:
         reason = f"fingers moved to {sample.width_m * 1e3:.1f} mm"
         return GraspResult(held=False, width_m=sample.width_m, force_n=sample.force_n, reason=reason, start=start)
 
-    def _state(self) -> GripperAction:
+    def _state(self) -> GripperSetting:
         """Return how the gripper is now, as something that can be asked of it again."""
         sample = self._port.sample()
-        grip = self.grip if self.grip is not None and not judge(sample, self.grip) else None
+        grip = self.grip if self.grip is not None and not check_grasp(sample, self.grip) else None
         width_m = min(max(0.0, sample.width_m), self._port.max_width_m)
-        return GripperAction(width_m=width_m, held=grip is not None, force_n=grip.force_n if grip is not None else 0.0)
+        return GripperSetting(width_m=width_m, held=grip is not None, force_n=grip.force_n if grip is not None else 0.0)
 
     def _refuse_beyond(self, width_m: float, handle: ActiveGoal[GripperFeedback]) -> None:
         if width_m > self._port.max_width_m:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from engine.bus import ActiveGoal, SkillBus
 from engine.messages import HandState
 from engine.skills.hand import HandClose, HandFeedback, HandOpen, HandResult, ReadHand
-from robots.gripper.grip_judgement import Grip
-from robots.gripper.hand_judgement import judge_hand
+from robots.gripper.grasp_check import GraspCommand
+from robots.gripper.hand_grasp_check import check_hand_grasp
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import HandPort, HandSample
 
@@ -16,7 +16,7 @@ class HandServer:
 
     def __init__(self, *, name: str, port: HandPort) -> None:
         self.name = name
-        self.grip: Grip | None = None
+        self.grip: GraspCommand | None = None
         """Nothing: what fingers and palm touch tells whether something is held."""
         self._port = port
         self._motion = ToolMotion(device=name, words="the hand")
@@ -53,7 +53,7 @@ class HandServer:
 
         await self._motion.carry_out(lambda: self._port.close_to(share=percent / 100.0, time_s=time_s), handle, tell)
         sample = self._port.sample()
-        holding = judge_hand(sample, max_force_n=self._port.max_force_n)
+        holding = check_hand_grasp(sample, max_force_n=self._port.max_force_n)
         return HandResult(
             held=bool(holding.part),
             closed_percent=100.0 * sample.closed_share,
@@ -65,7 +65,7 @@ class HandServer:
 
 def hand_state(sample: HandSample, *, max_force_n: float) -> HandState:
     """Return the state of a hand in a measurement, what it holds judged anew."""
-    part = judge_hand(sample, max_force_n=max_force_n).part
+    part = check_hand_grasp(sample, max_force_n=max_force_n).part
     return HandState(
         time_s=sample.time_s,
         closed_percent=100.0 * sample.closed_share,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from engine.bus import ActiveGoal, SkillBus
 from engine.messages import MagnetState
 from engine.skills.magnet import MagnetFeedback, MagnetResult, MagnetSwitch, ReadMagnet
-from robots.gripper.grip_judgement import Grip
+from robots.gripper.grasp_check import GraspCommand
 from robots.gripper.tool_motion import ToolMotion
 from robots.port import MagnetPort, MagnetSample
 
@@ -13,7 +13,7 @@ from robots.port import MagnetPort, MagnetSample
 _HOLDS_SHARE = 0.05
 
 
-def judge_magnet(sample: MagnetSample, *, max_force_n: float) -> str:
+def check_magnet_grasp(sample: MagnetSample, *, max_force_n: float) -> str:
     """Return why nothing is held, empty when something is."""
     if not sample.on:
         return "the magnet is switched off"
@@ -30,7 +30,7 @@ class MagnetServer:
 
     def __init__(self, *, name: str, port: MagnetPort) -> None:
         self.name = name
-        self.grip: Grip | None = None
+        self.grip: GraspCommand | None = None
         """Nothing: whether it is on and what it pulls at tells whether something is held."""
         self._port = port
         self._motion = ToolMotion(device=name, words="the magnet")
@@ -57,7 +57,7 @@ class MagnetServer:
 
         await self._motion.carry_out(lambda: self._port.switch(on=goal.on), handle, tell)
         sample = self._port.sample()
-        reason = judge_magnet(sample, max_force_n=self._port.max_force_n)
+        reason = check_magnet_grasp(sample, max_force_n=self._port.max_force_n)
         return MagnetResult(
             on=sample.on,
             held=not reason,
@@ -72,7 +72,7 @@ class MagnetServer:
 
 def magnet_state(sample: MagnetSample, *, max_force_n: float) -> MagnetState:
     """Return the state of a magnet in a measurement, what it holds judged anew."""
-    held = not judge_magnet(sample, max_force_n=max_force_n)
+    held = not check_magnet_grasp(sample, max_force_n=max_force_n)
     return MagnetState(
         time_s=sample.time_s,
         on=sample.on,

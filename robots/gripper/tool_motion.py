@@ -7,8 +7,8 @@ from typing import Any
 
 from engine.bus import ActiveGoal
 from engine.errors import RobotError, SkillFailed
-from robots.attend import attend
 from robots.port import Motion
+from robots.supervise_goal import supervise_goal
 
 
 class ToolMotion:
@@ -42,6 +42,6 @@ class ToolMotion:
             raise SkillFailed(f"{self._words} did not start", where=handle.address) from error
         self._motion = motion
         try:
-            await attend(motion, handle, tell=tell, device=self._device, words=self._words)
+            await supervise_goal(motion, handle, tell=tell, device=self._device, words=self._words)
         finally:
             self._motion = None

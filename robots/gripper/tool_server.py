@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from engine.bus import SkillBus
-from robots.gripper.grip_judgement import Grip
+from robots.gripper.grasp_check import GraspCommand
 
 
 class ToolServer(Protocol):
@@ -15,7 +15,7 @@ class ToolServer(Protocol):
         grip: What it was told to grasp and hold; None where nothing need be remembered.
     """
 
-    grip: Grip | None
+    grip: GraspCommand | None
 
     @property
     def name(self) -> str:

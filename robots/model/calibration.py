@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
-from engine.document.conversion import Strict, convert
+from engine.document.decoding import StrictModel, decode_document
 from engine.document.yaml_source import load_source
 from engine.errors import CellError, DocumentError
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 from robots.model.folder_document import CalibrationFormat
 from robots.model.urdf_tree import Element, joints_of, set_origin
 from robots.port import Array
@@ -27,7 +27,7 @@ from robots.port import Array
 _SAME_M, _SAME_RAD = 1e-6, 1e-5
 
 
-class Segment(Strict, frozen=True, kw_only=True):
+class CalibrationSegment(StrictModel, frozen=True, kw_only=True):
     """A frame in the one before it: metres, and radians about fixed x, y, z axes in turn."""
 
     x: float
@@ -42,8 +42,8 @@ class Segment(Strict, frozen=True, kw_only=True):
         return transform((self.x, self.y, self.z), (self.roll, self.pitch, self.yaw))
 
 
-class _CalibrationDocument(Strict, frozen=True, kw_only=True):
-    kinematics: dict[str, Segment]
+class _CalibrationDocument(StrictModel, frozen=True, kw_only=True):
+    kinematics: dict[str, CalibrationSegment]
     hash: str = ""
 
 
@@ -52,7 +52,7 @@ class Calibration:
     """A calibration file: the segments in the order of the file, and the hash the robot gave it."""
 
     file: Path
-    segments: dict[str, Segment]
+    segments: dict[str, CalibrationSegment]
     hash: str
 
 
@@ -62,7 +62,7 @@ def load_calibration(file: Path) -> Calibration:
     Raises:
         DocumentError: it cannot be read or is not such a file; `where` is the position.
     """
-    document = convert(load_source(file), _CalibrationDocument)
+    document = decode_document(load_source(file), _CalibrationDocument)
     return Calibration(file=file, segments=document.kinematics, hash=document.hash)
 
 
@@ -119,7 +119,7 @@ def _require_segments(calibration: Calibration, described: CalibrationFormat) ->
             raise DocumentError(f"the segment {name} is missing", where=str(calibration.file))
     for name in calibration.segments:
         if name not in described.joints:
-            hint = near_names(name, described.joints)
+            hint = did_you_mean(name, described.joints)
             raise DocumentError(f"this robot has no segment {name}", where=str(calibration.file), hint=hint)
 
 

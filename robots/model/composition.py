@@ -11,7 +11,7 @@ import numpy as np
 from engine.document.yaml_source import DataPath
 from engine.errors import CellError
 from robots.model.calibration import apply_calibration, load_calibration
-from robots.model.folder_document import FileIn, RobotDocument, ToolDocument
+from robots.model.folder_document import FileReference, RobotDocument, ToolDocument
 from robots.model.joint_map import JointMap
 from robots.model.mechanism import mechanism_of
 from robots.model.model_folder import ModelFolder, names_in
@@ -22,11 +22,11 @@ from robots.model.urdf_tree import (
     add_fixed_joint,
     add_prefix,
     ends_of,
-    fill_mass,
     joints_of,
     links_of,
     mass_of,
     root_of,
+    scale_mass,
     set_limits,
 )
 
@@ -55,7 +55,9 @@ def compose(
         if nominal is None:
             raise CellError(f"the robot model {document.robot} knows no calibration files", hint="remove `calibration`")
         factory = load_calibration(calibration)
-        apply_calibration(robot, nominal, factory, nominal=load_calibration(arm.locate(FileIn(file=nominal.nominal))))
+        apply_calibration(
+            robot, nominal, factory, nominal=load_calibration(arm.locate(FileReference(file=nominal.nominal)))
+        )
         calibrated = factory.hash
     for joint in document.joints:
         set_limits(
@@ -121,7 +123,7 @@ def _join(robot: Element, tool: ModelFolder[ToolDocument], *, flange: str) -> tu
     tool.require_joints(tree, [(("mechanism",), name) for name in joints])
     tool.require_links(tree, [(("mechanism",), name) for name in links])
     if document.mass_kg is not None:
-        fill_mass(tree, document.mass_kg)
+        scale_mass(tree, document.mass_kg)
     centre, mass = document.tcp, mass_of(tree)
     at = centre.link if centre.link is not None else root_of(tree)
     tool.require_links(tree, [(("tcp", "link"), at)])

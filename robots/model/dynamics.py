@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 
 from robots.model.pinocchio_model import arm_model, pin
-from robots.model.rigid import Rigid
 from robots.model.robot_model import RobotModel
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 GRAVITY_M_S2 = 9.81
 
 
 @dataclass(frozen=True, kw_only=True)
-class Load:
+class Payload:
     """What the tool carries: mass, centre of mass in the frame of the tool centre point, inertia about it.
 
     `inertia_kg_m2` is the diagonal about the axes of that frame; a point mass by default.
@@ -41,7 +41,7 @@ class ArmDynamics:
     """
 
     def __init__(
-        self, model: RobotModel, *, base: Rigid | None = None, load: Load | None = None, motors: bool = True
+        self, model: RobotModel, *, base: RigidTransform | None = None, load: Payload | None = None, motors: bool = True
     ) -> None:
         self.model = model
         self._solver = solver = arm_model(model)
@@ -75,7 +75,7 @@ class ArmDynamics:
         return pin.rnea(self._solver, self._data, joints, velocity, acceleration).copy()
 
 
-def _carry(solver: Any, tool_link: str, load: Load) -> None:
+def _carry(solver: Any, tool_link: str, load: Payload) -> None:
     frame = solver.frames[solver.getFrameId(tool_link)]
     body = pin.Inertia(load.mass_kg, np.array(load.com_m), np.diag(load.inertia_kg_m2))
     solver.appendBodyToJoint(frame.parentJoint, body, frame.placement)

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from engine.document.conversion import Strict
+from engine.document.decoding import StrictModel
 from robots.model.tool_model import Triple
 
 Text = Annotated[str, Meta(min_length=1)]
@@ -18,14 +18,14 @@ Positive = Annotated[float, Meta(gt=0.0, description="A number above 0")]
 Name = Annotated[str, Meta(pattern="^[a-z][a-z0-9_]{0,63}$", description="Lower-case letters, digits and `_`")]
 
 
-class FileIn(Strict, frozen=True, kw_only=True):
+class FileReference(StrictModel, frozen=True, kw_only=True):
     """A file in the model's folder, or in an installed Python package."""
 
     file: Text
     package: Text | None = None
 
 
-class UrdfSource(FileIn, frozen=True, kw_only=True):
+class UrdfSource(FileReference, frozen=True, kw_only=True):
     """The URDF. `collision_file` is another URDF with the same links whose collision shapes are used.
 
     `root` is the link the model begins at (its own root by default); the links in `without` are cut
@@ -37,13 +37,13 @@ class UrdfSource(FileIn, frozen=True, kw_only=True):
     without: tuple[Text, ...] = ()
 
 
-class Licence(FileIn, frozen=True, kw_only=True):
+class Licence(FileReference, frozen=True, kw_only=True):
     """The licence of the description: its name (SPDX where there is one) and the file with its text."""
 
     name: Text
 
 
-class ArmJoint(Strict, frozen=True, kw_only=True):
+class ArmJoint(StrictModel, frozen=True, kw_only=True):
     """One arm joint: name in the URDF, range, limits, home, inertia of the motor seen at the joint."""
 
     name: Text
@@ -57,7 +57,7 @@ class ArmJoint(Strict, frozen=True, kw_only=True):
     armature_kg_m2: Annotated[float, Meta(ge=0.0)] = 0.1
 
 
-class DeviceJoint(Strict, frozen=True, kw_only=True):
+class DeviceJoint(StrictModel, frozen=True, kw_only=True):
     """How the controller's angle of a joint differs: plus factors of other joints, plus an offset.
 
     `lower_rad` and `upper_rad` are the range that the controller keeps for its own angle, where that is
@@ -73,7 +73,7 @@ class DeviceJoint(Strict, frozen=True, kw_only=True):
     optional: bool = False
 
 
-class CalibrationFormat(Strict, frozen=True, kw_only=True):
+class CalibrationFormat(StrictModel, frozen=True, kw_only=True):
     """That factory calibration files can be applied, and how their segments are named here.
 
     `joints` has the joint at the beginning of each segment, in order; `nominal` is the calibration
@@ -86,14 +86,14 @@ class CalibrationFormat(Strict, frozen=True, kw_only=True):
     base_rpy: Triple = (0.0, 0.0, 0.0)
 
 
-class Collisions(Strict, frozen=True, kw_only=True):
+class CollisionPairs(StrictModel, frozen=True, kw_only=True):
     """Pairs of links that may touch or never meet: from an SRDF, and listed."""
 
-    srdf: FileIn | None = None
+    srdf: FileReference | None = None
     allowed: tuple[tuple[str, str], ...] = ()
 
 
-class RobotDocument(Strict, frozen=True, kw_only=True):
+class RobotDocument(StrictModel, frozen=True, kw_only=True):
     """A `robot.yaml`: one arm."""
 
     flexcell: Literal[1]
@@ -108,24 +108,24 @@ class RobotDocument(Strict, frozen=True, kw_only=True):
     device_joints: tuple[DeviceJoint, ...] = ()
     calibration: CalibrationFormat | None = None
     digital_outputs: Annotated[int, Meta(ge=0, description="General purpose outputs of the controller")] = 0
-    collisions: Collisions = Collisions()
+    collisions: CollisionPairs = CollisionPairs()
     licence: Licence
 
 
-class Mount(Strict, frozen=True, kw_only=True):
+class MountPose(StrictModel, frozen=True, kw_only=True):
     """A pose: position, and rotation about fixed x, y, z axes in turn."""
 
     xyz: Triple = (0.0, 0.0, 0.0)
     rpy: Triple = (0.0, 0.0, 0.0)
 
 
-class ToolCentre(Mount, frozen=True, kw_only=True):
+class ToolCentrePoint(MountPose, frozen=True, kw_only=True):
     """The tool centre point, in the frame of `link` (the tool's root by default)."""
 
     link: Text | None = None
 
 
-class Pad(Strict, frozen=True, kw_only=True):
+class PadSpec(StrictModel, frozen=True, kw_only=True):
     """A finger's pad as a box: centre in the link's frame, full edge lengths."""
 
     link: Text
@@ -133,26 +133,26 @@ class Pad(Strict, frozen=True, kw_only=True):
     size_m: tuple[Positive, Positive, Positive]
 
 
-class Parallel(Strict, frozen=True, kw_only=True, tag_field="kind", tag="parallel"):
+class ParallelGripperSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="parallel"):
     """Two sliding fingers; each moves half of the opening, the second mimics the first."""
 
     hand_link: Text
     finger_joints: tuple[Text, Text]
     finger_links: tuple[Text, Text]
-    pads: tuple[Pad, Pad]
+    pads: tuple[PadSpec, PadSpec]
     max_width_m: Positive
     max_speed_m_s: Positive
     max_force_n: Positive
     armature_kg: Positive = 0.2
 
 
-class Linkage(Strict, frozen=True, kw_only=True, tag_field="kind", tag="linkage"):
+class LinkageGripperSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="linkage"):
     """Two fingers on a linkage turned by `driver`; `followers` turn by a factor of it."""
 
     driver: Text
     followers: dict[str, float]
     finger_links: tuple[Text, Text]
-    pads: tuple[Pad, Pad]
+    pads: tuple[PadSpec, PadSpec]
     open_rad: float
     closed_rad: float
     max_width_m: Positive
@@ -162,17 +162,17 @@ class Linkage(Strict, frozen=True, kw_only=True, tag_field="kind", tag="linkage"
     armature_kg_m2: Positive
 
 
-class Magnet(Strict, frozen=True, kw_only=True, tag_field="kind", tag="magnet"):
+class MagnetSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="magnet"):
     """A switchable magnet with a flat pole face."""
 
-    face: Pad
+    face: PadSpec
     max_force_n: Positive
     reach_m: Positive
     max_payload_kg: Positive
     switch_s: Positive = 0.2
 
 
-class TendonJoint(Strict, frozen=True, kw_only=True):
+class TendonJoint(StrictModel, frozen=True, kw_only=True):
     """Pulley radius, spring and damper of one joint of a soft hand."""
 
     name: Text
@@ -181,7 +181,7 @@ class TendonJoint(Strict, frozen=True, kw_only=True):
     damping_nms_rad: Positive
 
 
-class Synergy(Strict, frozen=True, kw_only=True, tag_field="kind", tag="synergy"):
+class SynergyHandSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="synergy"):
     """One tendon over all flexion joints; `passive` joints have springs only."""
 
     palm_link: Text
@@ -193,13 +193,13 @@ class Synergy(Strict, frozen=True, kw_only=True, tag_field="kind", tag="synergy"
     max_force_n: Positive
 
 
-class Claw(Strict, frozen=True, kw_only=True, tag_field="kind", tag="claw"):
+class ClawSpec(StrictModel, frozen=True, kw_only=True, tag_field="kind", tag="claw"):
     """Two fingers coupled by gears and turned by a hobby servo."""
 
     driver: Text
     followers: dict[str, float]
     finger_links: tuple[Text, Text]
-    pads: tuple[Pad, Pad]
+    pads: tuple[PadSpec, PadSpec]
     open_rad: float
     closed_rad: float
     servo_open_rad: float
@@ -210,7 +210,7 @@ class Claw(Strict, frozen=True, kw_only=True, tag_field="kind", tag="claw"):
     armature_kg_m2: Positive
 
 
-class ToolDocument(Strict, frozen=True, kw_only=True):
+class ToolDocument(StrictModel, frozen=True, kw_only=True):
     """A `tool.yaml`: one tool.
 
     `mount` is the pose of its root link in the flange (z out of the flange). Its links and joints get
@@ -224,9 +224,9 @@ class ToolDocument(Strict, frozen=True, kw_only=True):
     sources: str = ""
     urdf: UrdfSource
     prefix: str | None = None
-    mount: Mount = Mount()
-    tcp: ToolCentre = ToolCentre()
+    mount: MountPose = MountPose()
+    tcp: ToolCentrePoint = ToolCentrePoint()
     mass_kg: Positive | None = None
-    mechanism: Parallel | Linkage | Magnet | Synergy | Claw
-    collisions: Collisions = Collisions()
+    mechanism: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec
+    collisions: CollisionPairs = CollisionPairs()
     licence: Licence

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from robots.model.pinocchio_model import arm_model, pin
-from robots.model.rigid import Rigid, product
 from robots.model.robot_model import JointLimits, RobotModel
+from robots.model.transform import RigidTransform, product
 from robots.port import Array
 
-_AT_THE_LINK = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+_AT_THE_LINK = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 class ArmKinematics:
@@ -25,7 +25,9 @@ class ArmKinematics:
         tool: The tool centre point in the frame of the model's tool link; at its origin when not given.
     """
 
-    def __init__(self, model: RobotModel, *, base: Rigid, tool: Rigid | None = None, solver: Any = None) -> None:
+    def __init__(
+        self, model: RobotModel, *, base: RigidTransform, tool: RigidTransform | None = None, solver: Any = None
+    ) -> None:
         self.model = model
         self.base = base
         self.tool = tool or _AT_THE_LINK
@@ -51,7 +53,7 @@ class ArmKinematics:
         """Return an instance for use by another thread."""
         return ArmKinematics(self.model, base=self.base, tool=self._own_tool(), solver=self._solver)
 
-    def with_tool(self, tool: Rigid) -> ArmKinematics:
+    def with_tool(self, tool: RigidTransform) -> ArmKinematics:
         """Return an instance of its own whose tool centre point is at `tool` in the frame of the tool link."""
         return ArmKinematics(self.model, base=self.base, tool=tool, solver=self._solver)
 
@@ -59,12 +61,12 @@ class ArmKinematics:
         """Return the arm's mass matrix, (n, n), kg m², the inertia of its motors included."""
         return pin.crba(self._solver, self._data, joints) + self._armature
 
-    def tool_pose(self, joints: Array) -> Rigid:
+    def tool_pose(self, joints: Array) -> RigidTransform:
         """Return the tool centre point in the world for joints of shape (n,)."""
         pin.forwardKinematics(self._solver, self._data, joints)
         return self._tool_in_world()
 
-    def tool_pose_and_jacobian(self, joints: Array) -> tuple[Rigid, Array]:
+    def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
         """Return the tool pose and the Jacobian, shape (6, n): tool velocity (m/s, then rad/s, in world axes)."""
         # computeFrameJacobian would leave the frame placements of an earlier configuration.
         pin.computeJointJacobians(self._solver, self._data, joints)
@@ -87,10 +89,10 @@ class ArmKinematics:
         _, jacobian = self.tool_pose_and_jacobian(joints)
         return float(np.linalg.svd(jacobian, compute_uv=False)[-1])
 
-    def _own_tool(self) -> Rigid | None:
+    def _own_tool(self) -> RigidTransform | None:
         return None if self._offset is None else self.tool
 
-    def _tool_in_world(self) -> Rigid:
+    def _tool_in_world(self) -> RigidTransform:
         offset = self._offset
         if offset is None:
             placement = pin.updateFramePlacement(self._solver, self._data, self._tool)
@@ -98,12 +100,14 @@ class ArmKinematics:
             placement = self._data.oMi[offset.joint] * offset.placement
         # As base.then(…), whose rotation need not be worked out anew in every control period.
         xyzw = np.array(pin.Quaternion(placement.rotation).coeffs())
-        return Rigid(xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw))
+        return RigidTransform(
+            xyz=self.base.xyz + self._rotation @ placement.translation, xyzw=product(self.base.xyzw, xyzw)
+        )
 
 
 class _Offset:
     """A tool centre point that is not at the origin of the tool link: the joint that carries it, and where."""
 
-    def __init__(self, frame: Any, tool: Rigid) -> None:
+    def __init__(self, frame: Any, tool: RigidTransform) -> None:
         self.joint: int = frame.parentJoint
         self.placement: Any = frame.placement * pin.SE3(tool.rotation, tool.xyz)

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from robots.model.folder_document import Claw, Linkage, Magnet, Pad, Parallel, Synergy, TendonJoint
+from robots.model.folder_document import (
+    ClawSpec,
+    LinkageGripperSpec,
+    MagnetSpec,
+    PadSpec,
+    ParallelGripperSpec,
+    SynergyHandSpec,
+    TendonJoint,
+)
 from robots.model.tool_model import (
     ClawModel,
     GripperModel,
@@ -15,10 +23,15 @@ from robots.model.tool_model import (
 )
 
 
-def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name: str, prefix: str) -> Mechanism:
+def mechanism_of(
+    document: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec,
+    *,
+    name: str,
+    prefix: str,
+) -> Mechanism:
     """Return what moves the tool `name`, its links and joints called with `prefix`."""
 
-    def pad(described: Pad) -> PadBox:
+    def pad(described: PadSpec) -> PadBox:
         return PadBox(link=prefix + described.link, xyz=described.xyz, size_m=described.size_m)
 
     def tendon(joint: TendonJoint) -> SynergyJoint:
@@ -30,7 +43,7 @@ def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name
         )
 
     match document:
-        case Parallel():
+        case ParallelGripperSpec():
             return GripperModel(
                 name=name,
                 hand_link=prefix + document.hand_link,
@@ -42,7 +55,7 @@ def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name
                 max_force_n=document.max_force_n,
                 armature_kg=document.armature_kg,
             )
-        case Linkage():
+        case LinkageGripperSpec():
             return LinkageModel(
                 driver=prefix + document.driver,
                 followers=tuple((prefix + joint, factor) for joint, factor in document.followers.items()),
@@ -56,7 +69,7 @@ def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name
                 max_force_n=document.max_force_n,
                 armature_kg_m2=document.armature_kg_m2,
             )
-        case Magnet():
+        case MagnetSpec():
             return MagnetModel(
                 face=pad(document.face),
                 max_force_n=document.max_force_n,
@@ -64,7 +77,7 @@ def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name
                 max_payload_kg=document.max_payload_kg,
                 switch_s=document.switch_s,
             )
-        case Synergy():
+        case SynergyHandSpec():
             return SynergyModel(
                 palm_link=prefix + document.palm_link,
                 fingers=tuple(tuple(prefix + link for link in finger) for finger in document.fingers),
@@ -74,7 +87,7 @@ def mechanism_of(document: Parallel | Linkage | Magnet | Synergy | Claw, *, name
                 travel_speed_m_s=document.travel_speed_m_s,
                 max_force_n=document.max_force_n,
             )
-        case Claw():
+        case ClawSpec():
             return ClawModel(
                 driver=prefix + document.driver,
                 followers=tuple((prefix + joint, factor) for joint, factor in document.followers.items()),

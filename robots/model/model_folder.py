@@ -6,24 +6,33 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
-from engine.document.conversion import convert
-from engine.document.yaml_source import DataPath, Source, load_source
+from engine.document.decoding import decode_document
+from engine.document.yaml_source import DataPath, DocumentSource, load_source
 from engine.errors import CellError, DocumentError
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 from robots.model.description import disabled_collisions, installed_share_dir
 from robots.model.folder_document import (
-    Claw,
-    Collisions,
-    FileIn,
-    Linkage,
-    Magnet,
-    Parallel,
+    ClawSpec,
+    CollisionPairs,
+    FileReference,
+    LinkageGripperSpec,
+    MagnetSpec,
+    ParallelGripperSpec,
     RobotDocument,
-    Synergy,
+    SynergyHandSpec,
     ToolDocument,
     UrdfSource,
 )
-from robots.model.urdf_tree import Element, below, joints_of, keep_links, links_of, read_urdf, root_of, take_collisions
+from robots.model.urdf_tree import (
+    Element,
+    descendants_of,
+    joints_of,
+    keep_links,
+    links_of,
+    read_urdf,
+    root_of,
+    take_collisions,
+)
 
 Document = TypeVar("Document", RobotDocument, ToolDocument)
 
@@ -38,9 +47,9 @@ class ModelFolder(Generic[Document]):
 
     folder: Path
     document: Document
-    source: Source = field(repr=False)
+    source: DocumentSource = field(repr=False)
 
-    def locate(self, file: FileIn) -> Path:
+    def locate(self, file: FileReference) -> Path:
         """Return a file that the document names.
 
         Raises:
@@ -59,7 +68,7 @@ class ModelFolder(Generic[Document]):
         # The models that come with the program share a licence beside their folders.
         return any(path.resolve().is_relative_to(place) for place in (home.resolve(), _OWN))
 
-    def package_dir(self, file: FileIn) -> Path:
+    def package_dir(self, file: FileReference) -> Path:
         """Return the folder below which the meshes of a description lie."""
         if file.package is None:
             return self.folder.parent
@@ -77,25 +86,25 @@ class ModelFolder(Generic[Document]):
         within = self.folder if wanted.package is None else directory
         robot = read_urdf(self.locate(wanted), package_dir=directory, within=within)
         root = self._known(wanted.root, links_of(robot), ("urdf", "root"), "link") if wanted.root else root_of(robot)
-        kept = below(robot, root)
+        kept = descendants_of(robot, root)
         for index, link in enumerate(wanted.without):
-            kept -= below(robot, self._known(link, links_of(robot), ("urdf", "without", index), "link"))
+            kept -= descendants_of(robot, self._known(link, links_of(robot), ("urdf", "without", index), "link"))
         keep_links(robot, kept)
         if wanted.collision_file is not None:
-            other = self.locate(FileIn(file=wanted.collision_file, package=wanted.package))
+            other = self.locate(FileReference(file=wanted.collision_file, package=wanted.package))
             take_collisions(robot, read_urdf(other, package_dir=directory, within=within))
         return robot
 
     def allowed_collisions(self) -> tuple[tuple[str, str], ...]:
         """Return the pairs of the document and of its SRDF, the latter first."""
-        collisions: Collisions = self.document.collisions
+        collisions: CollisionPairs = self.document.collisions
         listed = disabled_collisions(self.locate(collisions.srdf)) if collisions.srdf is not None else ()
         return (*listed, *collisions.allowed)
 
     def _known(self, name: str, known: dict[str, Element], path: DataPath, what: str) -> str:
         if name not in known:
             raise DocumentError(
-                f"the URDF has no {what} {name}", where=self.source.position(path), hint=near_names(name, known)
+                f"the URDF has no {what} {name}", where=self.source.position(path), hint=did_you_mean(name, known)
             )
         return name
 
@@ -113,7 +122,7 @@ class ModelFolder(Generic[Document]):
 def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
     """Read the `robot.yaml` of a folder; raises DocumentError with its position when it is not valid."""
     source = _read(folder, ROBOT_FILE)
-    arm = ModelFolder(folder=folder, document=convert(source, RobotDocument), source=source)
+    arm = ModelFolder(folder=folder, document=decode_document(source, RobotDocument), source=source)
     names = [joint.name for joint in arm.document.joints]
     for index, joint in enumerate(arm.document.joints):
         if not joint.lower_rad <= joint.home_rad <= joint.upper_rad:
@@ -123,17 +132,17 @@ def load_arm(folder: Path) -> ModelFolder[RobotDocument]:
         for name in (device.joint, *device.plus):
             if name not in names:
                 where = source.position(("device_joints", index))
-                raise DocumentError(f"there is no joint {name}", where=where, hint=near_names(name, names))
+                raise DocumentError(f"there is no joint {name}", where=where, hint=did_you_mean(name, names))
     return arm
 
 
 def load_tool(folder: Path) -> ModelFolder[ToolDocument]:
     """Read the `tool.yaml` of a folder; raises DocumentError with its position when it is not valid."""
     source = _read(folder, TOOL_FILE)
-    return ModelFolder(folder=folder, document=convert(source, ToolDocument), source=source)
+    return ModelFolder(folder=folder, document=decode_document(source, ToolDocument), source=source)
 
 
-def _read(folder: Path, name: str) -> Source:
+def _read(folder: Path, name: str) -> DocumentSource:
     if not (folder / name).is_file():
         other = TOOL_FILE if name == ROBOT_FILE else ROBOT_FILE
         hint = (
@@ -145,22 +154,24 @@ def _read(folder: Path, name: str) -> Source:
     return load_source(folder / name)
 
 
-def names_in(mechanism: Parallel | Linkage | Magnet | Synergy | Claw) -> tuple[list[str], list[str]]:
+def names_in(
+    mechanism: ParallelGripperSpec | LinkageGripperSpec | MagnetSpec | SynergyHandSpec | ClawSpec,
+) -> tuple[list[str], list[str]]:
     """Return the joints and the links that a mechanism speaks of."""
     match mechanism:
-        case Parallel():
+        case ParallelGripperSpec():
             return list(mechanism.finger_joints), [
                 mechanism.hand_link,
                 *mechanism.finger_links,
                 *(pad.link for pad in mechanism.pads),
             ]
-        case Linkage() | Claw():
+        case LinkageGripperSpec() | ClawSpec():
             return [mechanism.driver, *mechanism.followers], [
                 *mechanism.finger_links,
                 *(pad.link for pad in mechanism.pads),
             ]
-        case Magnet():
+        case MagnetSpec():
             return [], [mechanism.face.link]
-        case Synergy():
+        case SynergyHandSpec():
             joints = [joint.name for joint in (*mechanism.flexion, *mechanism.passive)]
             return joints, [mechanism.palm_link, *(link for finger in mechanism.fingers for link in finger)]

@@ -7,9 +7,9 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from engine.document.cell import RobotEntry
+from engine.document.cell import RobotSpec
 from engine.errors import CellError
-from engine.nearness import near_names
+from engine.suggestions import did_you_mean
 from robots.model.composition import compose
 from robots.model.model_folder import ROBOT_FILE, TOOL_FILE, load_arm, load_tool
 from robots.model.robot_model import RobotModel
@@ -62,7 +62,7 @@ def robot_model(
     return _composed(arm, tool, calibration, coupled_joints, changed)
 
 
-def model_of_entry(entry: RobotEntry, resolve: Callable[[str], Path]) -> RobotModel:
+def model_of_entry(entry: RobotSpec, resolve: Callable[[str], Path]) -> RobotModel:
     """Return the model of a robot as a cell document writes it, without a tool where it names none.
 
     Args:
@@ -74,14 +74,14 @@ def model_of_entry(entry: RobotEntry, resolve: Callable[[str], Path]) -> RobotMo
         DocumentError: a document of a folder, or the calibration file, is wrong.
     """
     return robot_model(
-        model_place(entry.model, resolve),
-        gripper=model_place(entry.gripper.model, resolve) if entry.gripper is not None else None,
+        model_location(entry.model, resolve),
+        gripper=model_location(entry.gripper.model, resolve) if entry.gripper is not None else None,
         calibration=resolve(entry.calibration) if entry.calibration is not None else None,
         coupled_joints=entry.coupled_joints,
     )
 
 
-def model_place(written: str, resolve: Callable[[str], Path]) -> str:
+def model_location(written: str, resolve: Callable[[str], Path]) -> str:
     """Return the name of a built-in model as it is, and the path of a folder as one that can be opened."""
     return str(resolve(written)) if _is_folder(written) else written
 
@@ -118,7 +118,7 @@ def _folder(name: str, directory: Path, file: str, what: str) -> Path:
         return Path(name)
     known = _names(directory, file)
     if name not in known:
-        raise CellError(f"no {what} is called {name}", where=name, hint=near_names(name, known))
+        raise CellError(f"no {what} is called {name}", where=name, hint=did_you_mean(name, known))
     return directory / name
 
 

@@ -10,7 +10,7 @@ from engine.errors import CellError
 from robots.model.description import PACKAGE_SCHEME, resolve_uri
 from robots.model.mesh_file import verify_mesh_file
 from robots.model.untrusted_xml import parse_xml, read_text
-from robots.model.urdf_rules import verify_urdf
+from robots.model.urdf_validation import verify_urdf
 
 Element = ET.Element
 
@@ -98,7 +98,7 @@ def root_of(robot: Element) -> str:
     return next(name for name in links_of(robot) if name not in children)
 
 
-def below(robot: Element, link: str) -> set[str]:
+def descendants_of(robot: Element, link: str) -> set[str]:
     """Return `link` and all links that hang on it."""
     found, edges = {link}, [ends_of(joint) for joint in robot.findall("joint")]
     while True:
@@ -167,7 +167,7 @@ def set_limits(joint: Element, *, lower: float, upper: float, velocity: float, e
     limit.attrib.update(lower=repr(lower), upper=repr(upper), velocity=repr(velocity), effort=repr(effort))
 
 
-def fill_mass(robot: Element, mass_kg: float) -> None:
+def scale_mass(robot: Element, mass_kg: float) -> None:
     """Scale the root link's mass and inertia so that all links together weigh `mass_kg`.
 
     Raises:

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid, conjugate, product, rotation_vector
+from robots.model.transform import RigidTransform, conjugate, product, rotation_vector
 from robots.motion.joint_checks import check_duration, check_speed
 from robots.motion.min_jerk import PEAK_SPEED, min_jerk
 from robots.motion.slerp import slerp
@@ -19,7 +19,7 @@ from robots.motion.tool_path import (
     KNOT_RAD,
     KNOT_S,
     MOST_KNOTS,
-    SHYNESS,
+    SINGULARITY_CAUTION,
     ToolPath,
     follow_tool_path,
 )
@@ -32,8 +32,8 @@ _FARTHEST_M = 100.0
 class _Line:
     """The wanted path: `distance_m` straight on and `angle_rad` about one axis."""
 
-    start: Rigid
-    end: Rigid
+    start: RigidTransform
+    end: RigidTransform
 
     @property
     def distance_m(self) -> float:
@@ -43,9 +43,9 @@ class _Line:
     def angle_rad(self) -> float:
         return self.start.angle_rad(self.end)
 
-    def at(self, share: float) -> Rigid:
+    def at(self, share: float) -> RigidTransform:
         """Return the tool pose after `share` of the way."""
-        return Rigid(
+        return RigidTransform(
             xyz=self.start.xyz + share * (self.end.xyz - self.start.xyz),
             xyzw=slerp(self.start.xyzw, self.end.xyzw, share),
         )
@@ -56,7 +56,7 @@ class _Line:
         return np.concatenate((self.end.xyz - self.start.xyz, self.start.rotation @ turn_here))
 
 
-def plan_line(kinematics: ArmKinematics, start: Array, end: Rigid, *, duration_s: float) -> JointTrajectory:
+def plan_line(kinematics: ArmKinematics, start: Array, end: RigidTransform, *, duration_s: float) -> JointTrajectory:
     """Return the joints over time that carry the tool straight from `start` (radians, (n,)) to `end` (world).
 
     Raises:
@@ -74,17 +74,17 @@ def plan_line(kinematics: ArmKinematics, start: Array, end: Rigid, *, duration_s
     path = ToolPath(
         poses=poses,
         steps=line.slope() * strides[:, None],
-        drifts=SHYNESS * (line.distance_m + line.angle_rad) * strides,
+        drifts=SINGULARITY_CAUTION * (line.distance_m + line.angle_rad) * strides,
         shares=shares,
         duration_s=duration_s,
         word="line",
     )
-    trajectory = splined(follow_tool_path(kinematics, start, path), duration_s=duration_s)
+    trajectory = spline_trajectory(follow_tool_path(kinematics, start, path), duration_s=duration_s)
     check_speed(kinematics.limits, kinematics.model.arm_joints, trajectory)
     return trajectory
 
 
-def splined(knots: Array, *, duration_s: float) -> JointTrajectory:
+def spline_trajectory(knots: Array, *, duration_s: float) -> JointTrajectory:
     """Return the trajectory through `knots` (radians, (knots, n)), evenly over `duration_s`, at rest at both ends."""
     dt_s = duration_s / (len(knots) - 1)
     return JointTrajectory(dt_s=dt_s, position_rad=knots, velocity_rad_s=_clamped_slopes(knots, dt_s))

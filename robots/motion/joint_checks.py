@@ -24,7 +24,7 @@ def check_duration(duration_s: float, word: str) -> None:
         )
 
 
-def allow_time(least_s: float) -> str:
+def advise_duration(least_s: float) -> str:
     """Return the advice to allow `least_s`, rounded up to a tenth of a second."""
     return f"allow at least {math.ceil(least_s * 10.0 + 1e-6) / 10.0:.1f} s"
 
@@ -72,7 +72,7 @@ def check_speed(
     names: tuple[str, ...],
     trajectory: JointTrajectory,
     *,
-    advice: Callable[[float], str] = allow_time,
+    advice: Callable[[float], str] = advise_duration,
 ) -> None:
     """Raise RobotError where a joint would be too fast or pushed too hard, between the samples as well.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from robots.model.rigid import conjugate, product, quaternion_of, rotation_vector
+from robots.model.transform import conjugate, product, quaternion_of, rotation_vector
 from robots.port import Array
 
 

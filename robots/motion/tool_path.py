@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import RobotError
-from robots.model.inverse_kinematics import SINGULAR, InverseKinematics, weighted_step
+from robots.model.inverse_kinematics import SINGULAR, InverseKinematicsSolver, weighted_step
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.motion.joint_checks import check_range
 from robots.port import Array
 
 # Knots are at most this far apart in time, place and turn; a spline through them keeps the path.
 KNOT_S, KNOT_M, KNOT_RAD = 0.02, 0.006, 0.03
 FEWEST_KNOTS, MOST_KNOTS = 12, 4000
-SHYNESS = 0.6
+SINGULARITY_CAUTION = 0.6
 """How much the self-motion of a redundant arm shies away from joint limits, per metre or radian of path."""
 
 _COMFORTABLE_SHARE = 0.75
@@ -29,12 +29,12 @@ class ToolPath:
     """Tool poses in the world, evenly over `duration_s`; the first is where the tool stands.
 
     `steps` (poses - 1, 6) lead from each pose to the next: metres, then the rotation vector, in world
-    axes; `drifts` (poses - 1,) are their lengths, metres and radians together, times `SHYNESS`.
+    axes; `drifts` (poses - 1,) are their lengths, metres and radians together, times `SINGULARITY_CAUTION`.
     `shares` says how much of the way is done at each pose, 0 to 1; `word` names the path in messages,
     such as `line`.
     """
 
-    poses: Sequence[Rigid]
+    poses: Sequence[RigidTransform]
     steps: Array
     drifts: Array
     shares: Array
@@ -48,7 +48,7 @@ def follow_tool_path(kinematics: ArmKinematics, start: Array, path: ToolPath) ->
     Raises:
         RobotError: a pose is out of reach, a joint would leave its range, or the arm would pass a singularity.
     """
-    inverse = InverseKinematics(kinematics)
+    inverse = InverseKinematicsSolver(kinematics)
     knots = np.empty((len(path.poses), len(start)))
     knots[0] = start
     for i in range(1, len(path.poses)):
@@ -93,7 +93,7 @@ def _too_few_joints(dof: int, path: ToolPath, at: int) -> RobotError:
     )
 
 
-def _out_of_reach(inverse: InverseKinematics, path: ToolPath, joints: Array, at: int) -> RobotError:
+def _out_of_reach(inverse: InverseKinematicsSolver, path: ToolPath, joints: Array, at: int) -> RobotError:
     share = float(path.shares[at])
     try:
         inverse.nearest(path.poses[at], seed=joints)

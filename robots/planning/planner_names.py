@@ -18,7 +18,7 @@ OMPL_PLANNERS = (
 )
 """Planners of OMPL that its Python package offers and that can be told to stop at the first way."""
 
-UNBOUND = ("SBL", "EST", "BIEST", "TRRT", "BITRRT", "STRIDE", "PDST", "LAZYPRM")
+UNAVAILABLE_PLANNERS = ("SBL", "EST", "BIEST", "TRRT", "BITRRT", "STRIDE", "PDST", "LAZYPRM")
 """Planners of OMPL that its Python package does not offer, in capitals."""
 
 PLANNERS = (FAST, STOMP, *OMPL_PLANNERS)

@@ -9,12 +9,12 @@ import numpy as np
 
 from engine.errors import RobotError
 from engine.messages import Pose, Vector3
-from engine.sensing import OccupancyGrid
+from engine.messages.sensing import OccupancyGrid
 from robots.planning.planner_names import FAST
-from robots.planning.scene import NamePair, PlanningScene
+from robots.planning.scene.planning_scene import NamePair, PlanningScene
 from robots.port import Array, JointTrajectory
 
-Reason = Literal[
+RefusalReason = Literal[
     "start_in_collision",
     "start_outside_limits",
     "goal_in_collision",
@@ -34,13 +34,13 @@ class JointGoal(msgspec.Struct, frozen=True, kw_only=True, tag="joints"):
 
 
 class PoseGoal(msgspec.Struct, frozen=True, kw_only=True, tag="pose"):
-    """The tool centre point at a pose in the world; `match` says what of the pose counts, as `Match` does."""
+    """The tool centre point at a pose in the world; `match` says what of the pose counts, as `PoseMatch` does."""
 
     pose: Pose
     match: Literal["pose", "position", "axis"] = "pose"
 
 
-class WayGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
+class PathGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
     """The end of this very way of straight joint lines, radians, n each: it is confirmed and timed, none is looked for.
 
     Its first waypoint is where the arm starts.
@@ -49,7 +49,7 @@ class WayGoal(msgspec.Struct, frozen=True, kw_only=True, tag="way"):
     waypoints_rad: tuple[tuple[float, ...], ...]
 
 
-class KeepOrientation(msgspec.Struct, frozen=True, kw_only=True):
+class PathOrientationConstraint(msgspec.Struct, frozen=True, kw_only=True):
     """The tool link keeps the orientation that it has at the start, within a tolerance.
 
     With `free_about`, a direction in the frame of the tool link, it may turn about that: a full cup has
@@ -73,18 +73,18 @@ class PlanRequest(msgspec.Struct, frozen=True, kw_only=True):
     scene: PlanningScene
     arm: str
     start_rad: tuple[float, ...]
-    goal: JointGoal | PoseGoal | WayGoal
+    goal: JointGoal | PoseGoal | PathGoal
     planner: str = FAST
     time_s: float = 1.0
     seed: int = 0
     margin_m: float = 0.0
-    keep_orientation: KeepOrientation | None = None
+    keep_orientation: PathOrientationConstraint | None = None
     tool: Pose | None = None
     speed: float | None = None
     occupancy: OccupancyGrid | None = None
 
 
-class SampledWay(msgspec.Struct, frozen=True, kw_only=True):
+class SampledTrajectory(msgspec.Struct, frozen=True, kw_only=True):
     """A trajectory at rest at both ends, sampled every `dt_s`: rows of n float64 numbers, row after row."""
 
     dt_s: float
@@ -93,7 +93,7 @@ class SampledWay(msgspec.Struct, frozen=True, kw_only=True):
     velocity_rad_s: bytes
 
     @classmethod
-    def of(cls, trajectory: JointTrajectory) -> SampledWay:
+    def of(cls, trajectory: JointTrajectory) -> SampledTrajectory:
         """Return the data of a trajectory."""
         return cls(
             dt_s=trajectory.dt_s,
@@ -125,7 +125,7 @@ class PlanStats(msgspec.Struct, frozen=True, kw_only=True):
     found_by: str
 
 
-class Plan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
+class PathPlan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
     """A way of straight joint lines that the exact checker has confirmed: waypoints of n joints each.
 
     `timed` is the trajectory, with rounded corners that are confirmed as well, where a speed was given.
@@ -133,7 +133,7 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
 
     waypoints_rad: tuple[tuple[float, ...], ...]
     stats: PlanStats
-    timed: SampledWay | None = None
+    timed: SampledTrajectory | None = None
 
     @property
     def path(self) -> Array:
@@ -146,10 +146,10 @@ class Plan(msgspec.Struct, frozen=True, kw_only=True, tag="plan"):
         return float(np.linalg.norm(np.diff(self.path, axis=0), axis=1).sum())
 
 
-class Refusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
+class PlanRefusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
     """Why there is no plan; `pairs` are the names of what touches, if that is the reason."""
 
-    reason: Reason
+    reason: RefusalReason
     message: str
     hint: str = ""
     pairs: tuple[NamePair, ...] = ()
@@ -159,32 +159,32 @@ class Refusal(msgspec.Struct, frozen=True, kw_only=True, tag="refusal"):
         return RobotError(self.message, hint=self.hint or None)
 
 
-PlanAnswer = Plan | Refusal
+PlanAnswer = PathPlan | PlanRefusal
 
 
-class WayRequest(msgspec.Struct, frozen=True, kw_only=True):
+class PathCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
     """Whether an arm that follows `way` would touch anything from `from_s` of the way's own time on."""
 
     scene: PlanningScene
     arm: str
-    way: SampledWay
+    way: SampledTrajectory
     from_s: float
     occupancy: OccupancyGrid | None = None
     margin_m: float = 0.0
 
 
-class CarryRequest(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether what an arm holds would touch anything on the whole of `way`; see `carry_check` for what it may touch.
+class AttachedPartCheckRequest(msgspec.Struct, frozen=True, kw_only=True):
+    """Whether what an arm holds would touch anything along `way`; see `attached_part_check` for what it may touch.
 
     The scene does not allow what the held parts touch by lying on it.
     """
 
     scene: PlanningScene
     arm: str
-    way: SampledWay
+    way: SampledTrajectory
 
 
-class WayCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
+class PathCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
     """The first instant of a way's own time at which the arm would touch something, and what; None where it is free.
 
     `looked_s` is the instant up to which the way was looked at: that of the touch, or the way's end.
@@ -195,7 +195,7 @@ class WayCheck(msgspec.Struct, frozen=True, kw_only=True, tag="way_check"):
     looked_s: float
 
 
-class LookRequest(msgspec.Struct, frozen=True, kw_only=True):
+class CollisionRequest(msgspec.Struct, frozen=True, kw_only=True):
     """What an arm touches at `joints_rad`, and how near it is to what it must not touch.
 
     Obstacles, other arms and `occupancy` nearer than `margin_m` count as touching.

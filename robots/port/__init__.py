@@ -10,10 +10,10 @@ from robots.port.force_task import Admittance, ForceRecord, ForceTask
 from robots.port.gripper import GripperPort, GripperSample
 from robots.port.hand import HandPort, HandSample
 from robots.port.magnet import MagnetPort, MagnetSample
-from robots.port.motion import Motion, MotionEnd, MotionReport, Stream
+from robots.port.motion import Motion, MotionEnd, MotionReport, MotionStream
 from robots.port.outputs import OutputPort
-from robots.port.settings import ArmSettings, ControllerName, Six
-from robots.port.trajectory import Contact, JointTrajectory, Tolerance
+from robots.port.settings import ArmSettings, ControllerName, Vector6
+from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
 __all__ = [
     "Admittance",
@@ -21,7 +21,7 @@ __all__ = [
     "ArmSample",
     "ArmSettings",
     "Array",
-    "Contact",
+    "ContactCondition",
     "ControllerName",
     "ForceRecord",
     "ForceTask",
@@ -35,9 +35,9 @@ __all__ = [
     "Motion",
     "MotionEnd",
     "MotionReport",
+    "MotionStream",
     "OutputPort",
-    "Six",
-    "Stream",
     "StreamKind",
     "Tolerance",
+    "Vector6",
 ]

@@ -10,9 +10,9 @@ import numpy as np
 
 from robots.port.arrays import Array
 from robots.port.force_task import ForceTask
-from robots.port.motion import Motion, Stream
+from robots.port.motion import Motion, MotionStream
 from robots.port.settings import ArmSettings
-from robots.port.trajectory import Contact, JointTrajectory, Tolerance
+from robots.port.trajectory import ContactCondition, JointTrajectory, Tolerance
 
 StreamKind = Literal["joint_position", "joint_velocity", "tool_twist"]
 """What a stream is told: radians (n); rad/s (n); m/s and rad/s of the tool centre point in world axes (6)."""
@@ -67,7 +67,9 @@ class ArmPort(Protocol):
         """The newest measurement."""
         ...
 
-    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: Contact | None = None) -> Motion:
+    def follow(
+        self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: ContactCondition | None = None
+    ) -> Motion:
         """Start following; with `until` a contact on the way ends the motion (REACHED, `contact` true)."""
         ...
 
@@ -75,11 +77,11 @@ class ArmPort(Protocol):
         """Start following a tool path while pressing as wanted; the report carries a `ForceRecord`."""
         ...
 
-    def stream(self, kind: StreamKind, *, watchdog_s: float) -> Stream:
+    def stream(self, kind: StreamKind, *, watchdog_s: float) -> MotionStream:
         """Start doing what is sent; limits of position, speed, acceleration and jerk are kept."""
         ...
 
-    def guide(self, *, damping: float = 0.0) -> Stream:
+    def guide(self, *, damping: float = 0.0) -> MotionStream:
         """Float in gravity compensation so that the arm can be led by hand; nothing is sent.
 
         `damping` is a share (0 to 1) of the nominal damping of the joints that is left. It ends by `finish` or

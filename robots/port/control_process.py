@@ -90,7 +90,7 @@ class EngineMonitor:
         at_rest = self._devices.at_rest
         if at_rest != self._was_at_rest:
             self._was_at_rest = at_rest
-            self._heartbeat.tell_rest(round(now_s * 1e9) if at_rest else 0)
+            self._heartbeat.report_at_rest(round(now_s * 1e9) if at_rest else 0)
         if at_rest and self._braking_since_s is not None:
             took_s, self._braking_since_s = now_s - self._braking_since_s, None
             self._log(f"{self._braked_for}; everything came to rest {took_s:.3f} s later, at {now_s:.3f} s (monotonic)")

@@ -9,7 +9,7 @@ import numpy as np
 
 from engine.messages import Quaternion
 from robots.port.arrays import Array
-from robots.port.settings import Six
+from robots.port.settings import Vector6
 from robots.port.trajectory import JointTrajectory
 
 
@@ -21,10 +21,10 @@ class Admittance(msgspec.Struct, frozen=True, kw_only=True):
     `turn_rad`, nor change faster than `speed_m_s` and `turn_rad_s`.
     """
 
-    active: Six = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    mass: Six = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
-    damping: Six = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
-    stiffness: Six = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    active: Vector6 = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    mass: Vector6 = (4.0, 4.0, 4.0, 0.2, 0.2, 0.2)
+    damping: Vector6 = (300.0, 300.0, 300.0, 10.0, 10.0, 10.0)
+    stiffness: Vector6 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     reach_m: float = 0.05
     turn_rad: float = 0.3
     speed_m_s: float = 0.1

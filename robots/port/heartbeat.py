@@ -89,7 +89,7 @@ class Heartbeat:
         """Raise the control process's counter; the control process only."""
         self._numbers[_CONTROL] += 1
 
-    def tell_rest(self, since_ns: int) -> None:
+    def report_at_rest(self, since_ns: int) -> None:
         """Tell since when everything rests, 0 for never; the control process only."""
         self._numbers[_REST_SINCE] = since_ns
 

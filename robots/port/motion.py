@@ -57,7 +57,7 @@ class Motion(Protocol):
         ...
 
 
-class Stream(Motion, Protocol):
+class MotionStream(Motion, Protocol):
     """A motion that follows what it is told at every instant; it ends by `finish` or `cancel` only.
 
     When nothing was said for longer than its watchdog allows, it comes to rest and stays there

@@ -8,7 +8,7 @@ import msgspec
 
 from engine.messages import Quaternion, Vector3
 
-Six = tuple[float, float, float, float, float, float]
+Vector6 = tuple[float, float, float, float, float, float]
 ControllerName = Literal["joint_impedance", "cartesian_impedance"]
 NO_FRAME: tuple[Vector3, Quaternion] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
@@ -34,7 +34,7 @@ class ArmSettings(msgspec.Struct, frozen=True, kw_only=True):
     controller: ControllerName = "joint_impedance"
     joint_stiffness_nm_rad: tuple[float, ...] = ()
     joint_damping_ratio: float = 1.0
-    cartesian_stiffness: Six = (3000.0, 3000.0, 3000.0, 200.0, 200.0, 200.0)
+    cartesian_stiffness: Vector6 = (3000.0, 3000.0, 3000.0, 200.0, 200.0, 200.0)
     cartesian_damping_ratio: float = 1.0
     nullspace_stiffness_nm_rad: float = 20.0
     tool_xyz_m: Vector3 = NO_FRAME[0]

@@ -33,4 +33,4 @@ class StopMonitor:
         if reason:
             self._devices.brake(f"STOP: {reason}")
         if self._line.awaits_rest and self._devices.at_rest:
-            self._line.tell_rest()
+            self._line.report_at_rest()

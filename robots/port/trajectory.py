@@ -36,7 +36,7 @@ class Tolerance:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Contact:
+class ContactCondition:
     """Where a motion ends early: the environment pushes the tool with `force_n`.
 
     Attributes:

@@ -9,11 +9,11 @@ import numpy as np
 
 from engine.errors import CellError
 from robots.model.pinocchio_model import pin, rest_configuration, whole_model
-from robots.model.rigid import Rigid
-from robots.planning.arm_spheres import arm_spheres
+from robots.model.transform import RigidTransform
+from robots.planning.search.arm_spheres import arm_spheres
 from robots.port import Array
-from robots.sim.scene import ArmPlacement
-from robots.vision.known import Posture
+from robots.sim.scene.sim_scene import ArmPlacement
+from robots.vision.known_geometry import ArmConfiguration
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +28,7 @@ class ArmBody:
 
     def __init__(self, placement: ArmPlacement) -> None:
         model = placement.robot()
-        self._base = Rigid.from_pose(placement.base)
+        self._base = RigidTransform.from_pose(placement.base)
         self._name = placement.name
         self._joints = model.arm_joints
         self._solver: Any = whole_model(model)
@@ -49,19 +49,19 @@ class ArmBody:
         }
         self.tool_link = model.tool_link
 
-    def balls(self, posture: Posture) -> Array:
+    def balls(self, posture: ArmConfiguration) -> Array:
         """Return the balls in the world, (k, 4); raises CellError for a posture of another arm."""
         self._move_to(posture)
         return np.vstack([_moved(self._at(link.frame), link.balls) for link in self._links.values()])
 
-    def link_pose(self, posture: Posture, link: str) -> Rigid:
+    def link_pose(self, posture: ArmConfiguration, link: str) -> RigidTransform:
         """Return where a link is in the world; raises CellError when the arm has none of that name."""
         if not self._solver.existFrame(link, pin.FrameType.BODY):
             raise CellError(f"the arm has no link {link}", where=self._name, hint="name a link of the URDF")
         self._move_to(posture)
         return self._at(int(self._solver.getFrameId(link, pin.FrameType.BODY)))
 
-    def _move_to(self, posture: Posture) -> None:
+    def _move_to(self, posture: ArmConfiguration) -> None:
         if len(posture.joints) != len(self._joints) or not np.isfinite(posture.joints).all():
             raise CellError(
                 f"{list(posture.joints)} are no joints of this arm",
@@ -75,13 +75,13 @@ class ArmBody:
             q[self._places[name]] = value
         pin.framesForwardKinematics(self._solver, self._data, q)
 
-    def _at(self, frame: int) -> Rigid:
+    def _at(self, frame: int) -> RigidTransform:
         found = self._data.oMf[frame]
         xyzw = np.array(pin.Quaternion(found.rotation).coeffs())
-        return self._base.then(Rigid(xyz=np.array(found.translation), xyzw=xyzw))
+        return self._base.then(RigidTransform(xyz=np.array(found.translation), xyzw=xyzw))
 
 
-def _moved(pose: Rigid, balls: Array) -> Array:
+def _moved(pose: RigidTransform, balls: Array) -> Array:
     moved = balls.copy()
     moved[:, :3] = balls[:, :3] @ pose.rotation.T + pose.xyz
     return moved

@@ -8,11 +8,11 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.document.cell_senses import DepthCamera
+from engine.document.cell_perception import DepthCamera
 from engine.errors import CellError
 from engine.messages import Pose, Vector3
-from engine.sensing import CameraIntrinsics, DepthImage
-from robots.model.rigid import Rigid
+from engine.messages.sensing import CameraIntrinsics, DepthImage
+from robots.model.transform import RigidTransform
 from robots.port import Array
 from robots.vision.detector_spec import DetectorSpec, detector_of
 
@@ -49,7 +49,7 @@ def camera_of(name: str, camera: DepthCamera) -> CameraSpec:
     return CameraSpec(
         name=name,
         intrinsics=pinhole(camera.size_px, camera.fov_rad),
-        pose=looking_at(camera.at, camera.look_at, name=name),
+        pose=optical_frame_pose(camera.at, camera.look_at, name=name),
         rate_hz=camera.rate_hz,
         range_m=camera.range_m,
         noise_m=camera.noise_m,
@@ -84,7 +84,7 @@ def reduced(intrinsics: CameraIntrinsics, step: int) -> CameraIntrinsics:
     )
 
 
-def looking_at(at: Vector3, look_at: Vector3, *, name: str = "camera") -> Pose:
+def optical_frame_pose(at: Vector3, look_at: Vector3, *, name: str = "camera") -> Pose:
     """Return the pose of an optical frame: up in the image is up in the world, or +y where it looks along z.
 
     Raises:
@@ -99,7 +99,7 @@ def looking_at(at: Vector3, look_at: Vector3, *, name: str = "camera") -> Pose:
     if float(np.linalg.norm(right)) < _UPRIGHT:
         right = np.cross(ahead, (0.0, 1.0, 0.0))
     right = right / np.linalg.norm(right)
-    return Rigid.of(at, _quaternion(np.column_stack((right, np.cross(ahead, right), ahead)))).to_pose("world")
+    return RigidTransform.of(at, _quaternion(np.column_stack((right, np.cross(ahead, right), ahead)))).to_pose("world")
 
 
 def directions(intrinsics: CameraIntrinsics) -> Array:
@@ -137,7 +137,7 @@ def points_seen(image: DepthImage) -> Array:
     """Return the measured points of an image in the world, (k, 3)."""
     depth = depths(image).astype(np.float64).ravel()
     measured = np.isfinite(depth) & (depth > 0.0)
-    pose = Rigid.from_pose(image.pose)
+    pose = RigidTransform.from_pose(image.pose)
     return (directions(image.intrinsics)[measured] * depth[measured, None]) @ pose.rotation.T + pose.xyz
 
 

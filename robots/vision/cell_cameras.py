@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from engine.document.cell import CellDocument
 from engine.errors import CellError
-from engine.nearness import near_names
-from robots.sim.lockstep_host import LockstepHost
-from robots.sim.scene import Scene
-from robots.sim.world import SimWorld
+from engine.suggestions import did_you_mean
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.scene.sim_scene import SimScene
+from robots.sim.world.sim_world import SimWorld
 from robots.vision.camera import camera_of
-from robots.vision.depth import check_choice
-from robots.vision.lockstep_watch import LockstepWatch
-from robots.vision.real_time_watch import RealTimeWatch
-from robots.vision.sight import Sight
+from robots.vision.depth_renderer import check_depth_setting
+from robots.vision.lockstep_perception import LockstepPerception
+from robots.vision.perception_messages import PerceptionSetup
+from robots.vision.real_time_perception import RealTimePerception
 from robots.vision.voxel_box import voxel_box
 
 
 def cell_cameras(
-    document: CellDocument, *, scene: Scene, world: SimWorld, seed: int | None
-) -> LockstepWatch | RealTimeWatch | None:
+    document: CellDocument, *, scene: SimScene, world: SimWorld, seed: int | None
+) -> LockstepPerception | RealTimePerception | None:
     """Return what watches the cell, None where it has no camera, or nothing to do for those that it has.
 
     Raises:
@@ -28,16 +28,16 @@ def cell_cameras(
     if not document.cameras or (document.occupancy is None and not detects):
         return None
     _check_labels(document)
-    check_choice()
-    sight = Sight(
+    check_depth_setting()
+    sight = PerceptionSetup(
         scene=scene,
         cameras=tuple(camera_of(name, camera) for name, camera in document.cameras.items()),
         box=voxel_box(document.occupancy) if document.occupancy is not None else None,
         seed=seed or 0,
     )
     if isinstance(world.host, LockstepHost):
-        return LockstepWatch(sight, world=world)
-    return RealTimeWatch(sight, world=world)
+        return LockstepPerception(sight, world=world)
+    return RealTimePerception(sight, world=world)
 
 
 def _check_labels(document: CellDocument) -> None:
@@ -47,5 +47,5 @@ def _check_labels(document: CellDocument) -> None:
                 raise CellError(
                     f"the detector of {name} has a label for {part}, which is no part of the cell",
                     where=f"camera {name}",
-                    hint=near_names(part, document.parts),
+                    hint=did_you_mean(part, document.parts),
                 )

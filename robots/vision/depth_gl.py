@@ -7,9 +7,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from engine.sensing import CameraIntrinsics
-from robots.model.rigid import Rigid
-from robots.sim.physics import mujoco
+from engine.messages.sensing import CameraIntrinsics
+from robots.model.transform import RigidTransform
+from robots.sim.physics.physics import mujoco
 from robots.vision.camera import CameraSpec, Image
 from robots.vision.depth_rays import SEEN_GROUPS
 from robots.vision.physics_copy import PhysicsCopy
@@ -21,17 +21,17 @@ _BEYOND = 1.2
 _MORE_GEOMS = 100
 
 
-class NoGraphics(Exception):
+class GraphicsUnavailable(Exception):
     """No OpenGL is to be had; the text says why."""
 
 
-class GlDepth:
+class GlDepthRenderer:
     """Renders with MuJoCo's classic renderer, on this thread only.
 
     The context is made directly: `MUJOCO_GL` would have to be set before anything loads MuJoCo.
 
     Raises:
-        NoGraphics: there is no such OpenGL on this machine.
+        GraphicsUnavailable: there is no such OpenGL on this machine.
     """
 
     def __init__(self, cell: PhysicsCopy, cameras: tuple[CameraSpec, ...], *, kind: GlKind) -> None:
@@ -47,7 +47,7 @@ class GlDepth:
             self._context: Any = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         except Exception as error:
             # Missing libraries and drivers show up as anything from ImportError to AttributeError.
-            raise NoGraphics(f"{type(error).__name__}: {error}") from error
+            raise GraphicsUnavailable(f"{type(error).__name__}: {error}") from error
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         self._context.readDepthMap = mujoco.mjtDepthMap.mjDEPTH_ZEROFAR
         self._scene: Any = mujoco.MjvScene(model, maxgeom=int(model.ngeom) + _MORE_GEOMS)
@@ -95,7 +95,7 @@ class GlDepth:
         self._gl.free()
 
     def _look(self, camera: CameraSpec, far: float) -> None:
-        lens, pose = camera.intrinsics, Rigid.from_pose(camera.pose)
+        lens, pose = camera.intrinsics, RigidTransform.from_pose(camera.pose)
         up = _NEAR_M * lens.height_px / 2.0 / lens.fy_px
         for eye in self._scene.camera:
             eye.pos[:] = pose.xyz

@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-from engine.sensing import CameraIntrinsics, DepthImage
+from engine.messages.sensing import CameraIntrinsics, DepthImage
 from robots.vision.camera import CameraSpec, Image
 
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from engine.sensing import CameraIntrinsics
-from robots.model.rigid import Rigid
+from engine.messages.sensing import CameraIntrinsics
+from robots.model.transform import RigidTransform
 from robots.port import Array
-from robots.sim.physics import mujoco
+from robots.sim.physics.physics import mujoco
 from robots.vision.camera import CameraSpec, Image, directions, reduced
 from robots.vision.physics_copy import PhysicsCopy
 
@@ -22,7 +22,7 @@ _PITCH_VOXELS = 1.5
 _STEPS = (8, 4, 2)
 
 
-class RayDepth:
+class RayDepthRenderer:
     """Casts a ray for each pixel of a smaller image; `voxel_m` and `middle_m` say how small it may be."""
 
     words = "by rays, in smaller images"
@@ -67,7 +67,7 @@ def first_hits(cell: PhysicsCopy, start: Array, along: Array, *, reach_m: float)
 
 class _Rays:
     def __init__(self, camera: CameraSpec, voxel_m: float, middle_m: np.ndarray[Any, Any]) -> None:
-        pose = Rigid.from_pose(camera.pose)
+        pose = RigidTransform.from_pose(camera.pose)
         away = max(float(np.linalg.norm(middle_m - pose.xyz)), camera.range_m[0])
         finest = _PITCH_VOXELS * voxel_m * camera.intrinsics.fx_px / away
         self.intrinsics = reduced(camera.intrinsics, next((step for step in _STEPS if step <= finest), 1))

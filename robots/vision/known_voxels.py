@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import CellError
-from engine.shapes import Obstacle, Solid
-from robots.model.rigid import Rigid
-from robots.planning.coal_shapes import coal_shape
-from robots.planning.solids import ConvexSolid, convex_solid, to_frame
+from engine.messages.shapes import Obstacle, Solid
+from robots.model.transform import RigidTransform
+from robots.planning.scene.coal_shapes import coal_shape
+from robots.planning.scene.convex_shapes import ConvexSolid, convex_solid, to_frame
 from robots.port import Array
+from robots.vision.occupancy_kernels import BESIDE, INSIDE, NEAR, Bytes
 from robots.vision.solid_distance import solid_distance
 from robots.vision.voxel_box import VoxelBox
-from robots.vision.voxel_kernels import BESIDE, INSIDE, NEAR, Bytes
 
 # A thing that moved less is where it was.
 _SAME_M, _SAME_RAD = 1e-4, 1e-3
@@ -23,7 +23,7 @@ _SAME_M, _SAME_RAD = 1e-4, 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class _Taken:
-    """The voxels from `low` to before `high` that something takes: `levels` as in `voxel_kernels`."""
+    """The voxels from `low` to before `high` that something takes: `levels` as in `occupancy_kernels`."""
 
     low: tuple[int, int, int]
     high: tuple[int, int, int]
@@ -33,7 +33,7 @@ class _Taken:
 @dataclass(frozen=True, kw_only=True)
 class _Placed:
     solids: tuple[Solid, ...]
-    pose: Rigid
+    pose: RigidTransform
     taken: tuple[_Taken, ...]
 
 
@@ -72,8 +72,8 @@ class KnownVoxels:
 
     def _placed(self, known: dict[str, _Placed], thing: Obstacle, margin_m: float, *, near: int = NEAR) -> _Placed:
         try:
-            pose, old = Rigid.from_pose(thing.pose), known.get(thing.name)
-            inner = [Rigid.from_pose(solid.pose) for solid in thing.solids]
+            pose, old = RigidTransform.from_pose(thing.pose), known.get(thing.name)
+            inner = [RigidTransform.from_pose(solid.pose) for solid in thing.solids]
         except ValueError as error:
             raise CellError(str(error), where=thing.name, hint="say where it stands") from error
         if old is not None and old.solids == thing.solids and _same(old.pose, pose):
@@ -88,7 +88,7 @@ class KnownVoxels:
         )
         return _Placed(solids=thing.solids, pose=pose, taken=tuple(one for one in taken if one is not None))
 
-    def _taken(self, solid: ConvexSolid, pose: Rigid, margin_m: float, near: int) -> _Taken | None:
+    def _taken(self, solid: ConvexSolid, pose: RigidTransform, margin_m: float, near: int) -> _Taken | None:
         box, (low, high) = self._box, self._bounds(solid, pose, margin_m)
         if any(a >= b for a, b in zip(low, high, strict=True)):
             return None
@@ -98,7 +98,7 @@ class KnownVoxels:
         return _Taken(low=low, high=high, levels=levels.reshape(np.subtract(high, low)))
 
     def _bounds(
-        self, solid: ConvexSolid, pose: Rigid, margin_m: float
+        self, solid: ConvexSolid, pose: RigidTransform, margin_m: float
     ) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
         """Return the voxels, first and last + 1 along each axis, that the solid with its margin can reach."""
         corners = to_frame(pose, _corners(*solid.box()))
@@ -122,5 +122,5 @@ def _stamp(levels: Bytes, taken: tuple[_Taken, ...]) -> None:
         np.maximum(part, one.levels, out=part)
 
 
-def _same(first: Rigid, second: Rigid) -> bool:
+def _same(first: RigidTransform, second: RigidTransform) -> bool:
     return first.distance_m(second) < _SAME_M and first.angle_rad(second) < _SAME_RAD

@@ -15,17 +15,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.messages import Pose
-from engine.sensing import CameraIntrinsics
+from engine.messages.sensing import CameraIntrinsics
 from engine.skills.vision import Detection, Detections, Rectangle
-from robots.model.rigid import Rigid, product, quaternion_of
+from robots.model.transform import RigidTransform, product, quaternion_of
 from robots.port import Array
-from robots.sim.scene import PartBody
+from robots.sim.scene.sim_scene import PartBody
 from robots.vision.camera import CameraSpec, pixels
 from robots.vision.depth_image import frame_number
 from robots.vision.depth_rays import first_hits
 from robots.vision.detector_spec import DetectorSpec
-from robots.vision.outline import edges_m, met
 from robots.vision.physics_copy import PhysicsCopy
+from robots.vision.visibility import bounding_edges_m, intersects_shape
 
 # Of a part that fills the image it is enough to look at every second or third pixel.
 _MOST_RAYS = 4096
@@ -51,7 +51,7 @@ class PartDetector:
         poses = self._cell.moment(time_s).parts
         found: list[Detection] = []
         for part in self._parts:
-            seen = self._seen(camera, part, Rigid.from_pose(poses[part.name]))
+            seen = self._seen(camera, part, RigidTransform.from_pose(poses[part.name]))
             if seen is None or seen.pixels < detector.min_pixels or seen.share < detector.min_share:
                 continue
             found.append(
@@ -59,7 +59,7 @@ class PartDetector:
                     label=detector.labels.get(part.name, part.name),
                     score=seen.share,
                     pose=self._measured(camera, detector, part.name, poses[part.name], time_s),
-                    size_m=edges_m(part.shape, part.size_m),
+                    size_m=bounding_edges_m(part.shape, part.size_m),
                     rectangle_px=seen.rectangle,
                 )
             )
@@ -73,15 +73,17 @@ class PartDetector:
             image_px=(lens.width_px, lens.height_px),
         )
 
-    def _seen(self, camera: CameraSpec, part: PartBody, pose: Rigid) -> _Seen | None:
+    def _seen(self, camera: CameraSpec, part: PartBody, pose: RigidTransform) -> _VisiblePixels | None:
         """Return how much the camera sees of a part, None where that is nothing."""
-        eye = Rigid.from_pose(camera.pose)
-        rays = _rays_around(camera.intrinsics, eye.inverse().then(pose), edges_m(part.shape, part.size_m))
+        eye = RigidTransform.from_pose(camera.pose)
+        rays = _rays_around(camera.intrinsics, eye.inverse().then(pose), bounding_edges_m(part.shape, part.size_m))
         if rays is None:
             return None
         ahead, step = rays
         world = _directions(camera.intrinsics, ahead) @ eye.rotation.T
-        inside = met(part.shape, part.size_m, pose.rotation.T @ (eye.xyz - pose.xyz), world @ pose.rotation)
+        inside = intersects_shape(
+            part.shape, part.size_m, pose.rotation.T @ (eye.xyz - pose.xyz), world @ pose.rotation
+        )
         alone, world = ahead[inside], world[inside]
         if not len(alone):
             return None
@@ -93,7 +95,7 @@ class PartDetector:
         if not len(seen):
             return None
         (left, top), (right, bottom) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
-        return _Seen(len(seen) * step * step, len(seen) / len(alone), (left, top, right, bottom))
+        return _VisiblePixels(len(seen) * step * step, len(seen) / len(alone), (left, top, right, bottom))
 
     def _depths(self, geom: int, start: Array, along: Array, far: float) -> Array:
         """Return how deep the part is where a ray, one metre deep each, meets it first; else infinity."""
@@ -104,20 +106,20 @@ class PartDetector:
 
     def _measured(self, camera: CameraSpec, detector: DetectorSpec, part: str, pose: Pose, time_s: float) -> Pose:
         """Return the pose of a part in the detector's frame, off by its noise."""
-        true = Rigid.from_pose(pose)
+        true = RigidTransform.from_pose(pose)
         if detector.noise_m > 0.0 or detector.noise_rad > 0.0:
             names = (zlib.crc32(name.encode()) for name in (camera.name, part))
             stream = np.random.default_rng([self._seed, *names, frame_number(camera, time_s)])
             off, turn = stream.standard_normal((2, 3))
-            true = Rigid(
+            true = RigidTransform(
                 xyz=true.xyz + off * detector.noise_m,
                 xyzw=product(true.xyzw, quaternion_of(turn * detector.noise_rad)),
             )
-        return Rigid.from_pose(detector.frame_pose).inverse().then(true).to_pose(detector.frame)
+        return RigidTransform.from_pose(detector.frame_pose).inverse().then(true).to_pose(detector.frame)
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _VisiblePixels:
     pixels: int
     share: float
     rectangle: Rectangle
@@ -129,7 +131,9 @@ def _directions(lens: CameraIntrinsics, at_px: Array) -> Array:
     return np.column_stack((x, y, np.ones(len(at_px))))
 
 
-def _rays_around(lens: CameraIntrinsics, pose: Rigid, edges: tuple[float, float, float]) -> tuple[Array, int] | None:
+def _rays_around(
+    lens: CameraIntrinsics, pose: RigidTransform, edges: tuple[float, float, float]
+) -> tuple[Array, int] | None:
     """Return the pixels (k, 2) around a box of which one stands for `step` by `step`, and `step`.
 
     They go beyond the image where the box does. None where the box, at `pose` in the optical frame, is not

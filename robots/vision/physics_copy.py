@@ -8,13 +8,13 @@ import numpy as np
 
 from engine.errors import CellError
 from engine.messages import Pose
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
-from robots.sim.cell_model import build_cell
-from robots.sim.image_layout import ImageLayout
-from robots.sim.physics import mujoco
-from robots.sim.scene import Scene
-from robots.vision.known import Moment, Posture
+from robots.sim.loop.image_layout import ImageLayout
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.physics.physics import mujoco
+from robots.sim.scene.sim_scene import SimScene
+from robots.vision.known_geometry import ArmConfiguration, MeasuredState
 
 
 class PhysicsCopy:
@@ -23,7 +23,7 @@ class PhysicsCopy:
     `model` and `data` are MuJoCo's, for who renders.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: SimScene) -> None:
         cell = build_cell(scene)
         self.model: Any = cell.model
         self.data: Any = mujoco.MjData(self.model)
@@ -44,13 +44,13 @@ class PhysicsCopy:
         mujoco.mj_setState(self.model, self.data, np.ascontiguousarray(image[self._physics]), self._kind)
         mujoco.mj_kinematics(self.model, self.data)
 
-    def moment(self, time_s: float) -> Moment:
+    def moment(self, time_s: float) -> MeasuredState:
         """Return where arms and parts are in this state."""
         q: Array = self.data.qpos
-        return Moment(
+        return MeasuredState(
             time_s=time_s,
             arms={
-                name: Posture(
+                name: ArmConfiguration(
                     joints=tuple(q[places].tolist()),
                     tool_joints={joint: float(q[place]) for joint, place in tool.items()},
                 )
@@ -69,4 +69,4 @@ def _tool_joints(model: Any, arm: str, arm_joints: frozenset[str]) -> dict[str, 
 
 
 def _pose(numbers: Array) -> Pose:
-    return Rigid.of(numbers[:3], np.roll(numbers[3:], -1)).to_pose("world")
+    return RigidTransform.of(numbers[:3], np.roll(numbers[3:], -1)).to_pose("world")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from robots.planning.problem import BOX, CAPSULE, CYLINDER, SPHERE
-from robots.planning.solids import ConvexSolid
+from robots.planning.scene.compiled_problem import BOX, CAPSULE, CYLINDER, SPHERE
+from robots.planning.scene.convex_shapes import ConvexSolid
 from robots.port import Array
 
 

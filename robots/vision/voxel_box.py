@@ -7,10 +7,10 @@ import math
 import msgspec
 import numpy as np
 
-from engine.document.cell_senses import OccupancyMap
+from engine.document.cell_perception import OccupancyMap
 from engine.errors import CellError
 from engine.messages import Vector3
-from engine.sensing import OccupancyGrid
+from engine.messages.sensing import OccupancyGrid
 from robots.port import Array
 
 _MOST_VOXELS = 20_000_000

@@ -9,18 +9,18 @@ from dataclasses import replace
 import msgspec
 
 from engine.errors import SkillFailed
-from engine.nearness import near_names
-from engine.shapes import Obstacle, Solid
+from engine.messages.shapes import Obstacle, Solid
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
+from engine.suggestions import did_you_mean
 from robots.model.link_names import link_names
-from robots.model.rigid import Rigid
-from robots.planning.scene import AttachedPart, NamePair, PlanningScene, SceneArm
-from robots.workspace.claims import Row, with_claims
-from robots.workspace.held_parts import Held, HeldMemo, LetGo, LetGoMemo
-from robots.workspace.nearby import PARTED_M, TOUCHING_M, near_held, near_lying
-from robots.workspace.placed_things import PlacedThings
-from robots.workspace.seen import Look, Seen
-from robots.workspace.sound_obstacle import fault_of
+from robots.model.transform import RigidTransform
+from robots.planning.scene.planning_scene import AttachedPart, NamePair, PlanningScene, SceneArm
+from robots.workspace.grasped_parts import GraspedPart, GraspedPartMemo, ReleasedPart, ReleasedPartMemo
+from robots.workspace.measured_poses import MeasuredPoses, PoseSource
+from robots.workspace.obstacle_validation import find_obstacle_fault
+from robots.workspace.path_reservations import Row, with_reservations
+from robots.workspace.proximity import SEPARATED_M, TOUCHING_M, links_near_part, names_near_held_part
+from robots.workspace.tracked_objects import TrackedObjects
 
 OCCUPANCY = "occupancy"
 """The name of what cameras see and nobody knows."""
@@ -34,8 +34,8 @@ class SceneMemo(msgspec.Struct, frozen=True, kw_only=True):
     put: tuple[Obstacle, ...] = ()
     removed: tuple[str, ...] = ()
     rules: tuple[tuple[str, str, bool], ...] = ()
-    held: tuple[HeldMemo, ...] = ()
-    let_go: tuple[LetGoMemo, ...] = ()
+    held: tuple[GraspedPartMemo, ...] = ()
+    let_go: tuple[ReleasedPartMemo, ...] = ()
 
 
 class LiveScene:
@@ -49,16 +49,16 @@ class LiveScene:
     All methods that name something raise SkillFailed where it is not there, or may not be changed so.
     """
 
-    def __init__(self, base: PlanningScene, *, parts: Collection[str], look: Look) -> None:
+    def __init__(self, base: PlanningScene, *, parts: Collection[str], look: PoseSource) -> None:
         self._base = base
         self._parts = frozenset(parts)
         self._look = look
-        self._things = PlacedThings()
+        self._things = TrackedObjects()
         self._put: dict[str, Obstacle] = {}
         self._removed: set[str] = set()
         self._rules: dict[frozenset[str], tuple[str, str, bool]] = {}
-        self._held: dict[str, Held] = {}
-        self._let_go: dict[str, LetGo] = {}
+        self._held: dict[str, GraspedPart] = {}
+        self._let_go: dict[str, ReleasedPart] = {}
         self._claims: dict[str, tuple[Row, ...]] = {}
         self.revision = 0
 
@@ -89,7 +89,7 @@ class LiveScene:
         scene = self.whole()
         own = msgspec.structs.replace(scene.arm(arm), joints_rad=())
         scene = msgspec.structs.replace(scene, arms=tuple(own if a.name == arm else a for a in scene.arms))
-        return with_claims(scene, self._claims_before(arm))
+        return with_reservations(scene, self._claims_before(arm))
 
     def holds(self, arm: str) -> bool:
         """Return whether an arm held something when it was looked at last."""
@@ -99,7 +99,7 @@ class LiveScene:
         """Return whether something that an arm held has not yet parted from what it was taken from."""
         return any(one.part.arm == arm and one.touches for one in self._held.values())
 
-    def carry_for(self, arm: str) -> PlanningScene | None:
+    def attached_check_scene_for(self, arm: str) -> PlanningScene | None:
         """Return the scene as what `arm` holds meets it, None where it holds nothing.
 
         What the held parts lie on is not allowed in it: that is for who knows where they are to go.
@@ -136,7 +136,7 @@ class LiveScene:
     def put(self, obstacle: Obstacle) -> None:
         """Put an obstacle, or another one in the place of that of its name."""
         name = obstacle.name
-        if fault := fault_of(obstacle):
+        if fault := find_obstacle_fault(obstacle):
             raise _refused(fault, "give shapes with sizes in metres, at a pose in the world")
         if name in self._parts or name in self._held:
             raise _refused(f"{name} is a part, which is where it is measured", "give the obstacle another name")
@@ -183,8 +183,8 @@ class LiveScene:
         attached = AttachedPart(name=part, arm=arm, solids=solids, pose=at.to_pose(frame), link=link)
         self._put.pop(part, None)
         self._let_go.pop(part, None)
-        self._held[part] = Held(part=attached, link=frame, taken=at, touches=frozenset())
-        touches = near_held(self._measured(seen), part, within_m=TOUCHING_M)
+        self._held[part] = GraspedPart(part=attached, link=frame, taken=at, touches=frozenset())
+        touches = names_near_held_part(self._measured(seen), part, within_m=TOUCHING_M)
         self._held[part] = replace(self._held[part], touches=touches)
         self.revision += 1
         _log.info("%s holds %s%s", arm, part, f", which touches {', '.join(sorted(touches))}" if touches else "")
@@ -213,9 +213,10 @@ class LiveScene:
             put=tuple(self._put.values()),
             removed=tuple(sorted(self._removed)),
             rules=tuple(self._rules.values()),
-            held=tuple(HeldMemo.of(one) for one in self._held.values()),
+            held=tuple(GraspedPartMemo.of(one) for one in self._held.values()),
             let_go=tuple(
-                LetGoMemo(part=name, arm=one.arm, links=tuple(sorted(one.links))) for name, one in self._let_go.items()
+                ReleasedPartMemo(part=name, arm=one.arm, links=tuple(sorted(one.links)))
+                for name, one in self._let_go.items()
             ),
         )
 
@@ -225,11 +226,11 @@ class LiveScene:
         self._removed = set(memo.removed)
         self._rules = {frozenset(rule[:2]): rule for rule in memo.rules}
         self._held = {one.part.name: one.held() for one in memo.held}
-        self._let_go = {one.part: LetGo(arm=one.arm, links=frozenset(one.links)) for one in memo.let_go}
+        self._let_go = {one.part: ReleasedPart(arm=one.arm, links=frozenset(one.links)) for one in memo.let_go}
         self._claims.clear()
         self.revision += 1
 
-    def _followed(self, name: str, held: Held, seen: Seen) -> bool:
+    def _followed(self, name: str, held: GraspedPart, seen: MeasuredPoses) -> bool:
         """Look where a held part is in the hand; true where that, or that it is held, has changed."""
         if name not in seen.parts:
             return False
@@ -243,31 +244,31 @@ class LiveScene:
             self._held[name] = now
         return True
 
-    def _drop(self, name: str, seen: Seen) -> None:
+    def _drop(self, name: str, seen: MeasuredPoses) -> None:
         held = self._held.pop(name)
         if name not in self._parts:
-            at = seen.link(held.part.arm, held.link).then(Rigid.from_pose(held.part.pose))
+            at = seen.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
             self._put[name] = Obstacle(name=name, solids=held.part.solids, pose=at.to_pose("world"))
         self._things.take(seen)
-        links = near_lying(self._measured(seen), name, held.part.arm, within_m=PARTED_M)
+        links = links_near_part(self._measured(seen), name, held.part.arm, within_m=SEPARATED_M)
         if links:
-            self._let_go[name] = LetGo(arm=held.part.arm, links=links)
+            self._let_go[name] = ReleasedPart(arm=held.part.arm, links=links)
 
     def _part_ways(self) -> None:
         """Allow no more touching to what has parted."""
         scene = self.whole()
         for name, held in tuple(self._held.items()):
             if held.touches:
-                near = near_held(scene, name, within_m=PARTED_M, among=held.touches)
+                near = names_near_held_part(scene, name, within_m=SEPARATED_M, among=held.touches)
                 self._held[name] = replace(held, touches=held.touches & near)
         for name, gone in tuple(self._let_go.items()):
-            links = gone.links & near_lying(scene, name, gone.arm, within_m=PARTED_M)
+            links = gone.links & links_near_part(scene, name, gone.arm, within_m=SEPARATED_M)
             if links:
                 self._let_go[name] = replace(gone, links=links)
             else:
                 del self._let_go[name]
 
-    def _measured(self, seen: Seen) -> PlanningScene:
+    def _measured(self, seen: MeasuredPoses) -> PlanningScene:
         """Return the scene with the arms exactly where they are seen."""
         scene = self.whole()
         for name, arm in seen.arms.items():
@@ -315,13 +316,13 @@ class LiveScene:
                 return one.solids
         raise _unknown("part", part, [*self._parts, *self._put])
 
-    def _place_of(self, part: str, seen: Seen) -> Rigid:
+    def _place_of(self, part: str, seen: MeasuredPoses) -> RigidTransform:
         if part in seen.parts:
             return seen.parts[part]
         held = self._held.get(part)
         if held is not None:
-            return seen.link(held.part.arm, held.link).then(Rigid.from_pose(held.part.pose))
-        return Rigid.from_pose(self._put[part].pose)
+            return seen.link(held.part.arm, held.link).then(RigidTransform.from_pose(held.part.pose))
+        return RigidTransform.from_pose(self._put[part].pose)
 
     def _arm_names(self) -> frozenset[str]:
         return frozenset(arm.name for arm in self._base.arms)
@@ -343,4 +344,4 @@ def _refused(message: str, hint: str) -> SkillFailed:
 
 
 def _unknown(what: str, name: str, known: list[str]) -> SkillFailed:
-    return SkillFailed(f"there is no {what} called {name}", where="cell", hint=near_names(name, known))
+    return SkillFailed(f"there is no {what} called {name}", where="cell", hint=did_you_mean(name, known))

@@ -14,8 +14,8 @@ from engine.bus import SkillBus
 from engine.bus.topic import Topic
 from engine.clock import Clock
 from engine.errors import FlexcellError, RobotError, SkillFailed
+from engine.messages.sensing import OccupancyGrid
 from engine.robot import DeviceStatus
-from engine.sensing import OccupancyGrid
 from engine.skills.planning_scene import (
     AllowContact,
     AttachPart,
@@ -28,13 +28,13 @@ from engine.skills.planning_scene import (
     ReadPlanningScene,
     RemoveObstacle,
 )
-from robots.gripper.grip_judgement import Grip
-from robots.planning.request import LookRequest
-from robots.planning.scene import PlanningScene
-from robots.vision.source import OccupancySource
-from robots.workspace.claims import Row
+from robots.gripper.grasp_check import GraspCommand
+from robots.planning.request import CollisionRequest
+from robots.planning.scene.planning_scene import PlanningScene
+from robots.vision.occupancy_source import OccupancySource
 from robots.workspace.live_scene import OCCUPANCY, LiveScene, SceneMemo
-from robots.workspace.planners import Planners
+from robots.workspace.path_reservations import Row
+from robots.workspace.planning_services import PlanningServices
 
 LOOK_S = 0.05
 """How often the cell is looked at while somebody watches."""
@@ -43,7 +43,7 @@ _FRESH_S = 3.0
 _STARTED_S = 120.0
 """How long the cameras may take to start: on a new machine everything is compiled first."""
 
-Watcher = Callable[[frozenset[str]], None]
+ChangeListener = Callable[[frozenset[str]], None]
 _log = logging.getLogger("flexcell.workspace")
 
 
@@ -68,7 +68,12 @@ class Workspace:
     name = "cell/workspace"
 
     def __init__(
-        self, make_scene: SceneMaker, *, planners: Planners, clock: Clock, occupancy: OccupancySource | None = None
+        self,
+        make_scene: SceneMaker,
+        *,
+        planners: PlanningServices,
+        clock: Clock,
+        occupancy: OccupancySource | None = None,
     ) -> None:
         self._make_scene = make_scene
         self._live: LiveScene | None = None
@@ -79,7 +84,7 @@ class Workspace:
         self._occupancy = occupancy
         self._unsubscribe: Callable[[], None] = _nothing
         self._topic: Topic[PlanningSceneState] | None = None
-        self._watchers: list[Watcher] = []
+        self._watchers: list[ChangeListener] = []
         self._looking: asyncio.Task[None] | None = None
         self._preparing: asyncio.Task[None] | None = None
         self._told = -1
@@ -116,11 +121,11 @@ class Workspace:
         """Whether what an arm holds has not yet parted from what it was taken from; `ready` has been awaited."""
         return self._scene().lies(arm)
 
-    def carry_scene_for(self, arm: str) -> PlanningScene | None:
+    def attached_check_scene_for(self, arm: str) -> PlanningScene | None:
         """Return the scene as what `arm` holds meets it at this moment, None where it holds nothing."""
         live = self._scene()
         self._take_in(live)
-        return live.carry_for(arm)
+        return live.attached_check_scene_for(arm)
 
     async def ready(self) -> None:
         """Return when the scene is there, without holding up the loop."""
@@ -164,14 +169,14 @@ class Workspace:
                     news.clear()
         except TimeoutError:
             raise RobotError(
-                f"what the cameras see is not known: {source.stale_reason}",
+                f"the occupancy map is not valid: {source.stale_reason}",
                 where=OCCUPANCY,
                 hint="see that the cameras work, then try again",
             ) from None
         finally:
             unsubscribe()
 
-    def watch(self, watcher: Watcher) -> Callable[[], None]:
+    def watch(self, watcher: ChangeListener) -> Callable[[], None]:
         """Call `watcher` with the names of what has changed, until the returned function is called.
 
         `occupancy` stands for all that the cameras see.
@@ -200,11 +205,11 @@ class Workspace:
         if self._live is not None:
             self._topic.publish(self._live.state())
 
-    def grips(self) -> dict[str, Grip]:
+    def grips(self) -> dict[str, GraspCommand]:
         """Nothing: it has no gripper."""
         return {}
 
-    def recall(self, grips: Mapping[str, Grip]) -> None:
+    def recall(self, grips: Mapping[str, GraspCommand]) -> None:
         """Nothing is known of grippers here."""
 
     def memo(self) -> bytes:
@@ -299,7 +304,7 @@ class Workspace:
             # Who moves in it hears of the same from the planners and the port.
             _log.warning("the cell is no longer looked at: %s", error)
 
-    def _end_watch(self, watcher: Watcher) -> None:
+    def _end_watch(self, watcher: ChangeListener) -> None:
         if watcher in self._watchers:
             self._watchers.remove(watcher)
         if not self._watchers and self._looking is not None:
@@ -343,7 +348,7 @@ class Workspace:
             arm = scene.arm(request.robot)
             joints = request.joints or arm.joints_rad
             return await self.planners.look(
-                LookRequest(scene=scene, arm=arm.name, joints_rad=joints, occupancy=self.occupancy)
+                CollisionRequest(scene=scene, arm=arm.name, joints_rad=joints, occupancy=self.occupancy)
             )
         except FlexcellError as error:
             raise SkillFailed(error.message, where="cell", hint=error.hint) from error

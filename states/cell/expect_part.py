@@ -8,14 +8,14 @@ from typing import Annotated, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import FramePoses, Vector3
-from engine.nearness import near_names
 from engine.state import Context, Outcome, State, nothing_to_undo
+from engine.suggestions import did_you_mean
 from states.frames import FRAMES_TOPIC, PARTS_TOPIC, part_in_world
-from states.scene.naming import PartName
+from states.scene.scene_parameter_types import PartName
 
 Pair = tuple[float, float]
 Metres = Annotated[float, Meta(gt=0, extra_json_schema={"unit": "m"})]
@@ -74,7 +74,7 @@ class ExpectPart(State, frozen=True, kw_only=True):
         frames = await ctx.latest(FRAMES_TOPIC, FramePoses)
         if self.frame not in frames.names:
             raise StateError(
-                f"the cell shows no frame {self.frame}", where=ctx.path, hint=near_names(self.frame, frames.names)
+                f"the cell shows no frame {self.frame}", where=ctx.path, hint=did_you_mean(self.frame, frames.names)
             )
         distance_m = math.dist(xyz, frames.xyz[frames.names.index(self.frame)])
         if distance_m <= self.tolerance_m:
@@ -84,7 +84,7 @@ class ExpectPart(State, frozen=True, kw_only=True):
     def _elsewhere(self, ctx: Context, because: Cause) -> Outcome:
         place = self.frame or "its region"
         message = f"part {self.part} does not lie at {place}"
-        return Outcome("elsewhere", cause=under(message, because, where=ctx.path, kind=self.state_name))
+        return Outcome("elsewhere", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))
 
 
 def _outside(region: Region, xyz: Vector3) -> str:

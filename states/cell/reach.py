@@ -10,7 +10,7 @@ from engine.messages import Vector3
 from engine.skills import people
 from engine.skills.people import HandSpeed, StayTime
 from engine.state import Context, Outcome, State
-from states.cell.sent_hand import PersonName, Wait, sent_hand
+from states.cell.person_hand import PersonName, WaitForArrival, move_hand
 
 
 class Reach(State, frozen=True, kw_only=True):
@@ -33,10 +33,10 @@ class Reach(State, frozen=True, kw_only=True):
         StayTime | None,
         Meta(description="How long the hand stays before it goes back; for ever by default"),
     ] = None
-    wait: Wait = False
+    wait: WaitForArrival = False
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the cell, and wait for the hand where that is wanted."""
         request = people.Reach(person=self.person, hand_m=self.hand_m, speed_m_s=self.speed_m_s, stay_s=self.stay_s)
         what = f"{self.person} does not reach into the cell"
-        return await sent_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)
+        return await move_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)

@@ -7,7 +7,7 @@ from typing import ClassVar
 from engine.skills import people
 from engine.skills.people import HandSpeed
 from engine.state import Context, Outcome, State
-from states.cell.sent_hand import PersonName, Wait, sent_hand
+from states.cell.person_hand import PersonName, WaitForArrival, move_hand
 
 
 class Withdraw(State, frozen=True, kw_only=True):
@@ -19,10 +19,10 @@ class Withdraw(State, frozen=True, kw_only=True):
 
     person: PersonName
     speed_m_s: HandSpeed = 0.8
-    wait: Wait = False
+    wait: WaitForArrival = False
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the cell, and wait for the hand where that is wanted."""
         request = people.Withdraw(person=self.person, speed_m_s=self.speed_m_s)
         what = f"{self.person} does not withdraw"
-        return await sent_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)
+        return await move_hand(ctx, request, wait=self.wait, what=what, kind=self.state_name)

@@ -7,13 +7,13 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.gripper import FingerSpeed, GraspResult, GripperGrasp, Width
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.gripper.former import restore, unknown_before
-from states.gripper.naming import GripperName, gripper_address
+from states.goal_failure import goal_cause
+from states.gripper.gripper_parameter_types import GripperName, gripper_address
+from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 from states.part_label import PartLabel, part_label
 
 Force = Annotated[float, Meta(gt=0, le=1000, description="Grasp force", extra_json_schema={"unit": "N"})]
@@ -64,16 +64,16 @@ class Grasp(State, frozen=True, kw_only=True):
         if end.result.held:
             return Outcome("held", outputs)
         because = self._closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
-        return Outcome("missed", outputs, under(self._missed(), because, where=ctx.path, kind=self.state_name))
+        return Outcome("missed", outputs, wrap_cause(self._missed(), because, where=ctx.path, kind=self.state_name))
 
     def cannot_undo(self, done: ActivationRecord) -> str:
         """How the gripper was before has to be known."""
-        return unknown_before(done, GripperGrasp)
+        return gripper_undo_problem(done, GripperGrasp)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move the fingers as wide as they were before, which lets go of what was grasped."""
         address = gripper_address(self.gripper)
-        await restore(ctx, done, GripperGrasp, address=address, speed_m_s=self.speed_m_s)
+        await restore_gripper(ctx, done, GripperGrasp, address=address, speed_m_s=self.speed_m_s)
 
     def _missed(self) -> str:
         return f"{self.gripper} did not grasp {part_label(self.part)}"

@@ -6,9 +6,9 @@ from typing import ClassVar
 
 from engine.skills.gripper import FingerSpeed, GripperOpen
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.gripper.former import restore, unknown_before
-from states.gripper.naming import GripperName, gripper_address
+from states.goal_failure import goal_cause
+from states.gripper.gripper_parameter_types import GripperName, gripper_address
+from states.gripper.gripper_undo import gripper_undo_problem, restore_gripper
 from states.part_label import PartLabel
 
 
@@ -39,9 +39,9 @@ class Open(State, frozen=True, kw_only=True):
 
     def cannot_undo(self, done: ActivationRecord) -> str:
         """How the gripper was before has to be known."""
-        return unknown_before(done, GripperOpen)
+        return gripper_undo_problem(done, GripperOpen)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move the fingers as wide as they were, or to hold again what was let go of."""
         address = gripper_address(self.gripper)
-        await restore(ctx, done, GripperOpen, address=address, speed_m_s=self.speed_m_s)
+        await restore_gripper(ctx, done, GripperOpen, address=address, speed_m_s=self.speed_m_s)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.hand import ReadHand
 from engine.state import Context, Outcome, State
-from states.hand.naming import HandName, hand_address
+from states.hand.hand_parameter_types import HandName, hand_address
 from states.part_label import PartLabel, part_label
 
 
@@ -35,4 +35,4 @@ class CheckHeld(State, frozen=True, kw_only=True):
             where=f"{address}/{request.skill_name()}",
         )
         message = f"the hand of {self.hand} lost {part_label(self.part)}"
-        return Outcome("lost", cause=under(message, because, where=ctx.path, kind=self.state_name))
+        return Outcome("lost", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.hand import HandClose, HandResult
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.hand.naming import ClosingTime, HandName, Percent, hand_address
+from states.goal_failure import goal_cause
+from states.hand.hand_parameter_types import ClosingTime, HandName, Percent, hand_address
 from states.part_label import PartLabel, part_label
 
 
@@ -47,7 +47,7 @@ class Close(State, frozen=True, kw_only=True):
         if end.result.held:
             return Outcome("held", outputs)
         because = _closed_on_nothing(end.result, f"{address}/{goal.skill_name()}")
-        return Outcome("missed", outputs, under(self._missed(), because, where=ctx.path, kind=self.state_name))
+        return Outcome("missed", outputs, wrap_cause(self._missed(), because, where=ctx.path, kind=self.state_name))
 
     def _missed(self) -> str:
         return f"the hand of {self.hand} does not hold {part_label(self.part)}"

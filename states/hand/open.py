@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills.hand import HandOpen
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.hand.naming import ClosingTime, HandName, hand_address
+from states.goal_failure import goal_cause
+from states.hand.hand_parameter_types import ClosingTime, HandName, hand_address
 from states.part_label import PartLabel
 
 

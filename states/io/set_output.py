@@ -7,12 +7,12 @@ from typing import Annotated, Any, ClassVar, Literal
 from msgspec import Meta
 
 from engine.skill import Service
-from engine.skills import outputs
-from engine.skills.outputs import On, OutputNumber, SetGripper, SetLinearAxis, SetToolExchange
+from engine.skills import digital_outputs as outputs
+from engine.skills.digital_outputs import On, OutputNumber, SetGripper, SetLinearAxis, SetToolExchange
 from engine.state import Context, Outcome, State
-from states.asked import asked
+from states.call_or_fail import call_or_fail
 
-Use = Literal["tool_exchange", "gripper", "linear_axis"]
+OutputUse = Literal["tool_exchange", "gripper", "linear_axis"]
 
 
 class SetOutput(State, frozen=True, kw_only=True):
@@ -33,7 +33,7 @@ class SetOutput(State, frozen=True, kw_only=True):
     value: On
     output: Annotated[OutputNumber, Meta(extra_json_schema={"cell_name": "output", "of": "robot"})] | None = None
     device: Annotated[
-        Use | None,
+        OutputUse | None,
         Meta(
             description="What the cell says hangs on one of its outputs",
             extra_json_schema={"cell_name": "output", "of": "robot"},
@@ -52,7 +52,7 @@ class SetOutput(State, frozen=True, kw_only=True):
         """Ask the robot."""
         name = self.device or f"output {self.output}"
         what = f"{name} of {self.robot} was not turned {'on' if self.value else 'off'}"
-        return await asked(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
 
     def _request(self) -> Service[Any]:
         match self.device:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.magnet import ReadMagnet
 from engine.state import Context, Outcome, State
-from states.magnet.naming import MagnetName, magnet_address
+from states.magnet.magnet_parameter_types import MagnetName, magnet_address
 from states.part_label import PartLabel, part_label
 
 
@@ -33,4 +33,4 @@ class CheckHeld(State, frozen=True, kw_only=True):
         state = f"pulls with {measured.pull_n:.1f} N" if measured.on else "is switched off"
         because = Cause(message=f"the magnet {state}", where=f"{address}/{request.skill_name()}")
         message = f"the magnet of {self.magnet} lost {part_label(self.part)}"
-        return Outcome("lost", cause=under(message, because, where=ctx.path, kind=self.state_name))
+        return Outcome("lost", cause=wrap_cause(message, because, where=ctx.path, kind=self.state_name))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.magnet import MagnetSwitch
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.magnet.naming import MagnetName, magnet_address
+from states.goal_failure import goal_cause
+from states.magnet.magnet_parameter_types import MagnetName, magnet_address
 from states.part_label import PartLabel
 
 
@@ -41,4 +41,4 @@ class Off(State, frozen=True, kw_only=True):
         because = Cause(
             message=f"it still pulls with {end.result.pull_n:.1f} N", where=f"{address}/{goal.skill_name()}"
         )
-        return Outcome("failed", cause=under(what, because, where=ctx.path, kind=self.state_name))
+        return Outcome("failed", cause=wrap_cause(what, because, where=ctx.path, kind=self.state_name))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.skills.magnet import MagnetSwitch
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.magnet.naming import MagnetName, magnet_address
+from states.goal_failure import goal_cause
+from states.magnet.magnet_parameter_types import MagnetName, magnet_address
 from states.part_label import PartLabel, part_label
 
 
@@ -49,4 +49,4 @@ class On(State, frozen=True, kw_only=True):
             message=end.result.reason or "nothing is held and the magnet gave no reason",
             where=f"{address}/{goal.skill_name()}",
         )
-        return Outcome("missed", outputs, under(missed, because, where=ctx.path, kind=self.state_name))
+        return Outcome("missed", outputs, wrap_cause(missed, because, where=ctx.path, kind=self.state_name))

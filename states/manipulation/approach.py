@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from engine.cause import cause_of
+from engine.cause_chain import cause_of
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose, Vector3
-from engine.pose_algebra import moved
+from engine.messages.pose_algebra import translate_pose
 from engine.skills.motion import AllInverseKinematics, InverseKinematics, Speed
-from engine.skills.planning import Margin, Patience
+from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import CheckCollision, TouchingPair
 from engine.state import Context
-from states.manipulation.steps import Ended, Step, go_through
-from states.manipulation.straight import go_straight
+from states.manipulation.approach_line import move_along_line
+from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
 from states.motion.move_free import MoveFree
-from states.scene.naming import CELL
+from states.scene.scene_parameter_types import CELL
 
 _ENDS = {"no_way": "unreachable", "blocked": "blocked", "failed": "failed"}
 _TRIES = 8
@@ -42,20 +42,22 @@ class Approach:
     speed: Speed
     line_speed_m_s: float
     margin_m: Margin
-    patience_s: Patience
+    patience_s: BlockedPathTimeout
     expected: Callable[[TouchingPair], bool]
     kind: str
 
-    async def to(self, ctx: Context, poses: Sequence[Pose], *, before: Sequence[Step] = ()) -> Pose | Ended:
+    async def to(
+        self, ctx: Context, poses: Sequence[Pose], *, before: Sequence[SequenceStep] = ()
+    ) -> Pose | SequenceEnd:
         """Bring the tool to the first pose, in the world, that is reached and free; return which one.
 
         A configuration is chosen at the pose itself, and the same one in front of it: else the straight ways might
         end at a limit of a joint. `before` is gone through before the straight way.
         """
-        ended = Ended("unreachable", None)
+        ended = SequenceEnd("unreachable", None)
         for pose in poses:
             solutions = await self._solutions(ctx, pose)
-            if isinstance(solutions, Ended):
+            if isinstance(solutions, SequenceEnd):
                 ended = solutions
                 continue
             for joints in solutions:
@@ -67,25 +69,27 @@ class Approach:
                     return ended
         return ended
 
-    async def straight_to(self, ctx: Context, pose: Pose) -> Ended | None:
+    async def straight_to(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Go straight to a pose."""
-        return await go_straight(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
+        return await move_along_line(ctx, self.robot, pose, speed_m_s=self.line_speed_m_s, kind=self.kind)
 
-    async def straight_out(self, ctx: Context, pose: Pose) -> Ended | None:
+    async def straight_out(self, ctx: Context, pose: Pose) -> SequenceEnd | None:
         """Go straight back to where the arm came to `pose` from."""
-        return await self.straight_to(ctx, moved(pose, self.out_m))
+        return await self.straight_to(ctx, translate_pose(pose, self.out_m))
 
-    async def _solutions(self, ctx: Context, pose: Pose) -> Sequence[tuple[float, ...]] | Ended:
+    async def _solutions(self, ctx: Context, pose: Pose) -> Sequence[tuple[float, ...]] | SequenceEnd:
         """Return configurations at a pose, soonest reached first."""
         try:
             return (await ctx.call(AllInverseKinematics(pose=pose), to=self.robot)).solutions[:_TRIES]
         except SkillFailed as error:
-            return Ended("unreachable", cause_of(error))
+            return SequenceEnd("unreachable", cause_of(error))
 
-    async def _try(self, ctx: Context, pose: Pose, joints: tuple[float, ...], before: Sequence[Step]) -> Ended | None:
+    async def _try(
+        self, ctx: Context, pose: Pose, joints: tuple[float, ...], before: Sequence[SequenceStep]
+    ) -> SequenceEnd | None:
         """Bring the tool to a pose that it is to have with `joints`; None when it is there."""
         in_front = await self._in_front_of(ctx, pose, joints)
-        if isinstance(in_front, Ended):
+        if isinstance(in_front, SequenceEnd):
             return in_front
         move = MoveFree(
             robot=self.robot,
@@ -94,28 +98,34 @@ class Approach:
             margin_m=self.margin_m,
             patience_s=self.patience_s,
         )
-        return await go_through(ctx, [Step(move, _ENDS), *before]) or await self.straight_to(ctx, pose)
+        return await run_steps(ctx, [SequenceStep(move, _ENDS), *before]) or await self.straight_to(ctx, pose)
 
-    async def _in_front_of(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | Ended:
+    async def _in_front_of(
+        self, ctx: Context, pose: Pose, joints: tuple[float, ...]
+    ) -> tuple[float, ...] | SequenceEnd:
         report = await ctx.call(CheckCollision(robot=self.robot, joints=joints), to=CELL)
         pairs = [_in_words(pair) for pair in report.touching if not self.expected(pair)]
         if pairs:
-            return Ended("blocked", Cause(message=f"there, {', '.join(pairs)} would touch", where=self.robot))
-        in_front = await self._beside(ctx, moved(pose, self.out_m), joints)
-        onward = await self._beside(ctx, moved(pose, self.onward_m), joints) if self.onward_m != self.out_m else None
-        return onward if isinstance(onward, Ended) else in_front
+            return SequenceEnd("blocked", Cause(message=f"there, {', '.join(pairs)} would touch", where=self.robot))
+        in_front = await self._beside(ctx, translate_pose(pose, self.out_m), joints)
+        onward = (
+            await self._beside(ctx, translate_pose(pose, self.onward_m), joints)
+            if self.onward_m != self.out_m
+            else None
+        )
+        return onward if isinstance(onward, SequenceEnd) else in_front
 
-    async def _beside(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | Ended:
+    async def _beside(self, ctx: Context, pose: Pose, joints: tuple[float, ...]) -> tuple[float, ...] | SequenceEnd:
         """Return how the arm stands at the other end of a straight way, not otherwise than with `joints`."""
         try:
             found = (await ctx.call(InverseKinematics(pose=pose, seed=joints), to=self.robot)).joints
         except SkillFailed as error:
-            return Ended("unreachable", cause_of(error))
+            return SequenceEnd("unreachable", cause_of(error))
         turned = max(abs(a - b) for a, b in zip(joints, found, strict=True))
         if turned <= _SAME_RAD:
             return found
         words = f"the straight way would turn a joint by {turned:.2f} rad"
-        return Ended("unreachable", Cause(message=words, where=self.robot))
+        return SequenceEnd("unreachable", Cause(message=words, where=self.robot))
 
 
 def _in_words(pair: TouchingPair) -> str:

@@ -10,27 +10,27 @@ from msgspec import Meta
 
 from engine.event import Cause
 from engine.messages import Pose, Vector3
-from engine.pose_algebra import composed, moved, turn_between_rad
+from engine.messages.pose_algebra import angle_between_rad, compose_poses, translate_pose
 from engine.skills.arm_control import Mass
 from engine.skills.gripper import Width
 from engine.skills.motion import ForwardKinematics, Speed
-from engine.skills.planning import Margin, Patience
+from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import TouchingPair
 from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
 from states.gripper.grasp import Force, Grasp
 from states.hand.close import Close
-from states.hand.naming import Percent
+from states.hand.hand_parameter_types import Percent
 from states.magnet.on import On
 from states.manipulation.approach import Approach
-from states.manipulation.holding import ToolKind, letting_go, still_holding, tool_resource
-from states.manipulation.steps import Ended, Step, go_through
-from states.manipulation.straight import Direction, LineSpeed, Way, way_out
+from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
+from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
+from states.manipulation.tool_states import ToolKind, check_held_state, release_state, tool_resource
+from states.motion.motion_target import NO_OFFSET, PoseTarget, RobotName, resolve_pose
 from states.motion.set_load import SetLoad
-from states.motion.target import NO_OFFSET, PoseTarget, RobotName, resolve_pose
 from states.scene.attach import Attach
 from states.scene.detach import Detach
-from states.scene.naming import PartName
+from states.scene.scene_parameter_types import PartName
 
 PART = "part"
 """The frame of the part, in `grasp`."""
@@ -71,9 +71,9 @@ class PickPart(State, frozen=True, kw_only=True):
         Meta(description="Tool centre point at the part: `{xyz, xyzw, frame}` with frame `part` or another"),
     ] = FROM_ABOVE
     turns: Annotated[int, Meta(ge=1, le=8, description="In how many turns about the tool's z the grasp is as good")] = 1
-    approach: Direction = None
-    approach_m: Way = 0.1
-    lift_m: Annotated[Way, Meta(description="How far it is lifted, along the world's z")] = 0.1
+    approach: ApproachDirection = None
+    approach_m: LineLength = 0.1
+    lift_m: Annotated[LineLength, Meta(description="How far it is lifted, along the world's z")] = 0.1
     width_m: Annotated[Width | None, Meta(description="Width of the part between two fingers")] = None
     force_n: Force = 20.0
     percent: Annotated[Percent, Meta(description="How far a hand closes")] = 80.0
@@ -81,7 +81,7 @@ class PickPart(State, frozen=True, kw_only=True):
     speed: Speed = 0.3
     line_speed_m_s: LineSpeed = 0.1
     margin_m: Margin = 0.0
-    patience_s: Patience = 60.0
+    patience_s: BlockedPathTimeout = 60.0
 
     def __post_init__(self) -> None:
         if self.tool == "gripper" and self.width_m is None:
@@ -100,16 +100,16 @@ class PickPart(State, frozen=True, kw_only=True):
             return Outcome("picked")
         return ended.under(f"{self.robot} did not pick part {self.part}", where=ctx.path, kind=self.state_name)
 
-    async def _pick(self, ctx: Context) -> Ended | None:
+    async def _pick(self, ctx: Context) -> SequenceEnd | None:
         found = await self._grasps(ctx)
         if isinstance(found, Cause):
-            return Ended("missed", found)
+            return SequenceEnd("missed", found)
         frame, grasps = found
-        approach = self._approach(way_out(grasps[0], frame, self.approach, self.approach_m))
-        if ended := await go_through(ctx, [Step(letting_go(self.robot, self.tool, ""), _FAILED)]):
+        approach = self._approach(retreat_vector(grasps[0], frame, self.approach, self.approach_m))
+        if ended := await run_steps(ctx, [SequenceStep(release_state(self.robot, self.tool, ""), _FAILED)]):
             return ended
         grasp = await approach.to(ctx, grasps)
-        if isinstance(grasp, Ended):
+        if isinstance(grasp, SequenceEnd):
             return grasp
         ended = await self._close(ctx) or await self._lift(ctx, approach, grasp)
         if ended is not None and ended.outcome in _STILL_DOWN:
@@ -123,12 +123,12 @@ class PickPart(State, frozen=True, kw_only=True):
         frame = await part_in_world(ctx, self.part) if of_part else await frame_in_world(ctx, given.frame)
         if isinstance(frame, Cause):
             return frame
-        grasp = composed(frame, given)
+        grasp = compose_poses(frame, given)
         if self.turns == 1:
             return frame, [grasp]
         now = await ctx.call(ForwardKinematics(), to=self.robot)
-        turned = [composed(grasp, _turned(2 * math.pi * turn / self.turns)) for turn in range(self.turns)]
-        return frame, sorted(turned, key=lambda pose: round(turn_between_rad(pose.xyzw, now.xyzw), 6))
+        turned = [compose_poses(grasp, _turned(2 * math.pi * turn / self.turns)) for turn in range(self.turns)]
+        return frame, sorted(turned, key=lambda pose: round(angle_between_rad(pose.xyzw, now.xyzw), 6))
 
     def _approach(self, out_m: Vector3) -> Approach:
         return Approach(
@@ -146,13 +146,13 @@ class PickPart(State, frozen=True, kw_only=True):
     def _meant_to_touch(self, pair: TouchingPair) -> bool:
         return self.part in (pair.first, pair.second)
 
-    async def _close(self, ctx: Context) -> Ended | None:
+    async def _close(self, ctx: Context) -> SequenceEnd | None:
         steps = [
-            Step(self._closing(), {"missed": "missed", "failed": "failed"}),
-            Step(Attach(part=self.part, robot=self.robot), _FAILED),
+            SequenceStep(self._closing(), {"missed": "missed", "failed": "failed"}),
+            SequenceStep(Attach(part=self.part, robot=self.robot), _FAILED),
         ]
-        load = Step(SetLoad(robot=self.robot, mass_kg=self.mass_kg), _FAILED)
-        return await go_through(ctx, [*steps, load] if self.mass_kg else steps)
+        load = SequenceStep(SetLoad(robot=self.robot, mass_kg=self.mass_kg), _FAILED)
+        return await run_steps(ctx, [*steps, load] if self.mass_kg else steps)
 
     def _closing(self) -> State:
         match self.tool:
@@ -163,18 +163,18 @@ class PickPart(State, frozen=True, kw_only=True):
             case "hand":
                 return Close(hand=self.robot, part=self.part, percent=self.percent)
 
-    async def _lift(self, ctx: Context, approach: Approach, grasp: Pose) -> Ended | None:
-        held = Step(still_holding(self.robot, self.tool, self.part), {"lost": "missed"})
-        over = moved(grasp, (0.0, 0.0, self.lift_m))
-        return await approach.straight_to(ctx, over) or await go_through(ctx, [held])
+    async def _lift(self, ctx: Context, approach: Approach, grasp: Pose) -> SequenceEnd | None:
+        held = SequenceStep(check_held_state(self.robot, self.tool, self.part), {"lost": "missed"})
+        over = translate_pose(grasp, (0.0, 0.0, self.lift_m))
+        return await approach.straight_to(ctx, over) or await run_steps(ctx, [held])
 
-    async def _let_go(self, ctx: Context) -> Ended | None:
+    async def _let_go(self, ctx: Context) -> SequenceEnd | None:
         steps = [
-            Step(letting_go(self.robot, self.tool, ""), _FAILED),
-            Step(Detach(part=self.part), _FAILED),
+            SequenceStep(release_state(self.robot, self.tool, ""), _FAILED),
+            SequenceStep(Detach(part=self.part), _FAILED),
         ]
-        unload = Step(SetLoad(robot=self.robot, mass_kg=0.0), _FAILED)
-        return await go_through(ctx, [*steps, unload] if self.mass_kg else steps)
+        unload = SequenceStep(SetLoad(robot=self.robot, mass_kg=0.0), _FAILED)
+        return await run_steps(ctx, [*steps, unload] if self.mass_kg else steps)
 
 
 def _turned(angle_rad: float) -> Pose:

@@ -9,20 +9,20 @@ from msgspec import Meta
 
 from engine.event import Cause
 from engine.messages import Pose, Vector3
-from engine.pose_algebra import composed, inverse
+from engine.messages.pose_algebra import compose_poses, invert_pose
 from engine.skills.motion import ForwardKinematics, Speed
-from engine.skills.planning import Margin, Patience
+from engine.skills.planning import BlockedPathTimeout, Margin
 from engine.skills.planning_scene import CONTACT_M, TouchingPair
 from engine.state import Context, Outcome, State
 from states.frames import frame_in_world, part_in_world
 from states.manipulation.approach import Approach
-from states.manipulation.holding import ToolKind, letting_go, still_holding, tool_resource
-from states.manipulation.steps import Ended, Step, go_through
-from states.manipulation.straight import Direction, LineSpeed, Way, way_out
+from states.manipulation.approach_line import ApproachDirection, LineLength, LineSpeed, retreat_vector
+from states.manipulation.step_sequence import SequenceEnd, SequenceStep, run_steps
+from states.manipulation.tool_states import ToolKind, check_held_state, release_state, tool_resource
+from states.motion.motion_target import NO_OFFSET, RobotName, ShownPoseTarget, resolve_pose
 from states.motion.set_load import SetLoad
-from states.motion.target import NO_OFFSET, RobotName, ShownPoseTarget, resolve_pose
 from states.scene.detach import Detach
-from states.scene.naming import PartName
+from states.scene.scene_parameter_types import PartName
 
 _FAILED = {"failed": "failed"}
 
@@ -49,12 +49,12 @@ class PlacePart(State, frozen=True, kw_only=True):
         Literal["tool", "part"], Meta(description="What comes to stand at `target`: tool centre point or part")
     ] = "tool"
     tool: ToolKind = "gripper"
-    approach: Direction = None
-    approach_m: Way = 0.1
+    approach: ApproachDirection = None
+    approach_m: LineLength = 0.1
     speed: Speed = 0.3
     line_speed_m_s: LineSpeed = 0.1
     margin_m: Margin = 0.0
-    patience_s: Patience = 60.0
+    patience_s: BlockedPathTimeout = 60.0
 
     def __post_init__(self) -> None:
         if self.approach is not None and not any(self.approach):
@@ -71,32 +71,32 @@ class PlacePart(State, frozen=True, kw_only=True):
             return Outcome("placed")
         return ended.under(f"{self.robot} did not place part {self.part}", where=ctx.path, kind=self.state_name)
 
-    async def _place(self, ctx: Context) -> Ended | None:
-        held = [Step(still_holding(self.robot, self.tool, self.part), {"lost": "missed"})]
-        if ended := await go_through(ctx, held):
+    async def _place(self, ctx: Context) -> SequenceEnd | None:
+        held = [SequenceStep(check_held_state(self.robot, self.tool, self.part), {"lost": "missed"})]
+        if ended := await run_steps(ctx, held):
             return ended
         target = await self._tool_place(ctx)
         if isinstance(target, Cause):
-            return Ended("missed", target)
+            return SequenceEnd("missed", target)
         frame, place = target
-        approach = self._approach(way_out(place, frame, self.approach, self.approach_m))
+        approach = self._approach(retreat_vector(place, frame, self.approach, self.approach_m))
         found = await approach.to(ctx, [place], before=held)
-        if isinstance(found, Ended):
+        if isinstance(found, SequenceEnd):
             return found
-        return await go_through(ctx, self._letting_go()) or await approach.straight_out(ctx, place)
+        return await run_steps(ctx, self._letting_go()) or await approach.straight_out(ctx, place)
 
     async def _tool_place(self, ctx: Context) -> tuple[Pose, Pose] | Cause:
         """Return the frame that the target is given in, and the pose of the tool there, both in the world."""
         given = await resolve_pose(ctx, self.target, NO_OFFSET)
         frame = await frame_in_world(ctx, given.frame)
-        target = composed(frame, given)
+        target = compose_poses(frame, given)
         if self.target_of == "tool":
             return frame, target
         part = await part_in_world(ctx, self.part)
         if isinstance(part, Cause):
             return part
         tool = await ctx.call(ForwardKinematics(), to=self.robot)
-        return frame, composed(target, composed(inverse(part), tool))
+        return frame, compose_poses(target, compose_poses(invert_pose(part), tool))
 
     def _approach(self, out_m: Vector3) -> Approach:
         return Approach(
@@ -116,9 +116,9 @@ class PlacePart(State, frozen=True, kw_only=True):
         other = pair.second if pair.first == self.part else pair.first
         return self.part in (pair.first, pair.second) and "/" not in other and pair.depth_m <= CONTACT_M
 
-    def _letting_go(self) -> list[Step]:
+    def _letting_go(self) -> list[SequenceStep]:
         return [
-            Step(letting_go(self.robot, self.tool, self.part), _FAILED),
-            Step(Detach(part=self.part), _FAILED),
-            Step(SetLoad(robot=self.robot, mass_kg=0.0), _FAILED),
+            SequenceStep(release_state(self.robot, self.tool, self.part), _FAILED),
+            SequenceStep(Detach(part=self.part), _FAILED),
+            SequenceStep(SetLoad(robot=self.robot, mass_kg=0.0), _FAILED),
         ]

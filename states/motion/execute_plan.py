@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from engine.skills import planning
-from engine.skills.planning import KeepOrientation, Margin, Patience, PlannedMotion, PlannerName, PlanningTime
+from engine.skills.planning import BlockedPathTimeout, KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.free_end import reason_of, stayed_blocked
-from states.motion.free_target import Watch
-from states.motion.target import RobotName
+from states.goal_failure import goal_cause
+from states.motion.motion_target import RobotName
+from states.motion.planned_motion_result import inner_cause_text, is_blocked_timeout
+from states.motion.planned_motion_target import WatchPath
 
 
 class ExecutePlan(State, frozen=True, kw_only=True):
@@ -28,8 +28,8 @@ class ExecutePlan(State, frozen=True, kw_only=True):
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"reached": ("reason",)}
 
     robot: RobotName
-    patience_s: Patience = 60.0
-    watch: Watch = True
+    patience_s: BlockedPathTimeout = 60.0
+    watch: WatchPath = True
     planner: PlannerName = "fast"
     time_s: PlanningTime = 1.0
     margin_m: Margin = 0.0
@@ -55,4 +55,4 @@ class ExecutePlan(State, frozen=True, kw_only=True):
             return Outcome("reached")
         what = f"{self.robot} did not go its planned way to the end"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
-        return Outcome("blocked" if stayed_blocked(end) else "failed", {"reason": reason_of(cause)}, cause)
+        return Outcome("blocked" if is_blocked_timeout(end) else "failed", {"reason": inner_cause_text(cause)}, cause)

@@ -7,14 +7,14 @@ from typing import Annotated, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.skills.dmp import JointDMP, LearnJointDmp
 from engine.skills.motion import JointTrapVel
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
+from states.goal_failure import goal_cause
+from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, RecordingEntry, TimeScale
-from states.motion.target import RobotName
 
 
 class FollowRecording(State, frozen=True, kw_only=True):
@@ -43,7 +43,7 @@ class FollowRecording(State, frozen=True, kw_only=True):
             learned = await ctx.call(LearnJointDmp(entry=name), to=self.robot)
         except SkillFailed as error:
             what = f"no movement primitive was learned from trajectory entry {name}"
-            return Outcome("failed", cause=under(what, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("failed", cause=wrap_cause(what, cause_of(error), where=ctx.path, kind=self.state_name))
         dmp = msgspec.structs.replace(learned.dmp, tau=learned.dmp.tau * self.time_scale)
         goals: list[tuple[str, JointTrapVel | JointDMP]] = [
             (f"{self.robot} did not follow trajectory entry {name} to its end", JointDMP(dmp=dmp))

@@ -7,10 +7,10 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.skills.guiding import GuideArm, LongestGuide, Looseness, Period
+from engine.skills.guiding import DampingShare, GuideArm, GuideDuration, SamplePeriod
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.target import RobotName
+from states.goal_failure import goal_cause
+from states.motion.motion_target import RobotName
 
 
 class Guide(State, frozen=True, kw_only=True):
@@ -27,7 +27,7 @@ class Guide(State, frozen=True, kw_only=True):
     unwritten: ClassVar[Mapping[str, tuple[str, ...]]] = {"failed": ("samples",)}
 
     robot: RobotName
-    duration_s: LongestGuide | None = None
+    duration_s: GuideDuration | None = None
     record: Annotated[
         str,
         Meta(
@@ -35,8 +35,8 @@ class Guide(State, frozen=True, kw_only=True):
             extra_json_schema={"new_entry": "trajectory"},
         ),
     ] = ""
-    sample_s: Period = 0.01
-    damping: Looseness = 0.1
+    sample_s: SamplePeriod = 0.01
+    damping: DampingShare = 0.1
 
     def resources(self) -> tuple[str, ...]:
         """The arm."""

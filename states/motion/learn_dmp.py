@@ -8,12 +8,12 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.skills import dmp
 from engine.skills.entries import WriteEntry
 from engine.state import Context, Outcome, State
-from states.motion.target import RobotName
+from states.motion.motion_target import RobotName
 
 Recording = Annotated[
     str,
@@ -55,7 +55,7 @@ class LearnJointDmp(State, frozen=True, kw_only=True):
             learned = await ctx.call(dmp.LearnJointDmp(entry=self.recording, N=self.kernels), to=self.robot)
         except SkillFailed as error:
             message = f"no movement primitive was learned from trajectory entry {self.recording}"
-            return Outcome("failed", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("failed", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         value = msgspec.to_builtins(learned.dmp)
         await ctx.call(WriteEntry(kind="dmp", name=self.save_as, value=value), to="store")
         return Outcome("learned", {"rms_rad": learned.fit.rms_rad, "max_rad": learned.fit.max_rad})
@@ -91,7 +91,7 @@ class LearnCartDmp(State, frozen=True, kw_only=True):
             learned = await ctx.call(dmp.LearnCartDmp(entry=self.recording, N=self.kernels), to=self.robot)
         except SkillFailed as error:
             message = f"no movement primitive was learned from trajectory entry {self.recording}"
-            return Outcome("failed", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("failed", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         value = msgspec.to_builtins(learned.dmp)
         await ctx.call(WriteEntry(kind="cart_dmp", name=self.save_as, value=value), to="store")
         return Outcome("learned", {"max_m": learned.fit.max_m, "max_rad": learned.fit.max_rad})

@@ -7,28 +7,28 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.arm_target import ArmTarget, StoredTargets
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.skills import planning
+from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import PoseMatch, Speed
-from engine.skills.planning import KeepOrientation, Margin, MotionTarget, Patience, PlannerName, PlanningTime
+from engine.skills.planning import BlockedPathTimeout, KeepOrientation, Margin, MotionTarget, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.foreseen import foreseen_joints, foreseen_pose
-from states.motion.free_end import reason_of, stayed_blocked
-from states.motion.free_target import (
+from states.goal_failure import goal_cause
+from states.motion.motion_target import NO_OFFSET, Offset, RetractDistance, RobotName
+from states.motion.planned_motion_result import inner_cause_text, is_blocked_timeout
+from states.motion.planned_motion_target import (
     GoalJoints,
     GoalPose,
     Seed,
-    Watch,
-    before_target,
-    free_label,
+    WatchPath,
     require_one,
-    resolve_free,
+    resolve_target,
+    retracted_target,
+    target_label,
 )
 from states.motion.primitive import MotionStart, resolve_start
-from states.motion.target import NO_OFFSET, Back, Offset, RobotName
+from states.motion.static_target import static_joint_target, static_pose_target
 
 Start = Annotated[
     MotionStart | None,
@@ -56,11 +56,11 @@ class MoveFree(State, frozen=True, kw_only=True):
     pose: GoalPose = None
     start_of: Start = None
     offset_m: Offset = NO_OFFSET
-    back_m: Back = 0.0
+    back_m: RetractDistance = 0.0
     match: PoseMatch = "pose"
     speed: Speed = 0.3
-    patience_s: Patience = 60.0
-    watch: Watch = True
+    patience_s: BlockedPathTimeout = 60.0
+    watch: WatchPath = True
     planner: PlannerName = "fast"
     time_s: PlanningTime = 1.0
     margin_m: Margin = 0.0
@@ -80,8 +80,8 @@ class MoveFree(State, frozen=True, kw_only=True):
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
         """The target, but where it lies in front of joints."""
         if self.joints is not None:
-            return () if self.back_m else foreseen_joints(self.robot, self.joints, stored, parameter="joints")
-        return foreseen_pose(
+            return () if self.back_m else static_joint_target(self.robot, self.joints, stored, parameter="joints")
+        return static_pose_target(
             self.robot,
             self.pose,
             stored,
@@ -104,26 +104,26 @@ class MoveFree(State, frozen=True, kw_only=True):
         try:
             target = await self._target(ctx)
         except SkillFailed as error:
-            cause = under(self._missed(), cause_of(error), where=ctx.path, kind=self.state_name)
-            return Outcome("no_way", {"reason": reason_of(cause)}, cause)
+            cause = wrap_cause(self._missed(), cause_of(error), where=ctx.path, kind=self.state_name)
+            return Outcome("no_way", {"reason": inner_cause_text(cause)}, cause)
         adaptation = planning.Adaptation(watch=self.watch, patience_s=self.patience_s)
         goal = planning.MoveFree(target=target, options=options, adaptation=adaptation)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded":
             return Outcome("reached")
         cause = goal_cause(self._missed(), goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
-        name = "no_way" if end.status == "rejected" else "blocked" if stayed_blocked(end) else "failed"
-        return Outcome(name, {"reason": reason_of(cause)}, cause)
+        name = "no_way" if end.status == "rejected" else "blocked" if is_blocked_timeout(end) else "failed"
+        return Outcome(name, {"reason": inner_cause_text(cause)}, cause)
 
     async def _target(self, ctx: Context) -> MotionTarget:
         if self.start_of is not None:
             target = await resolve_start(ctx, self.start_of)
         else:
-            target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
-        return await before_target(ctx, self.robot, target, self.back_m) if self.back_m else target
+            target = await resolve_target(ctx, self.joints, self.pose, self.offset_m, self.match)
+        return await retracted_target(ctx, self.robot, target, self.back_m) if self.back_m else target
 
     def _missed(self) -> str:
         start = self.start_of
-        where = start.label if start is not None else free_label(self.joints, self.pose, self.offset_m)
+        where = start.label if start is not None else target_label(self.joints, self.pose, self.offset_m)
         back = f"{self.back_m:.3g} m before " if self.back_m else ""
         return f"{self.robot} did not reach {back}{where}"

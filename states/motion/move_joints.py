@@ -6,13 +6,13 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.arm_target import ArmTarget, StoredTargets
+from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import JointTrapVel, Speed
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.foreseen import foreseen_joints
-from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
-from states.motion.way_back import move_joints_back, unknown_way_back
+from states.goal_failure import goal_cause
+from states.motion.motion_target import JointTarget, RobotName, joints_label, resolve_joints
+from states.motion.motion_undo import motion_undo_problem, move_joints_back
+from states.motion.static_target import static_joint_target
 
 
 class MoveJoints(State, frozen=True, kw_only=True):
@@ -32,7 +32,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
         """The joints."""
-        return foreseen_joints(self.robot, self.target, stored, parameter="target")
+        return static_joint_target(self.robot, self.target, stored, parameter="target")
 
     async def run(self, ctx: Context) -> Outcome:
         """Send the goal and judge its end."""
@@ -46,7 +46,7 @@ class MoveJoints(State, frozen=True, kw_only=True):
 
     def cannot_undo(self, done: ActivationRecord) -> str:
         """Where the motion began has to be known."""
-        return unknown_way_back(done, JointTrapVel)
+        return motion_undo_problem(done, JointTrapVel)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move back to the joints at which the motion began, at the same speed."""

@@ -6,29 +6,29 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.arm_target import ArmTarget, StoredTargets
 from engine.errors import StateError
 from engine.messages import Pose
+from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import CartLinTask, CartMotionResult, ForwardKinematics
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.foreseen import foreseen_joints, foreseen_pose
-from states.motion.line_time import SHORTEST_S, line_duration_s
-from states.motion.target import (
+from states.goal_failure import goal_cause
+from states.motion.line_duration import SHORTEST_S, line_duration_s
+from states.motion.motion_target import (
     NO_OFFSET,
-    Back,
     JointTarget,
     Offset,
     PoseTarget,
+    RetractDistance,
     RobotName,
-    before,
     joints_label,
+    offset_pose,
     pose_label,
     resolve_joints,
     resolve_pose,
-    shifted,
+    retracted_pose,
 )
-from states.motion.way_back import MotionResult, go_back, motions, unknown_way_back
+from states.motion.motion_undo import MotionResult, finished_motions, motion_undo_problem, perform_undo_motion
+from states.motion.static_target import static_joint_target, static_pose_target
 
 
 class MoveLinear(State, frozen=True, kw_only=True):
@@ -46,10 +46,11 @@ class MoveLinear(State, frozen=True, kw_only=True):
     target: Annotated[PoseTarget | None, Meta(description="`{xyz, xyzw, frame}`, or `{entry: name}`")] = None
     joints: Annotated[JointTarget | None, Meta(description="Joint angles in radians, or `{entry: name}`")] = None
     offset_m: Offset = NO_OFFSET
-    back_m: Back = 0.0
+    back_m: RetractDistance = 0.0
     duration_s: Annotated[float, Meta(gt=0, description="Travel time", extra_json_schema={"unit": "s"})] | None = None
     speed_m_s: (
-        Annotated[float, Meta(gt=0, description="Greatest speed on the way", extra_json_schema={"unit": "m/s"})] | None
+        Annotated[float, Meta(gt=0, description="Maximum speed along the line", extra_json_schema={"unit": "m/s"})]
+        | None
     ) = None
 
     def __post_init__(self) -> None:
@@ -67,8 +68,8 @@ class MoveLinear(State, frozen=True, kw_only=True):
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
         """The end of the line, where it does not go from joints, or from where the arm is."""
         if self.joints is not None and self.offset_m == NO_OFFSET and not self.back_m:
-            return foreseen_joints(self.robot, self.joints, stored, parameter="joints")
-        return foreseen_pose(
+            return static_joint_target(self.robot, self.joints, stored, parameter="joints")
+        return static_pose_target(
             self.robot, self.target, stored, parameter="target", offset_m=self.offset_m, back_m=self.back_m
         )
 
@@ -84,13 +85,15 @@ class MoveLinear(State, frozen=True, kw_only=True):
 
     def cannot_undo(self, done: ActivationRecord) -> str:
         """Where the line began has to be known."""
-        return unknown_way_back(done, CartLinTask)
+        return motion_undo_problem(done, CartLinTask)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move back on a straight line to where the motion began, in as much time."""
-        for motion in motions(done, CartLinTask):
+        for motion in finished_motions(done, CartLinTask):
             pose = await ctx.call(ForwardKinematics(joints=motion.start), to=self.robot)
-            await go_back(ctx, CartLinTask(pose=pose, duration_s=self._time_back_s(motion, pose)), robot=self.robot)
+            await perform_undo_motion(
+                ctx, CartLinTask(pose=pose, duration_s=self._time_back_s(motion, pose)), robot=self.robot
+            )
 
     def _time_back_s(self, motion: MotionResult, pose: Pose) -> float:
         """Return the time that the line took, or was given; a pause in it does not count."""
@@ -105,7 +108,7 @@ class MoveLinear(State, frozen=True, kw_only=True):
 
     async def _goal(self, ctx: Context) -> CartLinTask:
         if self.target is not None and self.duration_s is not None:
-            pose = before(await resolve_pose(ctx, self.target, self.offset_m), self.back_m)
+            pose = retracted_pose(await resolve_pose(ctx, self.target, self.offset_m), self.back_m)
             return CartLinTask(pose=pose, duration_s=self.duration_s)
         start = await ctx.call(ForwardKinematics(), to=self.robot)
         if self.target is not None:
@@ -114,8 +117,8 @@ class MoveLinear(State, frozen=True, kw_only=True):
             there = start
             if self.joints is not None:
                 there = await ctx.call(ForwardKinematics(joints=await resolve_joints(ctx, self.joints)), to=self.robot)
-            pose = shifted(there, self.offset_m, where=ctx.path)
-        pose = before(pose, self.back_m)
+            pose = offset_pose(there, self.offset_m, where=ctx.path)
+        pose = retracted_pose(pose, self.back_m)
         return CartLinTask(pose=pose, duration_s=self.duration_s or self._travel_time_s(start, pose, ctx.path))
 
     def _travel_time_s(self, start: Pose, end: Pose, where: str) -> float:

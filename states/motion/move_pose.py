@@ -6,13 +6,13 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.arm_target import ArmTarget, StoredTargets
+from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import CartTrapVel, PoseMatch, Speed
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.foreseen import foreseen_pose
-from states.motion.target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
-from states.motion.way_back import move_joints_back, unknown_way_back
+from states.goal_failure import goal_cause
+from states.motion.motion_target import NO_OFFSET, Offset, PoseTarget, RobotName, pose_label, resolve_pose
+from states.motion.motion_undo import motion_undo_problem, move_joints_back
+from states.motion.static_target import static_pose_target
 
 
 class MovePose(State, frozen=True, kw_only=True):
@@ -38,7 +38,7 @@ class MovePose(State, frozen=True, kw_only=True):
 
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
         """The pose."""
-        return foreseen_pose(
+        return static_pose_target(
             self.robot, self.target, stored, parameter="target", offset_m=self.offset_m, match=self.match
         )
 
@@ -55,7 +55,7 @@ class MovePose(State, frozen=True, kw_only=True):
 
     def cannot_undo(self, done: ActivationRecord) -> str:
         """Where the motion began has to be known."""
-        return unknown_way_back(done, CartTrapVel)
+        return motion_undo_problem(done, CartTrapVel)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Move back to the joints at which the motion began, at the same speed."""

@@ -7,15 +7,15 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause import under
+from engine.cause_chain import wrap_cause
 from engine.event import Cause
 from engine.messages import Vector3
 from engine.skills import contact
-from engine.skills.contact import Approach, ContactForce, Way
-from engine.skills.direction import Axes
+from engine.skills.axes import Axes
+from engine.skills.contact import ApproachSpeed, ContactForce, MaxDistance
 from engine.state import Context, Outcome, State
-from states.failed_goal import goal_cause
-from states.motion.target import RobotName
+from states.goal_failure import goal_cause
+from states.motion.motion_target import RobotName
 
 
 class MoveUntilContact(State, frozen=True, kw_only=True):
@@ -32,9 +32,9 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
 
     robot: RobotName
     direction: Annotated[Vector3, Meta(description="Which way; `[0, 0, -1]` is down in the world")]
-    distance_m: Way
+    distance_m: MaxDistance
     frame: Axes = "world"
-    speed_m_s: Approach = 0.02
+    speed_m_s: ApproachSpeed = 0.02
     force_n: ContactForce = 10.0
 
     def resources(self) -> tuple[str, ...]:
@@ -62,4 +62,4 @@ class MoveUntilContact(State, frozen=True, kw_only=True):
             message=f"the force against the way was {end.result.force_n:.1f} N at its end, {self.force_n:.1f} N count",
             where=f"{self.robot}/{goal.skill_name()}",
         )
-        return Outcome("no_contact", outputs, under(what, because, where=ctx.path, kind=self.state_name))
+        return Outcome("no_contact", outputs, wrap_cause(what, because, where=ctx.path, kind=self.state_name))

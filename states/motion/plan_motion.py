@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from engine.arm_target import ArmTarget, StoredTargets
 from engine.skills import planning
+from engine.skills.arm_target import ArmTarget, StoredTargets
 from engine.skills.motion import PoseMatch, Speed
 from engine.skills.planning import KeepOrientation, Margin, PlannedMotion, PlannerName, PlanningTime
 from engine.state import Context, Outcome, State, nothing_to_undo
-from states.failed_goal import goal_cause
-from states.motion.foreseen import foreseen_joints, foreseen_pose
-from states.motion.free_end import reason_of
-from states.motion.free_target import GoalJoints, GoalPose, Seed, free_label, require_one, resolve_free
-from states.motion.target import NO_OFFSET, Offset, RobotName
+from states.goal_failure import goal_cause
+from states.motion.motion_target import NO_OFFSET, Offset, RobotName
+from states.motion.planned_motion_result import inner_cause_text
+from states.motion.planned_motion_target import GoalJoints, GoalPose, Seed, require_one, resolve_target, target_label
+from states.motion.static_target import static_joint_target, static_pose_target
 
 _REFUSED = ("GoalRejected", "SkillFailed")
 """The planner's answer; everything else is that it could not be asked."""
@@ -56,8 +56,10 @@ class PlanMotion(State, frozen=True, kw_only=True):
     def arm_targets(self, stored: StoredTargets) -> tuple[ArmTarget, ...]:
         """The target."""
         if self.joints is not None:
-            return foreseen_joints(self.robot, self.joints, stored, parameter="joints")
-        return foreseen_pose(self.robot, self.pose, stored, parameter="pose", offset_m=self.offset_m, match=self.match)
+            return static_joint_target(self.robot, self.joints, stored, parameter="joints")
+        return static_pose_target(
+            self.robot, self.pose, stored, parameter="pose", offset_m=self.offset_m, match=self.match
+        )
 
     async def run(self, ctx: Context) -> Outcome:
         """Ask the planner and judge its answer."""
@@ -69,12 +71,12 @@ class PlanMotion(State, frozen=True, kw_only=True):
             keep_orientation=self.keep_orientation,
             speed=self.speed,
         )
-        target = await resolve_free(ctx, self.joints, self.pose, self.offset_m, self.match)
+        target = await resolve_target(ctx, self.joints, self.pose, self.offset_m, self.match)
         goal = planning.PlanMotion(target=target, options=options)
         end = await ctx.perform(goal, to=self.robot)
         if end.status == "succeeded" and end.result is not None:
             return Outcome("planned", {"plan": end.result})
-        what = f"no way of {self.robot} to {free_label(self.joints, self.pose, self.offset_m)} was planned"
+        what = f"no way of {self.robot} to {target_label(self.joints, self.pose, self.offset_m)} was planned"
         cause = goal_cause(what, goal, end, to=self.robot, where=ctx.path, kind=self.state_name)
         refused = end.cause is not None and end.cause.kind in _REFUSED
-        return Outcome("no_way" if refused else "failed", {"reason": reason_of(cause)}, cause)
+        return Outcome("no_way" if refused else "failed", {"reason": inner_cause_text(cause)}, cause)

@@ -10,15 +10,15 @@ from msgspec import Meta
 
 from engine.errors import EntryNotFound
 from engine.messages import Vector3
-from engine.primitive import CartOffsets, ForceReference
+from engine.messages.primitives import CartOffsets, ForceReference
 from engine.skills.dmp import CartAdmitDMP, Compliance
 from engine.skills.entries import ReadEntry, WriteEntry
 from engine.skills.motion import CartTrapVel
 from engine.state import Context, Outcome, State
-from engine.store.kinds import read_as
-from states.failed_goal import goal_cause
+from engine.store.entry_kinds import decode_entry
+from states.goal_failure import goal_cause
+from states.motion.motion_target import RobotName
 from states.motion.primitive import ApproachSpeed, CartDmpEntry, TimeScale, resolve_cart_dmp
-from states.motion.target import RobotName
 
 _KIND = "cart_offsets"
 
@@ -91,7 +91,7 @@ class PressAlongDmp(State, frozen=True, kw_only=True):
         if not self.learned:
             return None
         try:
-            return read_as(await ctx.call(ReadEntry(kind=_KIND, name=self.learned), to="store"), CartOffsets)
+            return decode_entry(await ctx.call(ReadEntry(kind=_KIND, name=self.learned), to="store"), CartOffsets)
         except EntryNotFound:
             # Nothing is learned before the first pass.
             return None

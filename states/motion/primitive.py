@@ -7,14 +7,14 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from engine.demonstration import Trajectory
 from engine.messages import Pose
-from engine.primitive import CartDmp, JointDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, JointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import Speed
 from engine.skills.planning import MotionTarget
 from engine.state import Context
-from engine.store.kinds import read_as
+from engine.store.entry_kinds import decode_entry
 
 TimeScale = Annotated[
     float, Meta(gt=0, le=100, description="How many times the primitive's own duration tau the motion takes")
@@ -80,7 +80,7 @@ async def resolve_start(ctx: Context, start: MotionStart) -> MotionTarget:
             pose=(await resolve_cart_dmp(ctx, CartDmpEntry(entry=start.cart_dmp), time_scale=1.0)).start
         )
     record = await ctx.call(ReadEntry(kind="trajectory", name=start.trajectory), to="store")
-    led = read_as(record, Trajectory)
+    led = decode_entry(record, Trajectory)
     if led.joints:
         return MotionTarget(joints=led.joints[0])
     x, y, z, *turn = led.poses[0]
@@ -94,7 +94,7 @@ async def resolve_joint_dmp(ctx: Context, dmp: JointDmpEntry, *, time_scale: flo
     Raises:
         EntryNotFound: the store has no such entry.
     """
-    found = read_as(await ctx.call(ReadEntry(kind="dmp", name=dmp.entry), to="store"), JointDmp)
+    found = decode_entry(await ctx.call(ReadEntry(kind="dmp", name=dmp.entry), to="store"), JointDmp)
     return msgspec.structs.replace(found, tau=found.tau * time_scale)
 
 
@@ -104,5 +104,5 @@ async def resolve_cart_dmp(ctx: Context, dmp: CartDmpEntry, *, time_scale: float
     Raises:
         EntryNotFound: the store has no such entry.
     """
-    found = read_as(await ctx.call(ReadEntry(kind="cart_dmp", name=dmp.entry), to="store"), CartDmp)
+    found = decode_entry(await ctx.call(ReadEntry(kind="cart_dmp", name=dmp.entry), to="store"), CartDmp)
     return msgspec.structs.replace(found, tau=found.tau * time_scale)

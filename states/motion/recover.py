@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills.arm_control import RecoverFromError
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 
 class Recover(State, frozen=True, kw_only=True):
@@ -26,4 +26,6 @@ class Recover(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         """Ask the arm."""
         what = f"{self.robot} did not recover"
-        return await asked(ctx, RecoverFromError(), to=self.robot, done="recovered", what=what, kind=self.state_name)
+        return await call_or_fail(
+            ctx, RecoverFromError(), to=self.robot, done="recovered", what=what, kind=self.state_name
+        )

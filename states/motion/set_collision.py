@@ -8,8 +8,8 @@ from msgspec import Meta
 
 from engine.skills.arm_control import JointRow, SetCollisionBehavior
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 Force = Annotated[float, Meta(gt=0, description="External force at the tool", extra_json_schema={"unit": "N"})]
 
@@ -33,4 +33,4 @@ class SetCollision(State, frozen=True, kw_only=True):
         """Ask the arm."""
         request = SetCollisionBehavior(torque_nm=self.torque_nm, force_n=self.force_n)
         what = f"{self.robot} did not take other collision thresholds"
-        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

@@ -9,8 +9,8 @@ from msgspec import Meta
 from engine.skills import arm_control
 from engine.skills.arm_control import ControllerName
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 
 class SetController(State, frozen=True, kw_only=True):
@@ -31,4 +31,4 @@ class SetController(State, frozen=True, kw_only=True):
         """Ask the arm."""
         request = arm_control.SetController(controller=self.controller)
         what = f"{self.robot} is not held by {self.controller.replace('_', ' ')}"
-        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

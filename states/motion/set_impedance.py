@@ -16,8 +16,8 @@ from engine.skills.arm_control import (
     Six,
 )
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 
 class SetImpedance(State, frozen=True, kw_only=True):
@@ -46,7 +46,7 @@ class SetImpedance(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         """Ask the arm."""
         what = f"{self.robot} did not take another stiffness"
-        return await asked(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, self._request(), to=self.robot, done="set", what=what, kind=self.state_name)
 
     def _request(self) -> Service[ControlSettings]:
         if self.tool is not None:

@@ -10,8 +10,8 @@ from engine.messages import Vector3
 from engine.skills import arm_control
 from engine.skills.arm_control import Mass
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 
 class SetLoad(State, frozen=True, kw_only=True):
@@ -35,4 +35,4 @@ class SetLoad(State, frozen=True, kw_only=True):
         """Ask the arm."""
         request = arm_control.SetLoad(mass_kg=self.mass_kg, com_m=self.com_m)
         what = f"{self.robot} does not compensate a load of {self.mass_kg:.2f} kg"
-        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

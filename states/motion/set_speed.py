@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills.arm_control import SetSpeedOverride, Share
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
 
 
 class SetSpeed(State, frozen=True, kw_only=True):
@@ -24,4 +24,4 @@ class SetSpeed(State, frozen=True, kw_only=True):
         """Ask the arm; it needs not be held by this branch."""
         request = SetSpeedOverride(share=self.share)
         what = f"{self.robot} does not run at {self.share:.0%} of its speed"
-        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

@@ -6,12 +6,12 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from engine.arm_target import StoredTargets, ToolChange
 from engine.messages import Quaternion, Vector3
 from engine.skills.arm_control import SetEndEffectorFrame
+from engine.skills.arm_target import StoredTargets, ToolChange
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.motion.target import NO_OFFSET, RobotName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import NO_OFFSET, RobotName
 
 
 class SetToolFrame(State, frozen=True, kw_only=True):
@@ -37,4 +37,4 @@ class SetToolFrame(State, frozen=True, kw_only=True):
         """Ask the arm."""
         request = SetEndEffectorFrame(xyz_m=self.xyz_m, xyzw=self.xyzw)
         what = f"{self.robot} did not take another tool centre point"
-        return await asked(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=self.robot, done="set", what=what, kind=self.state_name)

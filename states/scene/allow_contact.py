@@ -8,8 +8,8 @@ from msgspec import Meta
 
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.scene.naming import CELL, TouchingName
+from states.call_or_fail import call_or_fail
+from states.scene.scene_parameter_types import CELL, TouchingName
 
 
 class AllowContact(State, frozen=True, kw_only=True):
@@ -27,4 +27,4 @@ class AllowContact(State, frozen=True, kw_only=True):
         """Ask the cell."""
         request = planning_scene.AllowContact(first=self.first, second=self.second, allowed=self.allowed)
         what = f"whether {self.first} and {self.second} may touch was not changed"
-        return await asked(ctx, request, to=CELL, done="set", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=CELL, done="set", what=what, kind=self.state_name)

@@ -8,9 +8,9 @@ from msgspec import Meta
 
 from engine.skills.planning_scene import AttachPart, DetachPart
 from engine.state import ActivationRecord, Context, Outcome, State
-from states.asked import asked
-from states.motion.target import RobotName
-from states.scene.naming import CELL, CarriedName
+from states.call_or_fail import call_or_fail
+from states.motion.motion_target import RobotName
+from states.scene.scene_parameter_types import CELL, CarriedName
 
 
 class Attach(State, frozen=True, kw_only=True):
@@ -37,7 +37,7 @@ class Attach(State, frozen=True, kw_only=True):
         """Ask the cell."""
         request = AttachPart(part=self.part, robot=self.robot, link=self.link)
         what = f"part {self.part} was not attached to {self.robot}"
-        return await asked(ctx, request, to=CELL, done="attached", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=CELL, done="attached", what=what, kind=self.state_name)
 
     async def undo(self, ctx: Context, done: ActivationRecord) -> None:
         """Let the part stay where it is again; another arm that held it before does not get it back."""

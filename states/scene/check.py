@@ -7,14 +7,14 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.skills.planning import Margin
 from engine.skills.planning_scene import CheckCollision, CollisionReport
 from engine.state import Context, Outcome, State, nothing_to_undo
-from states.motion.target import JointTarget, RobotName, joints_label, resolve_joints
-from states.scene.naming import CELL
+from states.motion.motion_target import JointTarget, RobotName, joints_label, resolve_joints
+from states.scene.scene_parameter_types import CELL
 
 
 class Check(State, frozen=True, kw_only=True):
@@ -44,7 +44,7 @@ class Check(State, frozen=True, kw_only=True):
             report = await ctx.call(request, to=CELL)
         except SkillFailed as error:
             what = f"what {self.robot} touches was not found out"
-            return Outcome("failed", cause=under(what, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("failed", cause=wrap_cause(what, cause_of(error), where=ctx.path, kind=self.state_name))
         pairs = [f"{pair.first} with {pair.second}" for pair in report.touching]
         outputs: dict[str, object] = {"distance_m": report.distance_m, "touching": pairs}
         if not pairs and report.distance_m >= self.margin_m:
@@ -52,7 +52,7 @@ class Check(State, frozen=True, kw_only=True):
         because = Cause(message=self._words(report, pairs), where=f"{CELL}/{request.skill_name()}")
         posture = f" at {joints_label(self.joints)}" if self.joints is not None else ""
         message = f"{self.robot} is not free{posture}"
-        return Outcome("touching", outputs, under(message, because, where=ctx.path, kind=self.state_name))
+        return Outcome("touching", outputs, wrap_cause(message, because, where=ctx.path, kind=self.state_name))
 
     def _words(self, report: CollisionReport, pairs: list[str]) -> str:
         if pairs:

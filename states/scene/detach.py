@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills.planning_scene import DetachPart
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.scene.naming import CELL, CarriedName
+from states.call_or_fail import call_or_fail
+from states.scene.scene_parameter_types import CELL, CarriedName
 
 
 class Detach(State, frozen=True, kw_only=True):
@@ -22,4 +22,6 @@ class Detach(State, frozen=True, kw_only=True):
     async def run(self, ctx: Context) -> Outcome:
         """Ask the cell."""
         what = f"part {self.part} was not detached"
-        return await asked(ctx, DetachPart(part=self.part), to=CELL, done="detached", what=what, kind=self.state_name)
+        return await call_or_fail(
+            ctx, DetachPart(part=self.part), to=CELL, done="detached", what=what, kind=self.state_name
+        )

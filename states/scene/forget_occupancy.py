@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.scene.naming import CELL
+from states.call_or_fail import call_or_fail
+from states.scene.scene_parameter_types import CELL
 
 
 class ForgetOccupancy(State, frozen=True, kw_only=True):
@@ -21,4 +21,4 @@ class ForgetOccupancy(State, frozen=True, kw_only=True):
         """Ask the cell."""
         what = "what the cameras have seen was not forgotten"
         request = planning_scene.ForgetOccupancy()
-        return await asked(ctx, request, to=CELL, done="forgotten", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=CELL, done="forgotten", what=what, kind=self.state_name)

@@ -7,12 +7,12 @@ from typing import Annotated, ClassVar
 from msgspec import Meta
 
 from engine.document.placement import Placement
-from engine.shapes import Obstacle
+from engine.messages.shapes import Obstacle
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.scene.naming import CELL, NewObstacleName
-from states.scene.solid import Lengths, ShapeName, shape_of
+from states.call_or_fail import call_or_fail
+from states.scene.scene_parameter_types import CELL, NewObstacleName
+from states.scene.shape_parameter_types import Lengths, ShapeName, shape_of
 
 
 class PutObstacle(State, frozen=True, kw_only=True):
@@ -38,4 +38,4 @@ class PutObstacle(State, frozen=True, kw_only=True):
         obstacle = Obstacle.of(self.name, shape_of(self.shape, self.size_m), self.at.pose())
         request = planning_scene.PutObstacle(obstacle=obstacle)
         what = f"obstacle {self.name} was not put into the scene"
-        return await asked(ctx, request, to=CELL, done="put", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=CELL, done="put", what=what, kind=self.state_name)

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 from engine.skills import planning_scene
 from engine.state import Context, Outcome, State
-from states.asked import asked
-from states.scene.naming import CELL, ObstacleName
+from states.call_or_fail import call_or_fail
+from states.scene.scene_parameter_types import CELL, ObstacleName
 
 
 class RemoveObstacle(State, frozen=True, kw_only=True):
@@ -23,4 +23,4 @@ class RemoveObstacle(State, frozen=True, kw_only=True):
         """Ask the cell."""
         request = planning_scene.RemoveObstacle(name=self.name)
         what = f"obstacle {self.name} was not taken out of the scene"
-        return await asked(ctx, request, to=CELL, done="removed", what=what, kind=self.state_name)
+        return await call_or_fail(ctx, request, to=CELL, done="removed", what=what, kind=self.state_name)

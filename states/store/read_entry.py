@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import EntryNotFound
 from engine.skills import entries
 from engine.state import Context, Outcome, State, nothing_to_undo
@@ -32,5 +32,5 @@ class ReadEntry(State, frozen=True, kw_only=True):
             record = await ctx.call(entries.ReadEntry(kind=self.kind, name=self.name), to="store")
         except EntryNotFound as error:
             message = f"{self.kind} entry {self.name} cannot be read"
-            return Outcome("missing", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("missing", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         return Outcome("found", {"value": record.value, "revision": record.revision})

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import EntryConflict
 from engine.skills import entries
 from engine.state import Context, Outcome, State
@@ -36,5 +36,5 @@ class WriteEntry(State, frozen=True, kw_only=True):
             record = await ctx.call(request, to="store")
         except EntryConflict as error:
             message = f"{self.kind} entry {self.name} was changed by somebody else"
-            return Outcome("conflict", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("conflict", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         return Outcome("written", {"revision": record.revision})

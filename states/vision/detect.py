@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 import msgspec
 from msgspec import Meta
 
-from engine.cause import cause_of, under
+from engine.cause_chain import cause_of, wrap_cause
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
@@ -58,7 +58,7 @@ class Detect(State, frozen=True, kw_only=True):
             found = await ctx.call(request, to=self.camera)
         except SkillFailed as error:
             message = f"{self.camera} did not look for {what}"
-            return Outcome("failed", cause=under(message, cause_of(error), where=ctx.path, kind=self.state_name))
+            return Outcome("failed", cause=wrap_cause(message, cause_of(error), where=ctx.path, kind=self.state_name))
         seen = _in_world(found)
         if not seen:
             because = Cause(
@@ -66,7 +66,7 @@ class Detect(State, frozen=True, kw_only=True):
                 where=f"{self.camera}/{request.skill_name()}",
             )
             message = f"{self.camera} does not find {what}"
-            cause = under(message, because, where=ctx.path, kind=self.state_name)
+            cause = wrap_cause(message, because, where=ctx.path, kind=self.state_name)
             return Outcome("not_found", {"detections": []}, cause)
         best = seen[0]
         return Outcome("found", {"detections": seen, "pose": best.pose, "label": best.label})

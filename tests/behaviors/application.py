@@ -9,17 +9,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
 from engine.document.cell import Cell
-from engine.event import Event, Exited
+from engine.event import Event, NodeExited
 from engine.journal import NullJournal
 from engine.messages import JointState, PartPoses, Pose
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run, RunResult
-from engine.supervision import Supervision
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
+from engine.runtime.run_options import RunOptions
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 SAMPLE_S = 0.05
@@ -45,7 +45,7 @@ class Application:
     seed: int | None = None
     parameters: dict[str, object] = field(default_factory=dict[str, object])
     meanwhile: Meanwhile | None = None
-    supervision: Supervision | None = None
+    supervision: RunOptions | None = None
     log: list[Event] = field(default_factory=list[Event])
     seen: list[Seen] = field(default_factory=list[Seen])
 
@@ -56,7 +56,7 @@ class Application:
     @property
     def left(self) -> list[str]:
         """The paths that were left with their outcomes, `root/pick/grasp missed`, in order."""
-        return [f"{event.path} {event.outcome}" for event in self.log if isinstance(event, Exited)]
+        return [f"{event.path} {event.outcome}" for event in self.log if isinstance(event, NodeExited)]
 
     def last(self, part: str) -> Pose:
         """Where a part was after the end."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.messages import JointState
-from engine.run import Run
+from engine.runtime.run import Run
 from tests.behaviors.application import Meanwhile
 
 _LOOK_S = 0.02

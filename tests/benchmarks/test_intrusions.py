@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.intrusion_drawing import STEP_S, Intrusion, IntrusionDrawer, RecordedWay
-from benchmarks.intrusion_run import Ended, intruded_cell
+from benchmarks.intrusion_drawing import STEP_S, Intrusion, IntrusionDrawer, UndisturbedMotion
+from benchmarks.intrusion_run import IntrusionResult, intruded_cell
 from benchmarks.intrusions import CELL
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
 from engine.skills.planning import MotionTarget
-from robots.sim.cell_model import CellModel, build_cell
-from robots.sim.cell_scene import scene_of
-from robots.sim.commands import MoveHand
-from robots.sim.simulation import Simulation
-from robots.sim.snapshot import Snapshot
+from robots.sim.commands.world_commands import MovePersonHand
+from robots.sim.loop.simulation import Simulation
+from robots.sim.loop.snapshot import SimSnapshot
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.scene.scene_builder import build_scene
 
 DOCUMENT = load_cell(CELL)
 RIGHT = (-0.567, 0.18, 0.13, 0.0, 1.26, -0.567)
@@ -25,13 +25,15 @@ STOPPING_S = 0.5
 
 @pytest.fixture(scope="module", name="cell")
 def _cell() -> CellModel:
-    return build_cell(scene_of(DOCUMENT.document))
+    return build_cell(build_scene(DOCUMENT.document))
 
 
-def _way(duration_s: float = 3.0) -> RecordedWay:
+def _way(duration_s: float = 3.0) -> UndisturbedMotion:
     s = np.linspace(0.0, 1.0, round(duration_s / STEP_S) + 1)[:, None]
     share = s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
-    return RecordedWay(start=RIGHT, goal=LEFT, joints=np.array(RIGHT) + share * (np.array(LEFT) - np.array(RIGHT)))
+    return UndisturbedMotion(
+        start=RIGHT, goal=LEFT, joints=np.array(RIGHT) + share * (np.array(LEFT) - np.array(RIGHT))
+    )
 
 
 def _drawn(cell: CellModel, *, count: int, seed: int = 0) -> list[Intrusion]:
@@ -55,11 +57,11 @@ def test_drawn_hands_get_into_the_way_but_not_to_where_the_arm_is_before_it_can_
         assert 0.25 <= intrusion.speed_m_s <= 1.2
 
 
-def _touched(cell: CellModel, intrusion: Intrusion, way: RecordedWay, *, until_row: int) -> bool:
+def _touched(cell: CellModel, intrusion: Intrusion, way: UndisturbedMotion, *, until_row: int) -> bool:
     """Return whether the reach touches an arm that is carried along a way and left there."""
     simulation = Simulation(cell)
     positions, (arm,) = simulation._qpos, cell.arms  # pyright: ignore[reportPrivateUsage]
-    reach = MoveHand(person=intrusion.person, hand_m=intrusion.hand_m, speed_m_s=intrusion.speed_m_s)
+    reach = MovePersonHand(person=intrusion.person, hand_m=intrusion.hand_m, speed_m_s=intrusion.speed_m_s)
     sent = round(intrusion.after_s / STEP_S)
     steps = round(STEP_S / simulation.step_s)
     last = min(until_row, len(way.joints) - 1)
@@ -71,7 +73,7 @@ def _touched(cell: CellModel, intrusion: Intrusion, way: RecordedWay, *, until_r
             simulation.step()
     values = simulation.layout.new_array()
     simulation.write_snapshot(values)
-    return Snapshot(simulation.layout, values).person(intrusion.person).count.contacts > 0
+    return SimSnapshot(simulation.layout, values).person(intrusion.person).count.contacts > 0
 
 
 def test_the_control_group_drives_into_the_hand() -> None:
@@ -86,7 +88,7 @@ def test_the_control_group_drives_into_the_hand() -> None:
         noticeable_s=0.6,
     )
 
-    async def main() -> Ended:
+    async def main() -> IntrusionResult:
         async with intruded_cell(DOCUMENT, speed=0.3) as cell:
             await cell.free(MotionTarget(joints=RIGHT))
             return await cell.intruded(_way(), in_the_way, adapts=False)

@@ -12,34 +12,34 @@ import pytest
 
 from benchmarks.busy_cell import BEHAVIOR
 from benchmarks.process_cpu import cpu_s, descendants
-from benchmarks.punctuality import Punctuality, merged, watch
 from benchmarks.realtime import Row, table
 from benchmarks.sim import filled
 from benchmarks.step_cost import step_cost
-from benchmarks.swinging import CELL, swings
+from benchmarks.swinging_arms import CELL, swings
+from benchmarks.timing_jitter import Punctuality, merged, watch
 from engine.bus import SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.cli.inputs import read_behavior, read_cell
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
 from engine.journal import NullJournal
-from engine.launch import new_run
 from engine.messages import JointState
-from engine.plan import new_plan
+from engine.project.run_factory import new_run
 from engine.registry import load_states
-from robots.sim.cell_scene import scene_of
-from robots.sim.process_host import ProcessHost
-from robots.sim.timing import Timing, TimingCounter, timing_of
-from robots.sim.world import SimWorld
+from engine.runtime.plan import new_plan
+from robots.sim.host.loop_timing import LoopTiming, TimingCounter, decode_timing
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import one_arm
 
 
-def counted(*lates_s: float, overruns: int = 0) -> Timing:
+def counted(*lates_s: float, overruns: int = 0) -> LoopTiming:
     """Return the figures of a loop that was so late, turn by turn."""
     counter = TimingCounter()
     for number, late_s in enumerate(lates_s):
         counter.count(late_s=late_s, overrun=number < overruns)
-    return timing_of(counter.values)
+    return decode_timing(counter.values)
 
 
 def test_the_behavior_has_no_findings_and_moves_both_arms_until_it_is_stopped(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_the_table_has_a_line_for_each_row_and_compares_them_in_quiet_time_only(
 
 def test_a_step_among_twenty_parts_is_taken_apart() -> None:
     """All parts lie on something and none in another: four contacts for a box, some for a cylinder."""
-    scene = filled(scene_of(load_cell(CELL).document), 20, 0.002)
+    scene = filled(build_scene(load_cell(CELL).document), 20, 0.002)
     assert (len(scene.parts), scene.step_s) == (22, 0.002)
     cost = step_cost(scene, "cartesian_impedance", 0.4)
     assert min(cost.cpu_s, cost.physics_s, cost.set_points_s, cost.laws_s, cost.rest_s) > 0.0
@@ -124,7 +124,7 @@ def _joints(bus: SkillBus, arm: str) -> np.ndarray[tuple[int], np.dtype[np.float
     return np.array(state.position_rad)
 
 
-def _row(name: str, quiet: Timing | None) -> Row:
+def _row(name: str, quiet: LoopTiming | None) -> Row:
     whole = counted(9e-3)
     share = 0.0 if quiet is None else 0.5
     punctuality = Punctuality(whole=whole, quiet=quiet, quiet_share=share, empty_p99_s=1e-3, empty_max_s=2e-3)

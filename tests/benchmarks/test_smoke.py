@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import bus, engine
-from benchmarks.comparison import Measured, Result, Row, Table
+from benchmarks.comparison import MeasuredTable, Result, Row, Table
 from benchmarks.sample import Sample
 from tests.tiers import nightly
 
@@ -40,7 +40,7 @@ def test_figures_are_medians_of_the_processes_and_ratios_to_the_first_row() -> N
     table = Table("T", (_row("ours"), _row("theirs")), {"µs": lambda r: f"{r.cpu_us:.0f}"}, lambda r: r.cpu_us)
     ours = Result(table.rows[0], tuple(Sample(10, cpu_s, 1.0) for cpu_s in (1e-5, 2e-5, 9e-5)))
     theirs = Result(table.rows[1], tuple(Sample(10, cpu_s, 1.0) for cpu_s in (4e-5, 4e-5, 1e-5)))
-    assert Measured(table, (ours, theirs)).markdown().splitlines()[2:] == [
+    assert MeasuredTable(table, (ours, theirs)).markdown().splitlines()[2:] == [
         "|        | µs | × ours |",
         "|--------|---:|-------:|",
         "| ours   |  2 |      1 |",
@@ -51,7 +51,7 @@ def test_figures_are_medians_of_the_processes_and_ratios_to_the_first_row() -> N
 def test_a_library_that_is_not_installed_is_named_in_its_row() -> None:
     """The others are still compared."""
     table = Table("T", (_row("ours"), _row("theirs")), {"µs": lambda r: f"{r.cpu_us:.0f}"}, lambda r: r.cpu_us)
-    measured = Measured(
+    measured = MeasuredTable(
         table, (Result(table.rows[0], (Sample(1, 1e-6, 1.0),)), Result(table.rows[1], (), "x is missing"))
     )
     assert measured.markdown().splitlines()[-1] == "| theirs |  – | x is missing |"

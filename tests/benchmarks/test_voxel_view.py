@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.voxel_view import SHAPE, draw_times_ms, new_grids
-from editor_web.cell_view.occupancy import occupied, surface
+from editor_web.cell_view.layers.occupancy import occupied, surface
 
 
 def test_every_grid_has_as_many_voxels_to_draw_as_it_should_and_is_another() -> None:

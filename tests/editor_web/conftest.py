@@ -11,7 +11,7 @@ import httpx
 import pytest
 from playwright.sync_api import Browser, expect, sync_playwright
 
-from editor_web.access import load_access
+from editor_web.security.authentication import load_access_tokens
 from editor_web.server import Dashboard, dashboard
 from tests.editor_web.browsing import browser_program
 from tests.editor_web.fake_backend import FakeBackend
@@ -58,10 +58,10 @@ def serve(tmp_path: Path, loopback: str) -> Serve:
         token_file = tmp_path / "tokens"
         async with (
             dashboard(behind, token_file=token_file, host=loopback, cell_view=cell_view, shadows=False) as running,
-            _client(running, load_access(token_file).operator) as http,
+            _client(running, load_access_tokens(token_file).operator) as http,
         ):
             try:
-                yield Served(backend=behind, running=running, access=load_access(token_file), http=http)
+                yield Served(backend=behind, running=running, access=load_access_tokens(token_file), http=http)
             finally:
                 await behind.close()
 

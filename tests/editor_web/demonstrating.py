@@ -7,7 +7,7 @@ from contextlib import AsyncExitStack
 
 from engine.bus import SkillBus
 from engine.messages import PartPoses, Pose, RobotDescription
-from engine.skills.gripper import GripperAction
+from engine.skills.gripper import GripperSetting
 from engine.skills.motion import ForwardKinematics
 from engine.store import Joints, SqliteStore, Value, register_store
 from engine.teaching import HelpingHand
@@ -19,7 +19,7 @@ TAUGHT: dict[tuple[str, str], Value] = {
     ("pose", "above_tray"): Pose(xyz=(0.4, 0.2, 0.3), xyzw=DOWN),
     ("pose", "tray_pick"): Pose(xyz=(0.4, 0.2, 0.1), xyzw=DOWN),
     ("pose", "bin"): Pose(xyz=(0.4, -0.2, 0.15), xyzw=DOWN),
-    ("gripper", "around_gear"): GripperAction(width_m=0.032, held=True, force_n=18.0),
+    ("gripper", "around_gear"): GripperSetting(width_m=0.032, held=True, force_n=18.0),
     ("record", "tray"): {"rows": 4},
 }
 GEAR_M = (0.4, 0.2, 0.1)

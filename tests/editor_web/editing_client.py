@@ -7,12 +7,12 @@ from typing import Any
 
 import httpx
 
-from editor_web.access import load_access
 from editor_web.app import new_app
-from editor_web.sessions import LoginSessions
-from engine.editing import Documents
+from editor_web.security.authentication import load_access_tokens
+from editor_web.security.login_sessions import LoginSessions
+from engine.editing import DocumentRepository
 from tests.editor_web.fake_backend import FakeBackend
-from tests.engine.editing.bench import STATES
+from tests.engine.editing.edit_fixtures import STATES
 
 HOST = "127.0.0.1:8642"
 SHIFT_ID = "behaviors/shift.yaml"
@@ -41,8 +41,8 @@ class EditingClient:
         self.project = project
         (project / "behaviors").mkdir(exist_ok=True)
         (project / SHIFT_ID).write_text(SHIFT, encoding="utf-8")
-        self.access = load_access(project / "tokens")
-        self.documents = Documents(project, STATES)
+        self.access = load_access_tokens(project / "tokens")
+        self.documents = DocumentRepository(project, STATES)
         backend = FakeBackend(documents=self.documents)
         self.sessions = LoginSessions(file=None, tokens="")
         self.app = new_app(backend, access=self.access, sessions=self.sessions, hosts=frozenset({HOST}), port=8642)

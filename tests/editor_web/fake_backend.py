@@ -10,34 +10,34 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from editor_web.operation import Attached, InterruptedRun
+from editor_web.contracts.run_operations import InterruptedRun, OperatorAttachment
 from engine.archive import Archive
 from engine.bus import SkillBus
-from engine.bus.access import BusAccess
 from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
-from engine.bus.desk import BusDesk
-from engine.cell_connection import CellConnection
+from engine.bus.bus_inspector import BusInspector
+from engine.bus.json_bus import JsonBus
+from engine.cell.cell_connection import CellConnection
 from engine.clock import LoopClock
-from engine.control import Breakpoint, Control
-from engine.editing import Documents
+from engine.editing import DocumentRepository
 from engine.errors import BusError, ControlError, FlexcellError
 from engine.event import (
-    Entered,
     Event,
-    Exited,
     GoalFinished,
     GoalSent,
-    Logged,
+    MessageLogged,
+    NodeEntered,
+    NodeExited,
     RunEnded,
     RunStarted,
     StopRequested,
-    Transitioned,
+    TransitionTaken,
 )
-from engine.hot_change import ChangeReport
-from engine.launch import Moment
-from engine.supervision import Supervision
-from engine.userdata_book import UserdataBook
+from engine.project.run_factory import RunPosition
+from engine.runtime.control import Breakpoint, Control
+from engine.runtime.history.hot_change import ChangeReport
+from engine.runtime.history.userdata_history import UserdataHistory
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.fake_behaviors import BROKEN, NOTHING_HELD, SINGLE, TRANSFER, Behavior, Node, Run
 from tests.editor_web.fake_scene import frames_at, new_scene
 
@@ -62,26 +62,26 @@ class TopicBus:
         raise BusError("no such topic", where=topic)
 
     async def call(self, address: str, request: object) -> str:
-        raise BusError("nobody answers at this address", where=address)
+        raise BusError("no such service", where=address)
 
     async def perform(self, address: str, goal: object) -> GoalEnd[Any]:
-        raise BusError("nobody answers at this address", where=address)
+        raise BusError("no such service", where=address)
 
 
 class FakeBackend:
-    """Implements `editor_web.backend.Backend`; leaves take `step_s`, `single_pick` fails at its grasp."""
+    """Implements `editor_web.contracts.backend.Backend`; leaves take `step_s`, `single_pick` fails at its grasp."""
 
     def __init__(
         self,
         *,
         step_s: float = 0.2,
         behaviors: tuple[Behavior, ...] = (BROKEN, SINGLE, TRANSFER),
-        documents: Documents | None = None,
+        documents: DocumentRepository | None = None,
     ) -> None:
         self.cell_name = "dual_panda"
         self.lost_reason = ""
         self.archive = Archive(Path("no-project"), {}, Path("no-journal"))
-        self.documents = documents or Documents(Path("no-project"), {})
+        self.documents = documents or DocumentRepository(Path("no-project"), {})
         self.kept_breakpoints: dict[str, tuple[Breakpoint, ...]] = {}
         self.step_s = step_s
         self._ended = asyncio.Event()
@@ -94,19 +94,19 @@ class FakeBackend:
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._callbacks: list[Callable[[str, Event], None]] = []
         self._topics: dict[str, object] = {"cell/scene": new_scene(), "cell/frames": frames_at(0.0)}
-        self.known_bus: BusAccess = TopicBus(self._topics)
-        self.known_desk: BusDesk | None = None
+        self.known_bus: JsonBus = TopicBus(self._topics)
+        self.known_desk: BusInspector | None = None
         self._topic_callbacks: dict[str, list[Callable[[object], None]]] = {}
         self.listeners_changed = asyncio.Event()
 
     @property
-    def bus(self) -> BusAccess:
+    def bus(self) -> JsonBus:
         return self.known_bus
 
     @property
-    def desk(self) -> BusDesk:
+    def desk(self) -> BusInspector:
         if self.known_desk is None:
-            self.known_desk = BusDesk(SkillBus(LoopClock()))
+            self.known_desk = BusInspector(SkillBus(LoopClock()))
         return self.known_desk
 
     def behaviors(self) -> tuple[Behavior, ...]:
@@ -132,9 +132,9 @@ class FakeBackend:
         parameters: Mapping[str, object],
         seed: int,
         inputs: Mapping[str, object] | None = None,
-        supervision: Supervision | None = None,
+        supervision: RunOptions | None = None,
         breakpoints: bool = False,
-        begin: Moment | None = None,
+        begin: RunPosition | None = None,
     ) -> str:
         behavior = self.behavior(behavior_id)
         if behavior.graph is None:
@@ -165,7 +165,7 @@ class FakeBackend:
         self.run(run_id)
         return [e for e in self._events[run_id] if e.seq > after]
 
-    def userdata(self, run_id: str) -> UserdataBook:
+    def userdata(self, run_id: str) -> UserdataHistory:
         raise FlexcellError("this fake keeps no userdata", where=run_id)
 
     def recording_files(self, run_id: str) -> tuple[Path, ...]:
@@ -185,7 +185,7 @@ class FakeBackend:
     def control(self, run_id: str) -> Control:
         raise ControlError("this fake has no control", where=run_id)
 
-    def operate(self, run_id: str) -> Attached:
+    def operate(self, run_id: str) -> OperatorAttachment:
         raise ControlError("this fake has no control", where=run_id)
 
     async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
@@ -313,7 +313,7 @@ class FakeBackend:
 
     async def _node(self, run_id: str, node: Node) -> str:
         visit = self._visits[run_id, node.path] = self._visits.get((run_id, node.path), 0) + 1
-        self._emit(run_id, Entered, path=node.path, visit=visit, kind=node.kind, inputs={})
+        self._emit(run_id, NodeEntered, path=node.path, visit=visit, kind=node.kind, inputs={})
         try:
             match node.kind:
                 case "machine":
@@ -324,10 +324,10 @@ class FakeBackend:
                 case _:
                     outcome = await self._leaf(run_id, node)
         except asyncio.CancelledError:
-            self._emit(run_id, Exited, path=node.path, visit=visit, outcome="preempted", preempted=True)
+            self._emit(run_id, NodeExited, path=node.path, visit=visit, outcome="preempted", preempted=True)
             raise
         cause = NOTHING_HELD if outcome == "failed" else None
-        self._emit(run_id, Exited, path=node.path, visit=visit, outcome=outcome, cause=cause)
+        self._emit(run_id, NodeExited, path=node.path, visit=visit, outcome=outcome, cause=cause)
         return outcome
 
     async def _machine(self, run_id: str, node: Node) -> str:
@@ -336,7 +336,7 @@ class FakeBackend:
         while name in children:
             outcome = await self._node(run_id, children[name])
             arrow = next(t for t in node.transitions if (t.source, t.outcome) == (name, outcome))
-            self._emit(run_id, Transitioned, path=node.path, source=name, outcome=outcome, target=arrow.target)
+            self._emit(run_id, TransitionTaken, path=node.path, source=name, outcome=outcome, target=arrow.target)
             name = arrow.target
         return name
 
@@ -358,7 +358,7 @@ class FakeBackend:
         status = "aborted" if fails else "succeeded"
         self._emit(run_id, GoalFinished, path=node.path, goal=goal, status=status)
         if node.name in ("grasp", "home"):
-            self._emit(run_id, Logged, path=node.path, level="info", message="width 30.1 mm, force 19.8 N")
+            self._emit(run_id, MessageLogged, path=node.path, level="info", message="width 30.1 mm, force 19.8 N")
         return "failed" if fails else node.outcomes[0]
 
     async def _move_arms(self) -> None:

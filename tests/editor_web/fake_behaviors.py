@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from engine.control import ControlView
 from engine.event import Cause
+from engine.runtime.control import ControlView
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 
 from engine.bus import ActiveGoal, SkillBus
 from engine.messages import FramePoses, RobotDescription, SceneDescription
-from engine.sensing import CameraInfo, DepthImage, OccupancyGrid
+from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid
 from engine.skills.planning import MotionTarget, PathPreview, PlanFeedback, PlanMotion, PlannedMotion
 from engine.skills.planning_scene import PlanningSceneState
 from engine.state import Context, Outcome, State

@@ -71,7 +71,7 @@ class FakePlant:
         """Put everything on a bus."""
         self.joints = bus.topic("plant/joint_state", JointState)
         self.gripper = bus.topic("plant/gripper/state", GripperState)
-        bus.topic("plant/lamp", Wanted).obey(self.lamp.append)
+        bus.topic("plant/lamp", Wanted).subscribe_commands(self.lamp.append)
         bus.advertise_action(Travel, self.travel, namespace="plant")
         bus.advertise_service(AddNumbers, self.add_numbers, namespace="plant")
         kind = Annotated[float, msgspec.Meta(ge=0.0, le=900.0)]

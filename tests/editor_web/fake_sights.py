@@ -9,8 +9,8 @@ import msgspec
 import numpy as np
 
 from engine.messages import FramePoses, Pose, RobotDescription, SceneDescription, Vector3, VisualGeometry
-from engine.sensing import CameraInfo, CameraIntrinsics, DepthImage, OccupancyGrid, OccupancyState
-from engine.shapes import Box, Capsule, Cylinder, Hull, Obstacle, Shape, Solid, Sphere
+from engine.messages.sensing import CameraInfo, CameraIntrinsics, DepthImage, OccupancyGrid, OccupancyState
+from engine.messages.shapes import Box, Capsule, Cylinder, Hull, Obstacle, Shape, Solid, Sphere
 from engine.skills.planning import PathPreview
 from engine.skills.planning_scene import HeldPart, PlanningSceneState
 from engine.skills.vision import Detection, Detections

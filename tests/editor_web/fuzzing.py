@@ -19,9 +19,9 @@ from hypothesis import strategies as st
 from schemathesis import GenerationMode
 from schemathesis.specs.openapi import checks
 
-from editor_web.access import OPERATOR, VIEWER
 from editor_web.app import api
-from engine.supervision import Supervision
+from editor_web.security.authentication import OPERATOR, VIEWER
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT, SHIFT_ID, Workshop
 
@@ -114,7 +114,7 @@ class Target:
         for behavior_id, text in ((SHIFT_ID, SHIFT), (NAP_ID, NAP)):
             (self.shop.project / behavior_id).write_text(text, encoding="utf-8")
         self.shop.call(self.shop.session.stop_all(reason="the next operation"))
-        self.shop.start(supervision=Supervision(start_paused=True))
+        self.shop.start(supervision=RunOptions(start_paused=True))
 
     @property
     def known(self) -> Mapping[str, tuple[str, ...]]:

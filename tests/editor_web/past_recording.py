@@ -12,7 +12,7 @@ from engine.journal import encode_event
 from engine.messages import Message
 from engine.recording import part_file
 from engine.recording.channel_schema import channel_schema
-from engine.recording.finished_file import EVENT_TOPIC, finish
+from engine.recording.finalization import EVENT_TOPIC, finalize_recording
 from engine.recording.live_file import LiveFile
 
 Said = Mapping[str, Sequence[tuple[float, Message]]]
@@ -34,7 +34,7 @@ def write_recording(path: Path, said: Said, *, finished: bool = True, since_s: f
     live.close()
     if not finished:
         return part_file(path)
-    finish(part_file(path), path)
+    finalize_recording(part_file(path), path)
     return path
 
 

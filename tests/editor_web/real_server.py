@@ -5,10 +5,10 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from editor_web.access import OPERATOR, Role
+from editor_web.security.authentication import OPERATOR, Role
+from editor_web.security.login_sessions import LoginSessions
 from editor_web.server import Dashboard
-from editor_web.sessions import LoginSessions
-from engine.bus.remote import ServerRecord
+from engine.bus.remote_bus import ServerRecord
 from engine.cli.login import new_login_url
 
 

@@ -11,8 +11,8 @@ from typing import Any
 import httpx
 import websockets.asyncio.client
 
-from editor_web.access import OPERATOR, Access, Role
-from editor_web.security import cookie_name
+from editor_web.security.authentication import OPERATOR, AccessTokens, Role
+from editor_web.security.middleware import cookie_name
 from editor_web.server import Dashboard
 from tests.editor_web.fake_backend import FakeBackend
 
@@ -28,7 +28,7 @@ class Served:
 
     backend: FakeBackend
     running: Dashboard
-    access: Access
+    access: AccessTokens
     http: httpx.AsyncClient
 
     @property

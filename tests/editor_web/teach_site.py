@@ -13,23 +13,23 @@ from unittest.mock import patch
 import numpy as np
 import websockets.asyncio.client
 
-from editor_web.access import OPERATOR, Access, Role, load_access
-from editor_web.security import cookie_name
+from editor_web.security.authentication import OPERATOR, AccessTokens, Role, load_access_tokens
+from editor_web.security.middleware import cookie_name
 from editor_web.server import Dashboard, dashboard
 from editor_web.teaching import jogging
 from engine.bus import SkillBus
-from engine.bus.access import VISITOR
-from engine.cell import OpenCell
+from engine.bus.json_bus import CLI_HOLDER
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.journal import Journal
 from engine.messages import JointState
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.session import Session
 from engine.skills.entries import WriteEntry
 from engine.skills.jogging import JogCommand, StepTool
 from engine.skills.motion import JointTrapVel
 from engine.skills.teaching import Trigger
-from engine.teaching import HelpingHand, teachable
+from engine.teaching import HelpingHand, guidable_robots
 from robots.port import Array
 from tests.editor_web.limits import GUARD_S
 from tests.robots.panda_arm import home
@@ -95,9 +95,9 @@ class TeachSite:
         return self._parts[2]
 
     @property
-    def access(self) -> Access:
+    def access(self) -> AccessTokens:
         """Its tokens."""
-        return load_access(self.project / "tokens")
+        return load_access_tokens(self.project / "tokens")
 
     def call(self, work: Coroutine[Any, Any, T], *, within_s: float = GUARD_S) -> T:
         """Run a coroutine on the server's loop."""
@@ -192,8 +192,8 @@ class TeachSite:
         """Move the arm to where it begins, its first joint so far from there."""
         joints = home().tolist()
         goal = JointTrapVel(joints=(joints[0] + by_rad, *joints[1:]), speed=0.9)
-        await self.bus.send_goal(goal, to="left", holder=VISITOR).result()
-        self.bus.leases.release_run(VISITOR.run)
+        await self.bus.send_goal(goal, to="left", holder=CLI_HOLDER).result()
+        self.bus.leases.release_run(CLI_HOLDER.run)
 
     def socket(self, role: Role = OPERATOR, *, page: str = "") -> websockets.asyncio.client.connect:
         """Connect as the page does, which calls itself so."""
@@ -227,7 +227,7 @@ class TeachSite:
         await enter(cell)
         hand = HelpingHand(
             cell.bus,
-            robots=teachable(cell.bus),
+            robots=guidable_robots(cell.bus),
             folder=self.project / "captures",
             triggers=self._triggers,
             file=self.project / "triggers.yaml",
@@ -239,5 +239,5 @@ class TeachSite:
         )
         self._parts = cell, session, running
         # The first step loads what looks ahead of the arm.
-        await self.bus.send_goal(StepTool(step_m=(0.0, 0.0, 0.005)), to="left", holder=VISITOR).result()
+        await self.bus.send_goal(StepTool(step_m=(0.0, 0.0, 0.005)), to="left", holder=CLI_HOLDER).result()
         await self.go_home()

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from engine.bus import Holder, SkillBus
 from engine.messages import JointState
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible

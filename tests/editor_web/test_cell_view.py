@@ -18,7 +18,7 @@ import zstandard
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
-from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, Group
+from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView, LayerGroup
 from engine.errors import FlexcellError
 from engine.messages import SceneDescription
 from tests.editor_web.conftest import Serve
@@ -254,7 +254,7 @@ async def test_cameras_and_voxels_are_followed_only_while_somebody_looks_at_them
         assert followed() == [False, False, False]
         async with looking(view, page="one"):
             await until(backend, lambda: followed() == [True, False, True])
-            view.show("one", frozenset[Group]({"cameras"}))
+            view.show("one", frozenset[LayerGroup]({"cameras"}))
             await until(backend, lambda: followed() == [False, True, False])
             async with looking(view, page="two"):
                 await until(backend, lambda: followed() == [True, True, True])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from benchmarks.large_document import large_document
-from editor_web.document_wire import DocumentBody, DraftedBody, EditedBody
+from editor_web.http_bodies.document_bodies import DocumentBody, DraftResultBody, EditResultBody
 from tests.editor_web.editing_client import EditingClient
 
 ID = "behaviors/large.yaml"
@@ -19,10 +19,10 @@ async def test_answers_of_documents_have_the_fields_of_their_models(tmp_path: Pa
     at = f"/documents/{ID}"
     for check in (True, False):
         drawn = await client.post(f"{at}/draft", {"text": text, "check": check})
-        assert DraftedBody.model_validate_json(drawn.content).checked is check
+        assert DraftResultBody.model_validate_json(drawn.content).checked is check
         for some in (edits[:1], edits):
             edited = await client.post(f"{at}/edits", {"text": text, "edits": some, "check": check})
-            assert (EditedBody.model_validate_json(edited.content).refused is None) == (len(some) == 1)
+            assert (EditResultBody.model_validate_json(edited.content).refused is None) == (len(some) == 1)
     opened = DocumentBody.model_validate_json((await client.get(at)).content)
     assert opened.text == made["text"]
     found = await client.post(f"{at}/findings", {"text": text.replace("flow.Decide", "flow.Nothing", 1)})

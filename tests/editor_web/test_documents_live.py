@@ -8,8 +8,8 @@ from pathlib import Path
 
 import websockets.asyncio.client
 
-from editor_web.live_documents import DocumentWatch
-from engine.editing import Documents, hash_of
+from editor_web.live.document_watch import DocumentWatch
+from engine.editing import DocumentRepository, text_hash
 from tests.editor_web.conftest import Serve
 from tests.editor_web.editing_client import SHIFT, SHIFT_ID
 from tests.editor_web.fake_backend import FakeBackend
@@ -17,20 +17,20 @@ from tests.editor_web.limits import GUARD_S
 
 
 def test_a_look_tells_what_has_changed_since_the_last_one(tmp_path: Path) -> None:
-    documents = Documents(tmp_path, {})
+    documents = DocumentRepository(tmp_path, {})
     watch = DocumentWatch(documents, changed=lambda _: None, wanted=lambda: True)
     documents.create(SHIFT_ID)
     assert watch.look() == {}
     assert watch.look() == {}
     (tmp_path / SHIFT_ID).write_text(SHIFT)
     (tmp_path / "behaviors/other.yaml").write_text(SHIFT + "# other\n")
-    assert watch.look() == {SHIFT_ID: hash_of(SHIFT), "behaviors/other.yaml": hash_of(SHIFT + "# other\n")}
+    assert watch.look() == {SHIFT_ID: text_hash(SHIFT), "behaviors/other.yaml": text_hash(SHIFT + "# other\n")}
     documents.delete(SHIFT_ID)
     assert watch.look() == {SHIFT_ID: None}
 
 
 async def test_an_open_page_hears_of_a_change_on_disk(serve: Serve, tmp_path: Path) -> None:
-    documents = Documents(tmp_path / "project", {})
+    documents = DocumentRepository(tmp_path / "project", {})
     documents.create(SHIFT_ID)
     async with serve(FakeBackend(step_s=0.02, documents=documents)) as served:
         address = f"ws://{served.running.url.removeprefix('http://')}api/v1/live"

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, expect
 
 import hatch_build
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from tests.editor_web.browsing import PHONE, Scheme, require_accessible, require_fit
 from tests.editor_web.editing import at_editor, card, file_text, idle
 from tests.editor_web.workshop import SHIFT_ID, Workshop

@@ -7,7 +7,7 @@ import re
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from tests.editor_web.browsing import Scheme, require_accessible
 from tests.editor_web.editing import at_editor, card, file_text, idle, save
 from tests.editor_web.test_editor_project import OUTER, OUTER_ID

@@ -13,8 +13,8 @@ import pytest
 import websockets
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import VIEWER
-from engine.demonstration import Trajectory
+from editor_web.security.authentication import VIEWER
+from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import WriteEntry
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible

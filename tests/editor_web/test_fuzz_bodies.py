@@ -16,11 +16,12 @@ import pytest
 import websockets.asyncio.client
 from websockets.exceptions import ConnectionClosed
 
-from editor_web import bodies, connection
-from editor_web.bodies import MAX_BODY_BYTES
-from editor_web.request_rules import SAFE_METHODS
-from editor_web.routes import live as live_route
-from editor_web.routes.sockets import REFUSED, UNAVAILABLE
+from editor_web.security.request_rules import SAFE_METHODS
+from editor_web.sockets import live_stream as live_route
+from editor_web.sockets.page_socket import REFUSED, UNAVAILABLE
+from editor_web.transport import request_limits as bodies
+from editor_web.transport import timed_connection as connection
+from editor_web.transport.request_limits import MAX_BODY_BYTES
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fuzzing import Operation, Target, opened_target, operations
 from tests.editor_web.limits import GUARD_S

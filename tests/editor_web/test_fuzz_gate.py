@@ -9,9 +9,9 @@ from urllib.parse import quote
 
 import pytest
 
-from editor_web.access import OPERATOR
-from editor_web.request_rules import SAFE_METHODS
-from editor_web.security import cookie_name
+from editor_web.security.authentication import OPERATOR
+from editor_web.security.middleware import cookie_name
+from editor_web.security.request_rules import SAFE_METHODS
 from tests.editor_web.fuzzing import HOSTILE_PATHS, Operation, Target, opened_target, operations
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.workshop import SHIFT_ID

@@ -10,8 +10,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from engine.bus import SkillBus
+from engine.runtime.run_options import RunOptions
 from engine.skills.entries import EntryList, ListEntries
-from engine.supervision import Supervision
 from tests.editor_web.browsing import opened_page
 from tests.editor_web.workshop import Workshop
 
@@ -75,7 +75,7 @@ def test_scripts_in_names_texts_and_reasons_stay_text(browser: Browser, harmful:
     with opened_page(browser, harmful.running) as page:
         expect(page.get_by_role("link", name=SCRIPT).first).to_be_visible()
         require_unharmed(page)
-        run = harmful.start(HARM_ID, supervision=Supervision(start_paused=True))
+        run = harmful.start(HARM_ID, supervision=RunOptions(start_paused=True))
         page.goto(f"{harmful.running.url}behaviors/{HARM_ID}")
         expect(page.locator("h1")).to_contain_text(SCRIPT)
         expect(page.get_by_label("value")).to_have_value(SCRIPT)

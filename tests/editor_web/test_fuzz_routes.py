@@ -13,8 +13,8 @@ from urllib.parse import unquote
 import pytest
 from hypothesis import assume, given
 
-from editor_web.access import OPERATOR, VIEWER
-from editor_web.request_rules import SAFE_METHODS
+from editor_web.security.authentication import OPERATOR, VIEWER
+from editor_web.security.request_rules import SAFE_METHODS
 from tests.editor_web.fuzzing import (
     CHECKS,
     ENDLESS,

@@ -15,8 +15,8 @@ import pytest
 import websockets.asyncio.client
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from editor_web.access import OPERATOR, VIEWER, Role
-from editor_web.routes.sockets import REFUSED
+from editor_web.security.authentication import OPERATOR, VIEWER, Role
+from editor_web.sockets.page_socket import REFUSED
 from tests.editor_web.conftest import Serve
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served, session_cookie

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from engine.event import Commanded, Entered, Exited
-from engine.supervision import Supervision
+from engine.event import NodeEntered, NodeExited, OperatorCommanded
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import Size, opened_page, until
 from tests.editor_web.workshop import SHIFT_ID, Workshop
 
@@ -70,7 +70,7 @@ def test_a_breakpoint_is_set_by_a_click_and_kept_beside_the_file(browser: Browse
 
 def test_a_breakpoint_has_a_condition_and_a_count(browser: Browser, shop: Workshop) -> None:
     """A condition that does not compile is refused; one that does stops the run where it holds."""
-    run = shop.start(supervision=Supervision(start_paused=True))
+    run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop, quiet=False) as page:
         chosen = card(page, "root/rest")
         chosen.get_by_label("Pause before its entry").click()
@@ -98,7 +98,7 @@ def test_a_breakpoint_has_a_condition_and_a_count(browser: Browser, shop: Worksh
 
 def test_a_locked_node_is_held_with_its_reason_until_it_is_unlocked(browser: Browser, shop: Workshop) -> None:
     """All pages read the reason, also after a reload."""
-    shop.start(supervision=Supervision(start_paused=True))
+    shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop) as page:
         chosen = card(page, "root/set")
         chosen.get_by_label("Reason of the lock").fill("the tray is being changed")
@@ -130,13 +130,13 @@ def test_an_active_node_is_forced_or_run_again(browser: Browser, shop: Workshop)
         chosen.get_by_role("group", name="Force an outcome").get_by_role("button", name="done").click()
         expect(page.locator(".page-head .badge")).to_have_text("finished: good")
     events = shop.events(run)
-    assert [event.visit for event in events if isinstance(event, Entered) and event.path == "root/rest"] == [1, 2]
-    assert [event.command for event in events if isinstance(event, Commanded)] == ["repeat", "force"]
+    assert [event.visit for event in events if isinstance(event, NodeEntered) and event.path == "root/rest"] == [1, 2]
+    assert [event.command for event in events if isinstance(event, OperatorCommanded)] == ["repeat", "force"]
 
 
 def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Workshop) -> None:
     """Several at once, each with its ways; one is agreed to, one ended otherwise."""
-    run = shop.start(supervision=Supervision(autonomy="low", demand_operator=True))
+    run = shop.start(supervision=RunOptions(autonomy="low", demand_operator=True))
     with at_shift(browser, shop) as page:
         asked = page.get_by_role("region", name="The run asks")
         expect(asked.get_by_role("listitem")).to_have_count(2)
@@ -153,13 +153,13 @@ def test_what_the_run_asks_is_answered_by_keyboard(browser: Browser, shop: Works
         asked.get_by_role("button", name="Instead: b").click()
         expect(asked).to_have_count(0)
         expect(page.locator(".page-head .badge")).to_have_text("finished: bad")
-    ends = {event.path: event.outcome for event in shop.events(run) if isinstance(event, Exited)}
+    ends = {event.path: event.outcome for event in shop.events(run) if isinstance(event, NodeExited)}
     assert ends["root/both"] == "odd"
 
 
 def test_a_question_that_has_become_void_vanishes(browser: Browser, shop: Workshop) -> None:
     """Answered elsewhere, or not asked any more at another autonomy."""
-    run = shop.start(supervision=Supervision(autonomy="low", demand_operator=True))
+    run = shop.start(supervision=RunOptions(autonomy="low", demand_operator=True))
     with at_shift(browser, shop) as page:
         asked = page.get_by_role("region", name="The run asks")
         expect(asked.get_by_role("listitem")).to_have_count(2)

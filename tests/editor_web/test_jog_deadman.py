@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import websockets.asyncio.client
 
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from tests.editor_web.teach_site import TeachSite, fastest
 
 REST_S = 0.3

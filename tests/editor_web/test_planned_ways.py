@@ -15,7 +15,7 @@ import pytest
 from playwright.sync_api import Browser, FrameLocator, Locator, Page, expect
 
 from engine.bus import SkillBus
-from engine.supervision import Supervision
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import (
     DESK,
     PHONE,
@@ -32,7 +32,7 @@ from tests.editor_web.limits import GUARD_MS
 from tests.editor_web.workshop import Workshop
 from tests.tiers import nightly
 
-ASKED = Supervision(autonomy="low", demand_operator=True)
+ASKED = RunOptions(autonomy="low", demand_operator=True)
 GREEN, VIOLET, TABLE = (22, 163, 74), (68, 1, 84), (228, 224, 223)
 _read: Any = import_module("imageio.v3").imread
 

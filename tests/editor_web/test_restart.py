@@ -15,11 +15,11 @@ from typing import Self
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import OPERATOR
-from editor_web.routes import live as live_route
-from engine.control.control import LossPolicy
+from editor_web.security.authentication import OPERATOR
+from editor_web.sockets import live_stream as live_route
 from engine.event import OperatorChanged
-from engine.supervision import Supervision
+from engine.runtime.control.control import LossPolicy
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import browser_program, opened_page, require_accessible, switch
 from tests.editor_web.real_server import dashboard_of
 from tests.editor_web.workshop import NAP, NAP_ID, Workshop
@@ -105,7 +105,7 @@ def test_a_killed_browser_is_an_operator_lost_and_another_takes_over(
     browser: Browser, tmp_path: Path, shop: Workshop, policy: LossPolicy, done: str, said: str
 ) -> None:
     """The run is paused or stopped after its time, the log says why, and the second browser operates it."""
-    run = shop.start(supervision=Supervision(loss_policy=policy, loss_timeout_s=0.3))
+    run = shop.start(supervision=RunOptions(loss_policy=policy, loss_timeout_s=0.3))
     with opened_page(browser, shop.running, f"/runs/{run}") as second:
         with killable_browser(browser, tmp_path / "profile") as (doomed, kill):
             first = doomed.new_context().new_page()
@@ -186,7 +186,7 @@ def test_a_cut_wire_is_noticed_on_both_sides(
     monkeypatch.setattr(live_route, "PING_S", 0.1)
     # Longer than a page that is there takes for its answer, much shorter than the 12 s of the page.
     monkeypatch.setattr(live_route, "SILENCE_S", 2.0)
-    run = shop.start(supervision=Supervision(loss_policy="hold", loss_timeout_s=0.1))
+    run = shop.start(supervision=RunOptions(loss_policy="hold", loss_timeout_s=0.1))
     port = shop.running.port
     with Wire(loopback, port) as wire, opened_page(browser, shop.running, f"/runs/{run}") as watching:
         context = browser.new_context()

@@ -8,9 +8,9 @@ from contextlib import contextmanager
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import VIEWER
-from engine.event import Commanded, GateReached, OperatorChanged
-from engine.supervision import Supervision
+from editor_web.security.authentication import VIEWER
+from engine.event import GateReached, OperatorChanged, OperatorCommanded
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit, switch, until
 from tests.editor_web.workshop import SHIFT, SHIFT_ID, Workshop
 from tests.tiers import nightly
@@ -52,7 +52,7 @@ def standing(page: Page) -> Locator:
 
 def commands_of(shop: Workshop, run: str) -> list[str]:
     """What was commanded, in order."""
-    return [event.command for event in shop.events(run) if isinstance(event, Commanded)]
+    return [event.command for event in shop.events(run) if isinstance(event, OperatorCommanded)]
 
 
 def test_without_a_run_every_command_says_why_not(browser: Browser, shop: Workshop) -> None:
@@ -116,7 +116,7 @@ def test_a_run_is_paused_stepped_and_resumed(browser: Browser, shop: Workshop) -
 
 def test_a_run_is_stepped_back_by_button_and_by_key(browser: Browser, shop: Workshop) -> None:
     """The graph shows what was taken back as not entered; what cannot be undone is refused with the reason."""
-    run = shop.start(supervision=Supervision(start_paused=True))
+    run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop, quiet=False) as page:
         waits = page.get_by_role("list", name="Nodes that wait")
         for path in ("root/first", "root/set", "root/both"):
@@ -134,7 +134,7 @@ def test_a_run_is_stepped_back_by_button_and_by_key(browser: Browser, shop: Work
 
 def test_what_the_engine_refuses_is_said_in_its_words(browser: Browser, shop: Workshop) -> None:
     """A page that is behind by a moment asks for what is not possible any more."""
-    run = shop.start(supervision=Supervision(start_paused=True))
+    run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop, quiet=False) as page:
         expect(standing(page)).to_have_text("Paused, everything rests")
         # The answer is made by hand: the command reaches a run that has just gone on.
@@ -149,7 +149,7 @@ def test_what_the_engine_refuses_is_said_in_its_words(browser: Browser, shop: Wo
 
 def test_autonomy_is_a_slider_that_says_what_it_means(browser: Browser, shop: Workshop) -> None:
     """By key, by pointer, and from another console."""
-    run = shop.start(supervision=Supervision(start_paused=True))
+    run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop) as page:
         slider = page.get_by_label("Autonomy", exact=True)
         expect(slider).to_have_attribute("aria-valuetext", "full")
@@ -168,7 +168,7 @@ def test_autonomy_is_a_slider_that_says_what_it_means(browser: Browser, shop: Wo
 
 def test_the_file_as_it_is_now_takes_over_with_a_report(browser: Browser, shop: Workshop) -> None:
     """And where that is impossible, the reasons; the graph shows the new version."""
-    shop.start(supervision=Supervision(start_paused=True))
+    shop.start(supervision=RunOptions(start_paused=True))
     file = shop.project / SHIFT_ID
     with at_shift(browser, shop, quiet=False) as page:
         expect(standing(page)).to_have_text("Paused, everything rests")
@@ -216,7 +216,7 @@ def test_what_runs_is_given_up_for_the_file_by_a_button_of_its_own(browser: Brow
 
 def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop: Workshop) -> None:
     """A sheet lists them; nothing happens while somebody writes."""
-    run = shop.start(supervision=Supervision(start_paused=True))
+    run = shop.start(supervision=RunOptions(start_paused=True))
     with at_shift(browser, shop) as page:
         expect(standing(page)).to_have_text("Paused, everything rests")
         page.get_by_role("searchbox").or_(page.get_by_label("Find in the log")).first.fill("pp")
@@ -257,7 +257,7 @@ def test_single_keys_are_commands_and_can_be_switched_off(browser: Browser, shop
 
 def test_a_viewer_sees_the_state_and_no_command_is_open(browser: Browser, shop: Workshop) -> None:
     """State yes, commands no, each with the reason."""
-    shop.start(supervision=Supervision(start_paused=True))
+    shop.start(supervision=RunOptions(start_paused=True))
     login = shop.running.new_login_url(VIEWER)
     assert VIEWER == "viewer"
     with at_shift(browser, shop, login=login) as page:
@@ -277,7 +277,7 @@ def test_a_viewer_sees_the_state_and_no_command_is_open(browser: Browser, shop: 
 
 def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Workshop) -> None:
     """What one page commands, the other shows; an operating page is one again after its reload."""
-    run = shop.start(supervision=Supervision(start_paused=True, autonomy="low"))
+    run = shop.start(supervision=RunOptions(start_paused=True, autonomy="low"))
     with at_shift(browser, shop) as first, at_shift(browser, shop) as second:
         command(first, "Operate").click()
         expect(command(first, "Operate")).to_have_attribute("aria-pressed", "true")
@@ -302,7 +302,7 @@ def test_a_second_browser_and_a_reload_show_the_same(browser: Browser, shop: Wor
 
 def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> None:
     """The other page reads it, and what the policy did."""
-    shop.start(supervision=Supervision(start_paused=True, loss_policy="stop", loss_timeout_s=0.2))
+    shop.start(supervision=RunOptions(start_paused=True, loss_policy="stop", loss_timeout_s=0.2))
     with at_shift(browser, shop) as watching:
         with at_shift(browser, shop) as page:
             command(page, "Operate").click()
@@ -316,7 +316,7 @@ def test_a_lost_page_is_an_operator_lost(browser: Browser, shop: Workshop) -> No
 @pytest.mark.parametrize("size", [nightly(LAPTOP), PHONE])
 def test_an_operated_run_is_accessible_and_fits(browser: Browser, shop: Workshop, size: Size, scheme: Scheme) -> None:
     """With everything open that can be; nothing to scroll sideways."""
-    run = shop.start(supervision=Supervision(autonomy="off", demand_operator=True))
+    run = shop.start(supervision=RunOptions(autonomy="off", demand_operator=True))
     shop.on_loop(lambda: shop.arm.become("reflex", error="external torque of joint 4 above 20 N m"))
     with opened_page(browser, shop.running, f"/behaviors/{SHIFT_ID}", size=size, scheme=scheme) as page:
         expect(page.get_by_role("region", name="The run asks")).to_be_visible()

@@ -8,8 +8,8 @@ from pathlib import Path
 from playwright.sync_api import Browser, expect
 
 from engine.event import StopRequested
+from engine.runtime.run_options import RunOptions
 from engine.skills.arm_control import ArmStatus
-from engine.supervision import Supervision
 from tests.editor_web.browsing import opened_page, require_accessible, switch
 from tests.editor_web.workshop import NAP, NAP_ID, SHIFT_ID, Workshop
 from tests.engine.cli.process import entered, run_id_in, started, until
@@ -18,7 +18,7 @@ from tests.engine.cli.process import entered, run_id_in, started, until
 def test_several_runs_go_on_side_by_side(browser: Browser, shop: Workshop) -> None:
     """Each with its own truth; the one behavior cannot be started twice, another one can."""
     nap = shop.start(NAP_ID)
-    shift = shop.start(supervision=Supervision(start_paused=True))
+    shift = shop.start(supervision=RunOptions(start_paused=True))
     with opened_page(browser, shop.running, f"/runs/{nap}") as page:
         runs = page.get_by_role("navigation", name="Runs")
         expect(runs.get_by_role("link")).to_have_count(2)

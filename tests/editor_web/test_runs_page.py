@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Locator, Page, WebSocketRoute, expect
 
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from engine.bus import Holder
 from engine.event import OperatorChanged, RunStarted
-from engine.supervision import Supervision
+from engine.runtime.run_options import RunOptions
 from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, require_fit, switch
 from tests.editor_web.workshop import NAP_ID, SHIFT, SHIFT_ID, Workshop
 
-ASKS = Supervision(autonomy="low", demand_operator=True)
+ASKS = RunOptions(autonomy="low", demand_operator=True)
 NIGHT_ID = "behaviors/night.yaml"
 
 
@@ -52,7 +52,7 @@ def three_runs(shop: Workshop) -> dict[str, str]:
     return {
         "nap": shop.start(NAP_ID),
         "shift": shop.start(supervision=ASKS),
-        "night": shop.start(NIGHT_ID, supervision=Supervision(start_paused=True)),
+        "night": shop.start(NIGHT_ID, supervision=RunOptions(start_paused=True)),
     }
 
 

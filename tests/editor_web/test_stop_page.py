@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Frame, Page, Route, expect
 
 import hatch_build
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from engine.event import StopRequested
 from tests.editor_web.browsing import PHONE, opened_page, require_accessible, require_fit, until
 from tests.editor_web.real_server import dashboard_of

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from engine.demonstration import Trajectory
+from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import LearnJointDmp
 from engine.skills.entries import ReadEntry, ReadHistory, WriteEntry
-from engine.store.kinds import Joints, read_as
+from engine.store.entry_kinds import Joints, decode_entry
 from tests.editor_web.browsing import Scheme, require_accessible
 from tests.editor_web.teach_page import tab, teaching
 from tests.editor_web.teach_site import TeachSite
@@ -66,7 +66,7 @@ def test_tags_are_changed_and_the_value_stays(browser: Browser, site: TeachSite)
         expect(entries.get_by_role("button", name="joints aside station_2 tested")).to_be_visible()
         expect(entries.get_by_role("list", name="History of aside").get_by_role("listitem")).to_have_count(2)
         record = site.call(site.bus.call(ReadEntry(kind="joints", name="aside"), to="store"))
-        assert read_as(record, Joints).joints == HOME
+        assert decode_entry(record, Joints).joints == HOME
         last = site.call(site.bus.call(ReadHistory(kind="joints", name="aside"), to="store")).changes[-1]
         assert (last.by, last.reason, last.tags) == ("the dashboard", "other tags", ("station_2", "tested"))
 

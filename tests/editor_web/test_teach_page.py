@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import VIEWER
-from engine.primitive import JointDmp
+from editor_web.security.authentication import VIEWER
+from engine.messages.primitives import JointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.jogging import JogCommand
 from engine.skills.teaching import Callback, Trigger, TriggerType
-from engine.store.kinds import Joints, read_as
+from engine.store.entry_kinds import Joints, decode_entry
 from tests.editor_web.browsing import PHONE, Scheme, opened_page, require_accessible, require_fit, switch, until
 from tests.editor_web.teach_page import LAPTOP, tab, teaching
 from tests.editor_web.teach_site import RESTS_RAD_S, TeachSite, fastest
@@ -71,7 +71,7 @@ def site(tmp_path_factory: pytest.TempPathFactory, loopback: str) -> Generator[T
 
 def entry_joints(site: TeachSite, name: str) -> tuple[float, ...]:
     record = site.call(site.bus.call(ReadEntry(kind="joints", name=name), to="store"))
-    return read_as(record, Joints).joints
+    return decode_entry(record, Joints).joints
 
 
 def save(page: Page, capture: int, name: str) -> Locator:
@@ -139,7 +139,7 @@ def test_poses_and_a_motion_are_taught_by_buttons_and_move_a_behavior(browser: B
             saved(save(page, first + nth, name))
         here, there = entry_joints(site, "here"), entry_joints(site, "there")
         assert np.abs(np.subtract(here, there)).max() > 0.03
-        sweep = read_as(site.call(site.bus.call(ReadEntry(kind="dmp", name="sweep"), to="store")), JointDmp)
+        sweep = decode_entry(site.call(site.bus.call(ReadEntry(kind="dmp", name="sweep"), to="store")), JointDmp)
         assert np.abs(np.subtract(sweep.start, sweep.goal)).max() > 0.1
         run_round(site)
         assert np.allclose(site.joints().position_rad, here, atol=0.01)

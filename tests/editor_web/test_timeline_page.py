@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
 from engine.clock import run_virtual
-from engine.event import Event, Exited
+from engine.event import Event, NodeExited
 from tests.editor_web.browsing import DESK, PHONE, Scheme, Size, opened_page, require_accessible
 from tests.editor_web.workshop import NAP_ID, SHIFT_ID, Workshop
 from tests.engine.replay.bench import record_run
@@ -103,7 +103,7 @@ def share_of(events: list[Event], share: float) -> str:
 
 def end_of(events: list[Event], path: str) -> float:
     """When a node ended."""
-    return next(event.time_s for event in events if isinstance(event, Exited) and event.path == path)
+    return next(event.time_s for event in events if isinstance(event, NodeExited) and event.path == path)
 
 
 def test_scrubbing_shows_what_was_active_then(browser: Browser, sorted_shop: tuple[Workshop, str]) -> None:

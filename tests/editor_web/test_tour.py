@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from editor_web.access import VIEWER
+from editor_web.security.authentication import VIEWER
 from engine.document import load_behavior
 from tests.editor_web.browsing import PHONE, Scheme, Size, opened_page, require_accessible, require_fit
 from tests.editor_web.editing import LAPTOP, card, drag, idle, pill, port

@@ -13,9 +13,9 @@ import websockets.asyncio.client
 import zstandard
 from websockets.typing import Subprotocol
 
-from editor_web.access import OPERATOR, Role
 from editor_web.cell_view import KEY_HEADER, PAGE_HEADER, CellView
-from editor_web.security import cookie_name
+from editor_web.security.authentication import OPERATOR, Role
+from editor_web.security.middleware import cookie_name
 from editor_web.server import Dashboard
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.limits import GUARD_S

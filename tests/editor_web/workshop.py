@@ -9,15 +9,15 @@ from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
-from editor_web.access import Access, load_access
+from editor_web.security.authentication import AccessTokens, load_access_tokens
 from editor_web.server import Dashboard, dashboard
 from engine.bus import SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.event import Event
 from engine.journal import Journal
+from engine.project.session import Session
+from engine.project.session_recordings import RECORDINGS, SessionRecordings
 from engine.registry import load_states
-from engine.session import Session
-from engine.session_recordings import RECORDINGS, SessionRecordings
 from engine.state import State
 from tests.editor_web.fake_arm import FakeArm
 from tests.editor_web.limits import GUARD_S
@@ -111,9 +111,9 @@ class Workshop:
         return self._parts[2]
 
     @property
-    def access(self) -> Access:
+    def access(self) -> AccessTokens:
         """Its tokens."""
-        return load_access(self.project / "tokens")
+        return load_access_tokens(self.project / "tokens")
 
     def call(self, work: Coroutine[Any, Any, T]) -> T:
         """Run a coroutine on the server's loop."""

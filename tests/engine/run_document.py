@@ -10,9 +10,9 @@ from textwrap import dedent
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Entered, Event, Exited, Logged
-from engine.plan import Plan, new_plan
-from engine.run import Run, RunResult
+from engine.event import Event, MessageLogged, NodeEntered, NodeExited
+from engine.runtime.plan import Plan, new_plan
+from engine.runtime.run import Run, RunResult
 from tests.engine.fake_states import WITH_FLOW
 
 
@@ -29,11 +29,11 @@ class Told:
         lines: list[str] = []
         for event in self.events:
             match event:
-                case Entered():
+                case NodeEntered():
                     lines.append(f"+{event.path}")
-                case Exited():
+                case NodeExited():
                     lines.append(f"-{event.path} {'preempted' if event.preempted else event.outcome or 'error'}")
-                case Logged():
+                case MessageLogged():
                     lines.append(f"!{event.path} {event.message}")
                 case _:
                     pass

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from engine.clock import NothingCanWake, OneTurn, VirtualLoop, new_clock, run_virtual
+from engine.clock import OneTurn, VirtualLoop, VirtualTimeDeadlock, new_clock, run_virtual
 
 
 def test_an_hour_of_sleeps_takes_no_time() -> None:
@@ -67,7 +67,9 @@ def test_a_standstill_is_an_error_that_names_who_waits() -> None:
     async def stuck() -> None:
         await asyncio.get_running_loop().create_future()
 
-    with pytest.raises(NothingCanWake, match=r"nothing can happen any more at t=0.000 s \(waiting for ever: main\)"):
+    with pytest.raises(
+        VirtualTimeDeadlock, match=r"nothing can happen any more at t=0.000 s \(waiting for ever: main\)"
+    ):
         run_virtual(stuck())
 
 

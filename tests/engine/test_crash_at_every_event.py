@@ -1,6 +1,6 @@
 """A process is killed at every event of a run and around every commit; another resumes it; the end is the same.
 
-The processes and their devices are those of `benchmarks/crashes.py`. Effects are lines in a file.
+The processes and their devices are those of `benchmarks/crash_recovery.py`. Effects are lines in a file.
 """
 
 from __future__ import annotations

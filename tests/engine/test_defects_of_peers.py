@@ -18,7 +18,7 @@ from engine.check import check_behavior
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.errors import DocumentError
-from engine.run import Run
+from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE
 from tests.engine.run_document import HEAD, plan_of, run_document
 

@@ -10,8 +10,8 @@ import pytest
 
 from engine.bus import SkillBus
 from engine.clock import new_clock
-from engine.event import Entered, Event
-from engine.run import Run
+from engine.event import Event, NodeEntered
+from engine.runtime.run import Run
 from tests.engine.run_document import Told, plan_of, run_document
 
 BESIDE = """
@@ -56,7 +56,7 @@ def test_a_loop_that_waits_for_nothing_is_found_beside_one_that_waits(ping: str,
     assert told.result.status == "errored"
     assert "10000 transitions in a row without waiting for anything, through" in cause
     assert "root/loop" in cause
-    assert len([event for event in told.events if isinstance(event, Entered)]) < 50_000
+    assert len([event for event in told.events if isinstance(event, NodeEntered)]) < 50_000
 
 
 def test_a_loop_that_waits_inside_a_container_is_none() -> None:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from engine.cause import describe
-from engine.cell import OpenCell
+from engine.cause_chain import describe_cause
+from engine.cell.open_cell import OpenCell
 from engine.errors import JournalError
 from engine.event import Event, RunEnded
 from engine.journal import Journal, list_runs, read_events
-from engine.session import Session
+from engine.project.session import Session
 from tests.engine.fake_states import CATALOGUE
 
 WAIT = """
@@ -71,7 +71,7 @@ async def test_it_ends_errored_and_the_next_runs_again_once_there_is_space(
                 assert SAID in view.cause
                 assert "check free space" in view.cause
                 ends = [event for event in told if isinstance(event, RunEnded)]
-                assert [(end.status, end.cause is not None and SAID in describe(end.cause)) for end in ends] == [
+                assert [(end.status, end.cause is not None and SAID in describe_cause(end.cause)) for end in ends] == [
                     ("errored", True)
                 ]
                 assert session.events(lost)[-1] == ends[0]

@@ -14,8 +14,8 @@ import asyncio, json, sys
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.plan import new_plan
-from engine.run import Run
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run
 from engine.state import Outcome, State
 
 class Nod(State, frozen=True, kw_only=True):
@@ -34,7 +34,7 @@ def ended(work):
     return run_virtual(main())
 
 SPARED = {"py_trees", "importlib.metadata", "difflib", "cel_expr_python"}
-SPARED |= {"engine.document.entries", "engine.step_back", "engine.undoing"}
+SPARED |= {"engine.document.entries_document", "engine.runtime.history.step_back", "engine.runtime.step_back_executor"}
 told = []
 for work in (
     "state: own.Nod, transitions: {success: success}",

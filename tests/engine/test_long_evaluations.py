@@ -10,8 +10,8 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document.expression_cost import MAX_STEPS
 from engine.document.step_meter import METER
-from engine.event import Entered
-from engine.run import Run, RunResult
+from engine.event import NodeEntered
+from engine.runtime.run import Run, RunResult
 from tests.engine.run_document import Told, plan_of, run_document
 
 XS = f"[{', '.join(map(str, range(250)))}]"
@@ -78,7 +78,7 @@ async def _most_entered(text: str) -> int:
     """Run a document; return how often a state was entered at most between two turns of another task."""
     run = Run(plan_of(text), run="r", bus=SkillBus(new_clock()))
     entered = [0]
-    run.watch(lambda event: entered.append(entered.pop() + isinstance(event, Entered)))
+    run.watch(lambda event: entered.append(entered.pop() + isinstance(event, NodeEntered)))
     longest = 0
     running: asyncio.Task[RunResult] = asyncio.ensure_future(run.execute())
     while not running.done():

@@ -6,12 +6,12 @@ from typing import Any, ClassVar
 
 import pytest
 
-from engine.cause import describe
-from engine.event import Cause, Logged
+from engine.cause_chain import describe_cause
+from engine.event import Cause, MessageLogged
 from engine.journal import decode_event, encode_event
 from engine.state import Context, Outcome, State
-from tests.engine.control.operate import operate, pause, resume
 from tests.engine.run_document import Told
+from tests.engine.runtime.control.operate import operate, pause, resume
 
 HALF = "half a character: \ud83d"
 DOCUMENT = """
@@ -120,6 +120,6 @@ def test_a_pause_goes_on_whatever_a_state_raises_when_it_is_told() -> None:
 def test_half_a_character_is_written_out_in_every_event(raises: bool) -> None:
     told = run(Mumbling, more=f", with: {{raises: {str(raises).lower()}}}")
     assert [decode_event(encode_event(event)) for event in told.events] == list(told.events)
-    assert "half a character: \\ud83d" in [event.message for event in told.events if isinstance(event, Logged)]
+    assert "half a character: \\ud83d" in [event.message for event in told.events if isinstance(event, MessageLogged)]
     if raises:
-        assert "half a character: \\ud83d" in describe(told.result.cause or Cause(message=""))
+        assert "half a character: \\ud83d" in describe_cause(told.result.cause or Cause(message=""))

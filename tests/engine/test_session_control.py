@@ -8,16 +8,16 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
-from engine.control import Breakpoint, save_breakpoints
+from engine.cell.open_cell import OpenCell
 from engine.errors import ControlError, DocumentError, FlexcellError
-from engine.event import Commanded, Entered, Event, GateReached, OperatorChanged, UserdataWritten
+from engine.event import Event, GateReached, NodeEntered, OperatorChanged, OperatorCommanded, UserdataWritten
 from engine.journal import Journal
-from engine.launch import Moment
+from engine.project.run_factory import RunPosition
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.resume import NeedsAnswers
-from engine.session import Session
-from engine.supervision import Supervision
+from engine.runtime.control import Breakpoint, save_breakpoints
+from engine.runtime.history.resume import ResumeDecisionRequired
+from engine.runtime.run_options import RunOptions
 from tests.engine.cli.process import entered, run_id_in, started, until
 from tests.engine.fake_states import CATALOGUE
 
@@ -73,7 +73,7 @@ def waits(path: str) -> Callable[[Event], bool]:
 @pytest.mark.virtual
 async def test_a_run_is_controlled_and_shown_with_its_control(project: Path) -> None:
     async with opened(project) as session:
-        run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=Supervision(start_paused=True))
+        run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=RunOptions(start_paused=True))
         await told(session, run, waits("root"))
         view = session.run(run).control
         assert view is not None
@@ -91,7 +91,7 @@ async def test_a_run_is_controlled_and_shown_with_its_control(project: Path) -> 
 async def test_a_run_has_an_operator_as_long_as_anybody_is_there(project: Path) -> None:
     """Only the last one who leaves, or is lost, counts; with nobody, the rules are off and the run goes on."""
     async with opened(project) as session:
-        supervision = Supervision(autonomy="low", start_paused=True)
+        supervision = RunOptions(autonomy="low", start_paused=True)
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=supervision)
         first, second, third = session.operate(run), session.operate(run), session.operate(run)
         session.control(run).resume()
@@ -109,7 +109,7 @@ async def test_a_run_has_an_operator_as_long_as_anybody_is_there(project: Path) 
 @pytest.mark.virtual
 async def test_a_lost_operator_has_the_run_held_after_a_while(project: Path) -> None:
     async with opened(project) as session:
-        supervision = Supervision(autonomy="low", loss_timeout_s=2.0)
+        supervision = RunOptions(autonomy="low", loss_timeout_s=2.0)
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=supervision)
         attachment = session.operate(run)
         await told(session, run, waits("root/two"))
@@ -126,7 +126,7 @@ async def test_a_lost_operator_has_the_run_held_after_a_while(project: Path) -> 
 @pytest.mark.virtual
 async def test_the_file_as_it_is_now_takes_over_a_paused_run(project: Path) -> None:
     async with opened(project) as session:
-        run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=Supervision(start_paused=True))
+        run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=RunOptions(start_paused=True))
         (project / BEHAVIOR).write_text(STEPS.replace("value: 1}", "value: 5}"), encoding="utf-8")
         assert (await session.change(run)).changes == ("root/one has other parameters",)
         (project / BEHAVIOR).write_text("root: [", encoding="utf-8")
@@ -151,15 +151,15 @@ async def test_a_run_begins_at_a_moment_of_another(project: Path) -> None:
     async with opened(project) as session:
         before = await session.start(BEHAVIOR, parameters={"add": 3}, seed=0)
         await session.wait(before)
-        seq = next(e.seq for e in session.events(before) if isinstance(e, Entered) and e.path == "root/three")
-        run = await session.start(BEHAVIOR, parameters={}, seed=0, begin=Moment(run=before, seq=seq))
+        seq = next(e.seq for e in session.events(before) if isinstance(e, NodeEntered) and e.path == "root/three")
+        run = await session.start(BEHAVIOR, parameters={}, seed=0, begin=RunPosition(run=before, seq=seq))
         assert (await session.wait(run)).outcome == "good"
-        paths = [event.path for event in session.events(run) if isinstance(event, Entered)]
+        paths = [event.path for event in session.events(run) if isinstance(event, NodeEntered)]
         assert paths == ["root", "root/three"]
         written = [event.value for event in session.events(run) if isinstance(event, UserdataWritten)]
         assert written == [1, 4]
         with pytest.raises(DocumentError, match="has no event 900"):
-            await session.start(BEHAVIOR, parameters={}, seed=0, begin=Moment(run=before, seq=900))
+            await session.start(BEHAVIOR, parameters={}, seed=0, begin=RunPosition(run=before, seq=900))
 
 
 ASKS = """
@@ -185,7 +185,7 @@ async def test_a_run_whose_process_was_killed_is_resumed_in_a_session(project: P
     run = run_id_in(project)
     async with opened(project, real_states=True) as session:
         assert [record.id for record in session.interrupted()] == [run]
-        with pytest.raises(NeedsAnswers):
+        with pytest.raises(ResumeDecisionRequired):
             await session.resume(run)
         assert await session.resume(run, answers={"root/second": "done"}) == run
         view = await session.wait(run)
@@ -196,7 +196,7 @@ async def test_a_run_whose_process_was_killed_is_resumed_in_a_session(project: P
         assert session.interrupted() == ()
         with pytest.raises(ControlError, match="this run is over"):
             await session.resume(run)
-    assert not [event for event in known if isinstance(event, Commanded)]
+    assert not [event for event in known if isinstance(event, OperatorCommanded)]
 
 
 async def test_a_run_of_another_project_is_not_resumed(project: Path, tmp_path_factory: pytest.TempPathFactory) -> None:

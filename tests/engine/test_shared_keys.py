@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.event import Exited, UserdataWritten
-from engine.history import History
-from engine.userdata import Scope
+from engine.event import NodeExited, UserdataWritten
+from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.userdata.userdata import Scope
 from tests.engine.run_document import Told, plan_of, run_document
 
 ADD = '{state: flow.SetValue, with: {value: "${count + 1}"}, out: {value: count}, transitions: {done: done}}'
@@ -139,8 +139,8 @@ def test_a_run_that_is_gone_on_with_has_what_was_shared() -> None:
     plan = plan_of(COUNT.replace("SHARED", "count"))
     events = _count("count").events
     for number in range(3, len(events) - 1):
-        history = History(plan, run="run").read(events[:number])
-        ended = {e.path for e in events[:number] if isinstance(e, Exited)}
+        history = RunStateReducer(plan, run="run").read(events[:number])
+        ended = {e.path for e in events[:number] if isinstance(e, NodeExited)}
         written = [e.value for e in events[:number] if isinstance(e, UserdataWritten) and e.path in ended]
         assert history.checkpoint().userdata == {"count": written[-1] if written else 0}
 

@@ -11,13 +11,13 @@ import pytest
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Entered, Event
-from engine.plan import new_plan
-from engine.run import Run
+from engine.event import Event, NodeEntered
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run
 from engine.state import Context, Outcome, State
-from tests.engine.control.operate import operate
 from tests.engine.fake_states import WITH_FLOW
 from tests.engine.run_document import HEAD, run_document
+from tests.engine.runtime.control.operate import operate
 
 CHAIN = """
 root:
@@ -112,4 +112,4 @@ def test_a_loop_that_is_closed_over_a_state_that_takes_no_notice_enters_no_other
         await asyncio.sleep(0.1)
 
     run_virtual(main())
-    assert [event.path for event in heard if isinstance(event, Entered)] == ["root", "root/deaf"]
+    assert [event.path for event in heard if isinstance(event, NodeEntered)] == ["root", "root/deaf"]

@@ -15,12 +15,12 @@ from engine.document import parse_behavior
 from engine.document.cell import load_cell
 from engine.document.substitutes import parse_substitutes
 from engine.errors import ControlError, DocumentError, Position
-from engine.event import Entered, Event, Exited
-from engine.launch import require_simulation
-from engine.plan import Plan, new_plan
-from engine.run import Run, RunResult
+from engine.event import Event, NodeEntered, NodeExited
+from engine.project.run_factory import require_simulation
+from engine.runtime.plan import Plan, new_plan
+from engine.runtime.run import Run, RunResult
 from engine.state import Context, Outcome, State
-from engine.testing import Ending, run_behavior
+from engine.testing import SubstituteEnding, run_behavior
 from tests.engine.fake_states import WITH_FLOW
 from tests.engine.run_document import HEAD
 
@@ -79,7 +79,7 @@ def test_a_node_takes_its_time_and_ends_as_is_said() -> None:
     result, events = _run(_plan("- {at: root/act/left, outcome: done, after: 2 s}\n"))
     assert (result.outcome, result.duration_s, result.userdata) == ("good", 2.0, {"note": "moved"})
     assert result.stood_in_for == ("root/act/left",)
-    kinds = {event.path: event.kind for event in events if isinstance(event, Entered)}
+    kinds = {event.path: event.kind for event in events if isinstance(event, NodeEntered)}
     assert (kinds["root/act/left"], kinds["root/act/right"]) == ("substitute", "state")
 
 
@@ -87,14 +87,14 @@ def test_a_container_is_stood_in_for_whole() -> None:
     """Nothing inside it is entered; outputs of a container are userdata keys."""
     result, events = _run(_plan("- {at: root/act, outcome: done, outputs: {note: from a test}}\n"))
     assert (result.outcome, result.userdata) == ("good", {"note": "from a test"})
-    assert not any(event.path.startswith("root/act/") for event in events if isinstance(event, Entered))
+    assert not any(event.path.startswith("root/act/") for event in events if isinstance(event, NodeEntered))
 
 
 def test_a_script_has_an_ending_for_each_activation() -> None:
     script = "[{outcome: c, after: 1}, {outcome: c, after: 1}, {outcome: a, after: 1}]"
     result, events = _run(_plan(f"- {{at: root/look, script: {script}}}\n- {{at: root/act/left, outcome: done}}\n"))
     assert (result.outcome, result.duration_s) == ("good", 3.0)
-    assert [event.outcome for event in events if isinstance(event, Exited) and event.path == "root/look"] == [
+    assert [event.outcome for event in events if isinstance(event, NodeExited) and event.path == "root/look"] == [
         "c",
         "c",
         "a",
@@ -117,7 +117,7 @@ def test_outputs_go_where_those_of_the_state_go() -> None:
 def test_another_state_is_run_instead() -> None:
     result, events = _run(_plan("- {at: root/act/left, state: test.Hurried, with: {}}\n"))
     assert result.outcome == "good"
-    assert "substitute" in {event.kind for event in events if isinstance(event, Entered)}
+    assert "substitute" in {event.kind for event in events if isinstance(event, NodeEntered)}
 
 
 def test_leaves_of_trees_and_nodes_of_references_are_nodes_as_well(tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ def test_tests_write_them_as_a_mapping(tmp_path: Path) -> None:
         tmp_path / "chain.yaml",
         catalogue=WITH_FLOW,
         store=tmp_path / "s.db",
-        substitutes={"root/look": ["c", Ending(outcome="a", after="3 s")], "root/act": "failed"},
+        substitutes={"root/look": ["c", SubstituteEnding(outcome="a", after="3 s")], "root/act": "failed"},
     )
     assert (ran.outcome, ran.result.duration_s) == ("bad", 3.0)
     assert ran.result.cause is not None
@@ -194,5 +194,5 @@ def test_scripts_are_taken_in_turn_and_the_last_ending_stays(outcomes: list[str]
     result, events = _run(_plan(f"- {{at: root/look, script: [{script}]}}\n- {{at: root/act, outcome: done}}\n"))
     decisive = next((index for index, outcome in enumerate([*outcomes, "a"]) if outcome != "c"), len(outcomes))
     assert result.duration_s == decisive + 1
-    acted = any(event.path == "root/act" for event in events if isinstance(event, Entered))
+    acted = any(event.path == "root/act" for event in events if isinstance(event, NodeEntered))
     assert (result.outcome, acted) == ("good", [*outcomes, "a"][decisive] == "a")

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_cell, parse_behavior
-from engine.event import Entered, Event, Exited, GoalSent, RunEnded, RunStarted
+from engine.event import Event, GoalSent, NodeEntered, NodeExited, RunEnded, RunStarted
 from engine.journal import Journal, encode_event_log, list_runs, read_events
-from engine.plan import Plan, new_plan
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.run import Run, RunResult
-from engine.session import Session
+from engine.runtime.plan import Plan, new_plan
+from engine.runtime.run import Run, RunResult
 
 BEHAVIORS = Path(__file__).parents[2] / "behaviors"
 WAVE = """
@@ -86,7 +86,7 @@ def test_both_arms_move_at_once_and_both_runs_succeed(arms: _Arms) -> None:
     assert {name: arms.results[name].outcome for name in ("on_left", "on_right")} == dict.fromkeys(
         ("on_left", "on_right"), "finished"
     )
-    first_exit_s = [_times(arms.events[name], Exited)[0] for name in ("on_left", "on_right")]
+    first_exit_s = [_times(arms.events[name], NodeExited)[0] for name in ("on_left", "on_right")]
     assert min(first_exit_s) > THIRD_AT_S
 
 
@@ -97,7 +97,7 @@ def test_the_events_of_two_runs_are_not_mixed(arms: _Arms, run: str, robot: str)
     assert [event.seq for event in log] == list(range(1, len(log) + 1))
     assert [type(event) for event in log if isinstance(event, RunStarted | RunEnded)] == [RunStarted, RunEnded]
     assert {event.address for event in log if isinstance(event, GoalSent)} == {f"{robot}/joint_trap_vel"}
-    assert [event.path for event in log if isinstance(event, Entered)] == ["root", "root/away", "root/back"]
+    assert [event.path for event in log if isinstance(event, NodeEntered)] == ["root", "root/away", "root/back"]
 
 
 def test_the_third_run_is_refused_the_arm_and_told_run_and_state_of_the_holder(arms: _Arms) -> None:

@@ -77,7 +77,7 @@ def test_every_type_of_ours_is_ready_once_its_module_is_imported() -> None:
         ),
         ("from engine.document.cell import load_cell", "load_cell('behaviors/cells/dual_panda.yaml')"),
         (
-            "from engine.document.entries import load_entries",
+            "from engine.document.entries_document import load_entries",
             "load_entries('behaviors/entries/dual_panda.yaml')",
         ),
         (

@@ -9,8 +9,8 @@ import pytest
 
 from engine.check import check_behavior
 from engine.document import parse_behavior
-from engine.plan import new_plan
 from engine.registry import load_states
+from engine.runtime.plan import new_plan
 
 ROOT = Path(__file__).parents[2]
 PAGES = [

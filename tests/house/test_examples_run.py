@@ -11,23 +11,23 @@ import msgspec
 import numpy as np
 import pytest
 
-from engine.cause import describe
-from engine.cell import OpenCell
+from engine.cause_chain import describe_cause
+from engine.cell.open_cell import OpenCell
 from engine.check import check_behavior
 from engine.clock import run_virtual
-from engine.control import load_breakpoints
-from engine.control.breakpoint import breakpoints_file
-from engine.demonstration import Trajectory
 from engine.document import parse_behavior
 from engine.document.cell import load_cell
-from engine.document.entries import load_entries
+from engine.document.entries_document import load_entries
 from engine.document.faults import parse_faults
 from engine.document.substitutes import parse_substitutes
+from engine.messages.demonstrations import Trajectory
 from engine.registry import load_states
+from engine.runtime.control import load_breakpoints
+from engine.runtime.control.breakpoint import breakpoints_file
 from engine.skills.entries import WriteEntry
 from engine.teaching import load_triggers
-from engine.testing.behavior import run_behavior
-from robots.sim.cell_scene import scene_of
+from engine.testing.behavior_run import run_behavior
+from robots.sim.scene.scene_builder import build_scene
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "how-to" / "examples"
@@ -67,7 +67,7 @@ def test_a_behavior_runs_to_its_success(tmp_path: Path, text: str) -> None:
         run_virtual(lead_by_hand(store))
     ran = run_behavior(file, catalogue=load_states(), store=store, cell=cell)
     success = parse_behavior(text, file=file).success
-    assert ran.outcome in success, describe(ran.result.cause) if ran.result.cause else ran.result
+    assert ran.outcome in success, describe_cause(ran.result.cause) if ran.result.cause else ran.result
 
 
 async def lead_by_hand(store: Path) -> None:
@@ -88,7 +88,7 @@ def test_a_part_of_a_cell_makes_a_world(tmp_path: Path, text: str) -> None:
     rest = "" if text.startswith("world:") else "world: {kind: mujoco}\n"
     file.write_text(f"flexcell: 1\ncell: shown\n{rest}{text}", encoding="utf-8")
     cell = load_cell(file)
-    scene = scene_of(cell.document, seed=None, resolve=cell.resolve)
+    scene = build_scene(cell.document, seed=None, resolve=cell.resolve)
     assert {arm.name for arm in scene.arms} == set(cell.document.robots)
     assert {part.name for part in scene.parts} == set(cell.document.parts)
     assert {person.name for person in scene.people} == set(cell.document.people)

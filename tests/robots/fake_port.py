@@ -13,7 +13,7 @@ from robots.port import (
     ArmSample,
     ArmSettings,
     Array,
-    Contact,
+    ContactCondition,
     ForceRecord,
     ForceTask,
     GripperSample,
@@ -161,7 +161,7 @@ class FakeArmPort:
         self.settings = ArmSettings()
         self.motion: FakeMotion | None = None
         self.followed: list[JointTrajectory] = []
-        self.contacts: list[Contact | None] = []
+        self.contacts: list[ContactCondition | None] = []
         self.touch_after_s: float | None = None
         self.tracked: list[ForceTask] = []
         self.force_record = ForceRecord.of(share=np.array([0.0, 1.0]), offset=np.zeros((2, 6)), wrench=np.zeros((2, 6)))
@@ -198,7 +198,9 @@ class FakeArmPort:
             reflex=bool(self._reflex),
         )
 
-    def follow(self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: Contact | None = None) -> Motion:
+    def follow(
+        self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: ContactCondition | None = None
+    ) -> Motion:
         """Start following; raises RobotError while another motion runs or a reflex is not recovered from."""
         self._check_free()
         motion = self._play(trajectory)

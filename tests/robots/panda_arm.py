@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from robots.model import RobotModel, model_by_name
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array, JointTrajectory
 
-BASE = Rigid.of((-0.55, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+BASE = RigidTransform.of((-0.55, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 @functools.cache

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell_names import cell_names
+from engine.cell.cell_names import cell_names
 from engine.document.cell import load_cell
-from robots.sim.cell_model import build_cell
-from robots.sim.cell_scene import scene_of
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.scene_builder import build_scene
 
 CELLS = sorted((Path(__file__).parents[2] / "behaviors" / "cells").glob("*.yaml"))
 
@@ -18,7 +18,7 @@ CELLS = sorted((Path(__file__).parents[2] / "behaviors" / "cells").glob("*.yaml"
 def test_the_frames_of_a_cell_are_those_that_its_world_shows(file: Path) -> None:
     """And `world`, which is no body."""
     cell = load_cell(file)
-    shown = build_cell(scene_of(cell.document, resolve=cell.resolve)).frames
+    shown = build_cell(build_scene(cell.document, resolve=cell.resolve)).frames
     names = cell_names(cell)
     assert [name for name in shown if not names.has("frame", name)] == []
     assert names.by_kind["frame"] - set(shown) == {"world"}

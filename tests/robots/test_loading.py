@@ -15,11 +15,11 @@ PROGRAM = "import sys, {module}; print([name for name in ('numba', 'eaik', 'scip
     [
         "robots.model.inverse_kinematics",
         "robots.arm",
-        "robots.sim.simulated_cell",
+        "robots.simulated_cell",
         "editor_web.server",
         # On the event loop of the engine, at the first request.
-        "robots.planning.worker",
-        "robots.vision.worker",
+        "robots.planning.worker.planning_worker",
+        "robots.vision.camera_process",
     ],
 )
 def test_importing_loads_only_what_every_program_needs(module: str) -> None:

@@ -10,18 +10,18 @@ from typing import Any, Self
 import numpy as np
 import pytest
 
-import engine.cell
+import engine.cell.open_cell
 from engine.bus import ActiveGoal, GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.errors import RobotError
 from engine.messages import Message
-from engine.registry import load_maker
+from engine.registry import load_factory
 from engine.robot import DeviceStatus
 from engine.skill import Action
 from engine.skills.gripper import GripperMove
 from engine.skills.motion import JointTrapVel
 from robots.port import Tolerance
-from robots.sim.world import SimWorld
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.panda_arm import home
 from tests.robots.sim.demo_cell import joint_state, opened_cell, speed_rad_s
 from tests.robots.sim.sim_cell import smooth, until
@@ -87,7 +87,7 @@ def worlds(monkeypatch: pytest.MonkeyPatch) -> list[SimWorld]:
     made: list[SimWorld] = []
 
     def recorded(group: str, kind: str) -> Any:
-        maker = load_maker(group, kind)
+        maker = load_factory(group, kind)
 
         def make(*args: Any, **options: Any) -> Any:
             made.append(maker(*args, **options))
@@ -95,7 +95,7 @@ def worlds(monkeypatch: pytest.MonkeyPatch) -> list[SimWorld]:
 
         return make
 
-    monkeypatch.setattr(engine.cell, "load_maker", recorded)
+    monkeypatch.setattr(engine.cell.open_cell, "load_factory", recorded)
     return made
 
 

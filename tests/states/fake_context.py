@@ -75,7 +75,7 @@ class FakeContext:
         address = f"{to}/{request.skill_name()}"
         self.sent.append((address, request))
         if address not in self.answers:
-            raise NoSuchSkill("nobody answers at this address", where=address)
+            raise NoSuchSkill("no such service", where=address)
         answer: Any = self.answers[address]
         if isinstance(answer, list):
             answer = cast("list[Any]", answer).pop(0)

@@ -11,7 +11,14 @@ from hypothesis import strategies as st
 from engine.errors import StateError
 from engine.event import Cause
 from engine.messages import FramePoses, PartPoses, Pose, Quaternion, Vector3
-from engine.pose_algebra import along, composed, inverse, moved, rotated, turn_between_rad
+from engine.messages.pose_algebra import (
+    angle_between_rad,
+    compose_poses,
+    invert_pose,
+    offset_along,
+    rotate_vector,
+    translate_pose,
+)
 from states.frames import frame_in_world, part_in_world
 from tests.states.fake_context import FakeContext
 
@@ -41,32 +48,34 @@ def matrix(xyzw: Quaternion, vector: Vector3) -> list[float]:
 
 @given(poses(), POINTS)
 def test_a_vector_is_turned_as_by_the_matrix(pose: Pose, vector: Vector3) -> None:
-    assert rotated(pose.xyzw, vector) == pytest.approx(matrix(pose.xyzw, vector), abs=1e-9)
+    assert rotate_vector(pose.xyzw, vector) == pytest.approx(matrix(pose.xyzw, vector), abs=1e-9)
 
 
 @given(poses(), poses(), POINTS)
 def test_a_point_in_a_composed_frame_is_the_point_through_both(outer: Pose, inner: Pose, point: Vector3) -> None:
     at_point = Pose(xyz=point)
-    both = composed(outer, composed(inner, at_point))
-    assert composed(composed(outer, inner), at_point).xyz == pytest.approx(both.xyz, abs=1e-9)
+    both = compose_poses(outer, compose_poses(inner, at_point))
+    assert compose_poses(compose_poses(outer, inner), at_point).xyz == pytest.approx(both.xyz, abs=1e-9)
 
 
 @given(poses())
 def test_a_pose_and_its_inverse_undo_one_another(pose: Pose) -> None:
-    for nothing in (composed(pose, inverse(pose)), composed(inverse(pose), pose)):
+    for nothing in (compose_poses(pose, invert_pose(pose)), compose_poses(invert_pose(pose), pose)):
         assert nothing.xyz == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
-        assert turn_between_rad(nothing.xyzw, (0.0, 0.0, 0.0, 1.0)) == pytest.approx(0.0, abs=1e-4)
+        assert angle_between_rad(nothing.xyzw, (0.0, 0.0, 0.0, 1.0)) == pytest.approx(0.0, abs=1e-4)
 
 
 def test_a_quarter_turn_is_measured_whichever_sign_the_quaternion_has() -> None:
     quarter = (0.0, 0.0, QUARTER, QUARTER)
-    assert turn_between_rad(quarter, (0.0, 0.0, 0.0, 1.0)) == pytest.approx(math.pi / 2)
-    assert turn_between_rad(quarter, (0.0, 0.0, 0.0, -1.0)) == pytest.approx(math.pi / 2)
+    assert angle_between_rad(quarter, (0.0, 0.0, 0.0, 1.0)) == pytest.approx(math.pi / 2)
+    assert angle_between_rad(quarter, (0.0, 0.0, 0.0, -1.0)) == pytest.approx(math.pi / 2)
 
 
 def test_a_way_in_a_direction_has_its_length() -> None:
-    assert along((0.0, 3.0, 4.0), 0.5) == pytest.approx((0.0, 0.3, 0.4))
-    assert moved(Pose(xyz=(1.0, 1.0, 1.0), frame="tray"), (0.0, 0.5, 0.0)) == Pose(xyz=(1.0, 1.5, 1.0), frame="tray")
+    assert offset_along((0.0, 3.0, 4.0), 0.5) == pytest.approx((0.0, 0.3, 0.4))
+    assert translate_pose(Pose(xyz=(1.0, 1.0, 1.0), frame="tray"), (0.0, 0.5, 0.0)) == Pose(
+        xyz=(1.0, 1.5, 1.0), frame="tray"
+    )
 
 
 async def test_parts_and_frames_are_where_the_cell_shows_them() -> None:

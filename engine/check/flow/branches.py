@@ -9,18 +9,18 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 
-from engine.check.flow.effect import Effect, either
-from engine.check.flow.graph import Way
-from engine.check.flow.site import Sites
-from engine.check.subject import Placed
-from engine.document.condition import deciding, preemptable
-from engine.document.node import shared_keys
+from engine.check.analyzed_behavior import NodeAt
+from engine.check.flow.definition_sites import DefinitionSites
+from engine.check.flow.effect import Effect, join_effects
+from engine.check.flow.flow_graph import FlowEdge
+from engine.document.concurrency_condition import deciding, preemptable
+from engine.document.node_spec import shared_keys
 
-Ways = Mapping[str, Sequence[Way]]
+EdgesByNode = Mapping[str, Sequence[FlowEdge]]
 
 
 def concurrency_ends(
-    placed: Placed, children: Sequence[Placed], ways: Ways, entry: int, sites: Sites
+    placed: NodeAt, children: Sequence[NodeAt], ways: EdgesByNode, entry: int, sites: DefinitionSites
 ) -> dict[str, int]:
     """Return what holds at each end of a concurrency container."""
     container = placed.node.concurrency
@@ -35,7 +35,9 @@ def concurrency_ends(
     return ends
 
 
-def parallel_ends(placed: Placed, children: Sequence[Placed], ways: Ways, entry: int, sites: Sites) -> dict[str, int]:
+def parallel_ends(
+    placed: NodeAt, children: Sequence[NodeAt], ways: EdgesByNode, entry: int, sites: DefinitionSites
+) -> dict[str, int]:
     """Return what holds when a parallel of a tree succeeds and when it fails."""
     group = placed.node.parallel
     policy = "all" if group is None or isinstance(group, tuple) else group.policy
@@ -60,7 +62,7 @@ class _Branches:
     keys that the branches share: any of them may have written those last.
     """
 
-    def __init__(self, children: Sequence[Placed], ways: Ways, entry: int, *, shared: int = 0) -> None:
+    def __init__(self, children: Sequence[NodeAt], ways: EdgesByNode, entry: int, *, shared: int = 0) -> None:
         self._entry = entry
         self._shared = shared
         self._ways = {
@@ -80,12 +82,12 @@ class _Branches:
             fact = fact & ~((effect.kill | effect.defines) & ~self._later[name] & ~self._shared) | effect.gen
         return fact
 
-    def all_ended(self, sites: Sites, preempted: Collection[str]) -> int:
+    def all_ended(self, sites: DefinitionSites, preempted: Collection[str]) -> int:
         """Return what holds when all branches have ended, somehow; those `preempted` may have stopped anywhere."""
         fact = self._entry
         for name, ways in self._ways.items():
-            ended = either(way.effect for way in ways)
-            stopped = either(way.effect.perhaps() for way in ways).after(fact, sites) if name in preempted else 0
+            ended = join_effects(way.effect for way in ways)
+            stopped = join_effects(way.effect.perhaps() for way in ways).after(fact, sites) if name in preempted else 0
             fact = ended.after(fact, sites) | stopped
         # Of a shared key nobody knows who wrote last.
         return fact | self._entry & self._shared
@@ -114,5 +116,5 @@ class _Branches:
     def _ended(self, name: str, label: str) -> Effect:
         ended = [way.effect for way in self._ways[name] if way.label == label]
         if ended:
-            return either(ended)
-        return either(way.effect.perhaps() for way in self._ways[name])
+            return join_effects(ended)
+        return join_effects(way.effect.perhaps() for way in self._ways[name])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from engine.check.flow.site import Sites
+from engine.check.flow.definition_sites import DefinitionSites
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Effect:
         """True when it writes the same whether or not the keys were defined."""
         return self.gen == self.fresh
 
-    def after(self, fact: int, sites: Sites) -> int:
+    def after(self, fact: int, sites: DefinitionSites) -> int:
         """Return what holds behind the node when `fact` holds before it."""
         if not self.keys:
             return fact
@@ -67,7 +67,7 @@ class Effect:
             self.defines | after.defines,
         )
 
-    def hidden(self, own: frozenset[str], sites: Sites) -> Effect:
+    def hidden(self, own: frozenset[str], sites: DefinitionSites) -> Effect:
         """Return what of it is seen outside a scope with these keys of its own."""
         if not self.keys & own:
             return self
@@ -79,19 +79,19 @@ class Effect:
         return Effect(self.keys, self.gen, self.kill) if self.keys else self
 
 
-NOTHING = Effect()
+NO_EFFECT = Effect()
 
 
-def writing(key: str, site: int, sites: Sites) -> Effect:
+def write_effect(key: str, site: int, sites: DefinitionSites) -> Effect:
     """Return the effect of writing one key."""
     if not site:
-        return NOTHING
+        return NO_EFFECT
     return Effect(frozenset((key,)), site, sites.defined_bits(key), site, sites.undefined_bit(key))
 
 
-def together(effects: Iterable[Effect]) -> Effect:
+def combine_effects(effects: Iterable[Effect]) -> Effect:
     """Return the effect of writing different keys at once."""
-    found = NOTHING
+    found = NO_EFFECT
     for effect in effects:
         found = Effect(
             found.keys | effect.keys,
@@ -103,8 +103,8 @@ def together(effects: Iterable[Effect]) -> Effect:
     return found
 
 
-def either(effects: Iterable[Effect]) -> Effect:
-    """Return the effect of one of several ways; `NOTHING` for none."""
+def join_effects(effects: Iterable[Effect]) -> Effect:
+    """Return the effect of one of several ways; `NO_EFFECT` for none."""
     found: Effect | None = None
     for effect in effects:
         if found is None:
@@ -117,10 +117,10 @@ def either(effects: Iterable[Effect]) -> Effect:
             found.fresh | effect.fresh,
             found.defines & effect.defines,
         )
-    return found or NOTHING
+    return found or NO_EFFECT
 
 
-def summary(keys: frozenset[str], of_defined: int, of_undefined: int, sites: Sites) -> Effect:
+def container_effect(keys: frozenset[str], of_defined: int, of_undefined: int, sites: DefinitionSites) -> Effect:
     """Return the effect of a container from what holds at one of its ends.
 
     Args:

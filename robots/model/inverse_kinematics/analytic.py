@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from robots.model.inverse_kinematics.chain import Chain
-from robots.model.inverse_kinematics.ideal import IdealArm, ideal_arm
+from robots.model.inverse_kinematics.chain import KinematicChain
+from robots.model.inverse_kinematics.ideal_arm import IdealArm, ideal_arm
 from robots.port import Array
 
 _AXES = 6
@@ -23,7 +23,7 @@ _EXACT = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Analytic:
+class AnalyticSolver:
     """The closed form of one arm; `locked` is the joint that is given a value, -1 for six-axis arms.
 
     `exact` is False where the solutions are those of an ideal arm next to the true one.
@@ -45,7 +45,7 @@ class Analytic:
         return _solved(_solver(self.ideal, self.tool, ((self.locked, value),)), goal, _AXES + 1)
 
 
-def analytic_of(chain: Chain) -> Analytic | None:
+def new_analytic_solver(chain: KinematicChain) -> AnalyticSolver | None:
     """Return the closed form of an arm, None if EAIK has none or is not installed."""
     # EAIK has wheels for Linux only; elsewhere these arms are solved as all others are.
     if chain.sliding.any() or chain.dof not in (_AXES, _AXES + 1) or find_spec("eaik") is None:
@@ -58,7 +58,9 @@ def analytic_of(chain: Chain) -> Analytic | None:
         if solver is not None and solver.has_known_decomposition():
             family = str(solver.get_kinematic_family())
             exact = ideal.moved < _EXACT
-            return Analytic(ideal=ideal, tool=chain.tool, locked=locked, family=family, exact=exact, solver=solver)
+            return AnalyticSolver(
+                ideal=ideal, tool=chain.tool, locked=locked, family=family, exact=exact, solver=solver
+            )
     return None
 
 

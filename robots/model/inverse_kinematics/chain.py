@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from engine.errors import CellError
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 # Agreement demanded of the chain with the kinematics it was taken from, metres and entries of the rotation.
@@ -17,7 +17,7 @@ _AGREEMENT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Chain:
+class KinematicChain:
     """A serial arm whose every joint turns about, or slides along, the z axis of its frame.
 
     `placements` (n + 1, 3, 4): the pose of each joint's frame in the one before with all joints at 0,
@@ -39,7 +39,7 @@ class Chain:
         return len(self.sliding)
 
 
-def chain_of(kinematics: ArmKinematics) -> Chain:
+def chain_of(kinematics: ArmKinematics) -> KinematicChain:
     """Return the chain of an arm at its place in the cell.
 
     A column of the Jacobian with all joints at 0 is a joint's line: its direction, and its moment about
@@ -56,7 +56,7 @@ def chain_of(kinematics: ArmKinematics) -> Chain:
     offsets = np.cross(jacobian[3:].T, jacobian[:3].T) * turning[:, None]
     points = pose.xyz + offsets
     limits = kinematics.limits
-    chain = Chain(
+    chain = KinematicChain(
         placements=_placements(axes, points, tool),
         sliding=~turning,
         bounds=np.array([limits.lower_rad, limits.upper_rad, limits.velocity_rad_s]),
@@ -68,7 +68,7 @@ def chain_of(kinematics: ArmKinematics) -> Chain:
     return chain
 
 
-def matrix_of(pose: Rigid) -> Array:
+def matrix_of(pose: RigidTransform) -> Array:
     """Return a pose as rotation and position side by side, shape (3, 4)."""
     matrix = np.empty((3, 4))
     matrix[:, :3] = pose.rotation
@@ -76,7 +76,7 @@ def matrix_of(pose: Rigid) -> Array:
     return matrix
 
 
-def tool_at(chain: Chain, joints: Array) -> Array:
+def tool_at(chain: KinematicChain, joints: Array) -> Array:
     """Return the tool's pose (3, 4) in the world, by numpy alone."""
     rotation, position = np.eye(3), np.zeros(3)
     for placement, sliding, joint in zip(chain.placements, chain.sliding, joints, strict=False):
@@ -90,7 +90,7 @@ def tool_at(chain: Chain, joints: Array) -> Array:
     return np.column_stack((rotation @ last[:, :3], position + rotation @ last[:, 3]))
 
 
-def jacobian_of(chain: Chain, axes: Array, points: Array, tool: Array) -> Array:
+def jacobian_of(chain: KinematicChain, axes: Array, points: Array, tool: Array) -> Array:
     """Return the Jacobian (6, n) of a configuration in which the joints' lines and the tool (3, 4) are these."""
     arms = tool[:, 3] - points
     moving = np.where(chain.sliding[:, None], axes, np.cross(axes, arms))
@@ -123,7 +123,7 @@ def _about_z(angle: float) -> Array:
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
-def _check(chain: Chain, kinematics: ArmKinematics) -> None:
+def _check(chain: KinematicChain, kinematics: ArmKinematics) -> None:
     lower, upper = chain.bounds[:2]
     for share in (0.21, 0.83):
         # Another share for each joint, so that no two move alike.

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from robots.model.rigid import Rigid, conjugate, product, rotation_vector
+from robots.model.transform import RigidTransform, conjugate, product, rotation_vector
 from robots.port import Array
 
 
-def pose_error(actual: Rigid, target: Rigid) -> Array:
+def pose_error(actual: RigidTransform, target: RigidTransform) -> Array:
     """Return what is missing: metres, then the rotation vector in world axes, shape (6,)."""
     turn = rotation_vector(product(target.xyzw, conjugate(actual.xyzw)))
     return np.concatenate((target.xyz - actual.xyz, turn))

@@ -3,7 +3,7 @@
 A chain is `placements` (n + 1, 3, 4): the pose of each joint in the frame of the one before, the last
 is the tool; every joint turns about, or slides along, the z axis of its frame. `bounds` (3, n) holds
 lower limits, upper limits and speeds. A goal is a pose (3, 4) in the world. `match` says what of it
-counts, see `robots.model.inverse_kinematics.match`. All arrays are C-contiguous float64.
+counts, see `robots.model.inverse_kinematics.pose_match`. All arrays are C-contiguous float64.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.model.inverse_kinematics.chain import Chain
+from robots.model.inverse_kinematics.chain import KinematicChain
 from robots.port import Array
 
 _SAME_RAD = 1e-4
@@ -16,7 +16,7 @@ _TURN = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)
-class Solutions:
+class SolutionSet:
     """All solutions that were found for a goal, soonest reached first.
 
     `joints` (k, n) are within the limits, k is 1 at least. `complete` tells whether these are all there
@@ -28,7 +28,7 @@ class Solutions:
     how: str
 
 
-def distinct(chain: Chain, joints: Array) -> Array:
+def distinct(chain: KinematicChain, joints: Array) -> Array:
     """Return the rows of (k, n) that are different, whole turns aside."""
     kept = np.empty((0, chain.dof))
     turning = ~chain.sliding
@@ -40,7 +40,7 @@ def distinct(chain: Chain, joints: Array) -> Array:
     return kept
 
 
-def with_turns(chain: Chain, joints: Array) -> Array:
+def with_turns(chain: KinematicChain, joints: Array) -> Array:
     """Return the rows of (k, n) with every joint in every turn that its limits allow."""
     rows: list[tuple[float, ...]] = []
     for row in joints:
@@ -49,13 +49,13 @@ def with_turns(chain: Chain, joints: Array) -> Array:
     return np.array(rows).reshape(-1, chain.dof)
 
 
-def soonest_first(chain: Chain, joints: Array, seed: Array) -> Array:
+def soonest_first(chain: KinematicChain, joints: Array, seed: Array) -> Array:
     """Return the rows of (k, n) ordered by the time of the slowest joint from `seed`."""
     times = np.abs((joints - seed) / chain.bounds[2]).max(axis=1, initial=0.0)
     return joints[np.argsort(times, kind="stable")]
 
 
-def _turns(chain: Chain, i: int, value: float) -> list[float]:
+def _turns(chain: KinematicChain, i: int, value: float) -> list[float]:
     if chain.sliding[i]:
         return [value]
     lower, upper = float(chain.bounds[0, i]), float(chain.bounds[1, i])

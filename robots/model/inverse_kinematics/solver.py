@@ -9,13 +9,17 @@ import numpy as np
 
 from engine.errors import RobotError
 from robots.model.inverse_kinematics.chain import jacobian_of, matrix_of
-from robots.model.inverse_kinematics.fast_arm import FastArm, fast_arm, is_solved
-from robots.model.inverse_kinematics.match import Match
-from robots.model.inverse_kinematics.posture import Posture, judge, kind_of_singularity
-from robots.model.inverse_kinematics.solutions import Solutions, distinct, soonest_first, with_turns
-from robots.model.inverse_kinematics.unreachable import Attempt, unreachable
+from robots.model.inverse_kinematics.configuration_quality import (
+    ConfigurationQuality,
+    evaluate_configuration,
+    kind_of_singularity,
+)
+from robots.model.inverse_kinematics.failure_reason import DescentAttempt, unreachable_error
+from robots.model.inverse_kinematics.fast_kinematics import FastKinematics, is_solved, new_fast_kinematics
+from robots.model.inverse_kinematics.pose_match import PoseMatch
+from robots.model.inverse_kinematics.solutions import SolutionSet, distinct, soonest_first, with_turns
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
 # A solution this near to the seed is taken without looking for a nearer one.
@@ -33,14 +37,14 @@ _IRREGULAR = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Solution:
+class JointSolution:
     """The joints (n,) for a goal, within the limits, and how well the arm can move there."""
 
     joints: Array
-    posture: Posture
+    posture: ConfigurationQuality
 
 
-class InverseKinematics:
+class InverseKinematicsSolver:
     """Finds joints for a tool pose; deterministic: the same request gives the same answer.
 
     Six-axis arms are solved in closed form where their geometry allows it (also next to it, refined on
@@ -55,7 +59,7 @@ class InverseKinematics:
         """Load what the first request would otherwise wait for: the compiled loops and the arm's closed form."""
         self._arm().lines(np.array(self._kinematics.model.home_rad))
 
-    def nearest(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Array:
+    def nearest(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> Array:
         """Return the configuration for `target` (world) that is soonest reached from `seed`, shape (n,).
 
         Soonest by the slowest joint at its speed limit. Exact where the closed form lists all solutions;
@@ -65,7 +69,7 @@ class InverseKinematics:
             RobotError: none within the joint limits was found; says by how much and which joint is in the way.
         """
         arm, goal, seed = self._arm(), matrix_of(target), self._checked(seed)
-        if match is Match.POSE and arm.analytic is not None and arm.analytic.locked < 0:
+        if match is PoseMatch.POSE and arm.analytic is not None and arm.analytic.locked < 0:
             found = self._nearest_listed(arm, goal, seed)
             if found is not None:
                 return found
@@ -78,18 +82,20 @@ class InverseKinematics:
         listed = self._listed(arm, goal, match, seed)
         if len(listed.joints):
             return soonest_first(arm.chain, listed.joints, seed)[0]
-        if match is Match.POSITION and arm.chain.dof < _POSITION_CONDITIONS:
+        if match is PoseMatch.POSITION and arm.chain.dof < _POSITION_CONDITIONS:
             nearest = arm.descend_patiently(goal, match, best.joints)
             if nearest.distance_m <= _OFF_ITS_SURFACE_M:
                 return nearest.joints
         raise self._unreachable(arm, target, match, best)
 
-    def solve(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Solution:
+    def solve(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> JointSolution:
         """Return the nearest solution and how well the arm can move there; raises as `nearest` does."""
         joints = self.nearest(target, seed=seed, match=match)
-        return Solution(joints=joints, posture=self.posture(joints))
+        return JointSolution(joints=joints, posture=self.posture(joints))
 
-    def all_solutions(self, target: Rigid, *, seed: Array | None = None, match: Match = Match.POSE) -> Solutions:
+    def all_solutions(
+        self, target: RigidTransform, *, seed: Array | None = None, match: PoseMatch = PoseMatch.POSE
+    ) -> SolutionSet:
         """Return the solutions for `target` (world), soonest reached from `seed` (the home configuration) first.
 
         Every turn of a joint that its limits allow is a solution of its own.
@@ -104,10 +110,10 @@ class InverseKinematics:
         if not len(joints):
             # The search is more patient than the list, and knows the reason when it fails too.
             joints = self.nearest(target, seed=seed, match=match)[None]
-            found = Solutions(joints=joints, complete=False, how="one solution by a search")
-        return Solutions(joints=soonest_first(arm.chain, joints, seed), complete=found.complete, how=found.how)
+            found = SolutionSet(joints=joints, complete=False, how="one solution by a search")
+        return SolutionSet(joints=soonest_first(arm.chain, joints, seed), complete=found.complete, how=found.how)
 
-    def track(self, target: Rigid, *, seed: Array, match: Match = Match.POSE) -> Array | None:
+    def track(self, target: RigidTransform, *, seed: Array, match: PoseMatch = PoseMatch.POSE) -> Array | None:
         """Return the configuration for `target` next to `seed`, which is almost there; None if there is none.
 
         Joint limits are left to the caller.
@@ -115,14 +121,14 @@ class InverseKinematics:
         attempt = self._arm().follow(matrix_of(target), match, self._checked(seed))
         return attempt.joints if is_solved(attempt) else None
 
-    def posture(self, joints: Array) -> Posture:
+    def posture(self, joints: Array) -> ConfigurationQuality:
         """Return how well the arm can move in a configuration of shape (n,)."""
         arm = self._arm()
         axes, points, tool = arm.lines(self._checked(joints))
         kind = kind_of_singularity(arm.chain, arm.ideal, axes, points)
-        return judge(jacobian_of(arm.chain, axes, points, tool), kind)
+        return evaluate_configuration(jacobian_of(arm.chain, axes, points, tool), kind)
 
-    def _nearest_listed(self, arm: FastArm, goal: Array, seed: Array) -> Array | None:
+    def _nearest_listed(self, arm: FastKinematics, goal: Array, seed: Array) -> Array | None:
         """Return the nearest of the closed form's solutions, None if it lists none."""
         if arm.analytic is None:
             return None
@@ -131,12 +137,20 @@ class InverseKinematics:
             return None
         nearest = refined.joints[refined.nearest]
         if refined.pivot < _IRREGULAR:
-            near = arm.descend(goal, Match.POSE, seed, near=seed)
+            near = arm.descend(goal, PoseMatch.POSE, seed, near=seed)
             if is_solved(near):
                 return soonest_first(arm.chain, np.vstack((nearest, near.joints)), seed)[0]
         return nearest
 
-    def _searched(self, arm: FastArm, target: Rigid, goal: Array, match: Match, seed: Array, first: Attempt) -> Attempt:
+    def _searched(
+        self,
+        arm: FastKinematics,
+        target: RigidTransform,
+        goal: Array,
+        match: PoseMatch,
+        seed: Array,
+        first: DescentAttempt,
+    ) -> DescentAttempt:
         """Return the solution soonest reached from `seed`, or the attempt that came closest.
 
         `first` is the descent from the seed.
@@ -168,10 +182,10 @@ class InverseKinematics:
             closest = min(closest, attempt, key=_shortfall)
         return closest
 
-    def _listed(self, arm: FastArm, goal: Array, match: Match, seed: Array) -> Solutions:
+    def _listed(self, arm: FastKinematics, goal: Array, match: PoseMatch, seed: Array) -> SolutionSet:
         """Return the distinct solutions, whole turns aside; there may be none."""
         closed = arm.analytic
-        if match is not Match.POSE or closed is None:
+        if match is not PoseMatch.POSE or closed is None:
             random = np.random.default_rng(0)
             starts = random.uniform(arm.chain.bounds[0], arm.chain.bounds[1], size=(_SAMPLES, arm.chain.dof))
             ends = [arm.descend_patiently(goal, match, start) for start in starts]
@@ -188,11 +202,13 @@ class InverseKinematics:
             joints, complete = arm.refine(goal, candidates, seed=seed).joints, False
             name = self._kinematics.model.arm_joints[closed.locked]
             how = f"sampled: closed form for {_LOCKED_VALUES} values of {name}"
-        return Solutions(joints=distinct(arm.chain, joints), complete=complete, how=how)
+        return SolutionSet(joints=distinct(arm.chain, joints), complete=complete, how=how)
 
-    def _unreachable(self, arm: FastArm, target: Rigid, match: Match, best: Attempt) -> RobotError:
+    def _unreachable(
+        self, arm: FastKinematics, target: RigidTransform, match: PoseMatch, best: DescentAttempt
+    ) -> RobotError:
         goal, model = matrix_of(target), self._kinematics.model
-        return unreachable(
+        return unreachable_error(
             target,
             match,
             # To the end, so that what is told to be missing is what is missing.
@@ -200,11 +216,11 @@ class InverseKinematics:
             chain=arm.chain,
             names=model.arm_joints,
             starts=(np.array(model.home_rad), (arm.chain.bounds[0] + arm.chain.bounds[1]) / 2.0),
-            to_position=lambda start: arm.descend_patiently(goal, Match.POSITION, start),
+            to_position=lambda start: arm.descend_patiently(goal, PoseMatch.POSITION, start),
         )
 
-    def _arm(self) -> FastArm:
-        return fast_arm(self._kinematics)
+    def _arm(self) -> FastKinematics:
+        return new_fast_kinematics(self._kinematics)
 
     def _checked(self, joints: Array) -> Array:
         """Return `joints` as the compiled loops take them, which check nothing."""
@@ -217,11 +233,11 @@ class InverseKinematics:
         return array
 
 
-def _request_seed(target: Rigid, seed: Array) -> int:
+def _request_seed(target: RigidTransform, seed: Array) -> int:
     numbers = np.concatenate((target.xyz, target.xyzw, seed))
     # Rounding multiplies, and a place may be as far as a number can say.
     return zlib.crc32(numbers.clip(-1e9, 1e9).round(9).tobytes())
 
 
-def _shortfall(attempt: Attempt) -> float:
+def _shortfall(attempt: DescentAttempt) -> float:
     return attempt.distance_m + 0.1 * attempt.angle_rad

@@ -16,14 +16,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robots.motion.dmp.turns import conjugate, log, product
+from robots.motion.dmp.quaternions import conjugate, log, product
 from robots.port import Array
 
 _SMALL = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
-class Response:
+class AttractorResponse:
     """A solution at even shares of time: `value` (T, n) or quaternions (T, 4), `rate` and `push` per tau and tau²."""
 
     value: Array
@@ -31,7 +31,7 @@ class Response:
     push: Array
 
 
-def attract(*, force: Array, goal: Array, value: Array, rate: Array, a_z: float, step: float) -> Response:
+def attract(*, force: Array, goal: Array, value: Array, rate: Array, a_z: float, step: float) -> AttractorResponse:
     """Return the positions over time, exact for forces and goals that are linear between the samples.
 
     Args:
@@ -55,7 +55,7 @@ def attract(*, force: Array, goal: Array, value: Array, rate: Array, a_z: float,
     fed = step * decay * (inner[:-1] - steady) + settle * (1.0 - decay) + ramp / pole * step
     values = _recur(value, fed, decay)
     rates = inner - pole * values
-    return Response(value=values, rate=rates, push=drive - pole**2 * values - 2.0 * pole * rates)
+    return AttractorResponse(value=values, rate=rates, push=drive - pole**2 * values - 2.0 * pole * rates)
 
 
 def _recur(first: Array, fed: Array, decay: float) -> Array:
@@ -68,7 +68,9 @@ def _recur(first: Array, fed: Array, decay: float) -> Array:
     return values
 
 
-def attract_turn(*, force: Array, goal: Array, value: Array, rate: Array, a_z: float, step: float) -> Response:
+def attract_orientation(
+    *, force: Array, goal: Array, value: Array, rate: Array, a_z: float, step: float
+) -> AttractorResponse:
     """Return the orientations over time by the midpoint rule on the rotation group.
 
     Args:
@@ -86,22 +88,24 @@ def attract_turn(*, force: Array, goal: Array, value: Array, rate: Array, a_z: f
     values[0], rates[0] = turn, spin
     half = step / 2.0
     for k in range(samples - 1):
-        push = turn_push(turn, spin, goals[2 * k], forces[2 * k], a_z)
+        push = orientation_acceleration(turn, spin, goals[2 * k], forces[2 * k], a_z)
         middle = (spin[0] + half * push[0], spin[1] + half * push[1], spin[2] + half * push[2])
-        push = turn_push(turned(turn, spin, half), middle, goals[2 * k + 1], forces[2 * k + 1], a_z)
+        push = orientation_acceleration(
+            integrate_rotation(turn, spin, half), middle, goals[2 * k + 1], forces[2 * k + 1], a_z
+        )
         spin = (spin[0] + step * push[0], spin[1] + step * push[1], spin[2] + step * push[2])
-        turn = turned(turn, middle, step)
+        turn = integrate_rotation(turn, middle, step)
         values[k + 1], rates[k + 1] = turn, spin
     missing = log(product(goal[::2], conjugate(values)))
     push = a_z * (a_z / 4.0 * missing - rates) + force[::2]
-    return Response(value=values, rate=rates, push=push)
+    return AttractorResponse(value=values, rate=rates, push=push)
 
 
 Three = tuple[float, float, float]
 Four = tuple[float, float, float, float]
 
 
-def turn_push(turn: Four, spin: Three, goal: list[float], force: list[float], a_z: float) -> Three:
+def orientation_acceleration(turn: Four, spin: Three, goal: list[float], force: list[float], a_z: float) -> Three:
     """Return the angular acceleration per tau² towards `goal` under `force`; plain numbers, as arrays of 3 are slow."""
     x, y, z, w = _error(goal, turn)
     sine = math.sqrt(x * x + y * y + z * z)
@@ -113,7 +117,7 @@ def turn_push(turn: Four, spin: Three, goal: list[float], force: list[float], a_
     )
 
 
-def turned(turn: Four, spin: Three, span: float) -> Four:
+def integrate_rotation(turn: Four, spin: Three, span: float) -> Four:
     """Return the orientation after turning at `spin` (world axes) for `span`."""
     speed = math.sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2])
     share = math.sin(0.5 * speed * span) / speed if speed * span > _SMALL else 0.5 * span

@@ -22,19 +22,19 @@ def phase_at(share: Array, a_x: float) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kernels:
+class GaussianKernels:
     """N Gaussian kernels: centres `c` and variances `sigma` over the phase, shape (N,)."""
 
     c: Array
     sigma: Array
 
     @classmethod
-    def of(cls, c: Sequence[float], sigma: Sequence[float]) -> Kernels:
+    def of(cls, c: Sequence[float], sigma: Sequence[float]) -> GaussianKernels:
         """Return the kernels of stored parameters."""
         return cls(c=np.array(c, dtype=np.float64), sigma=np.array(sigma, dtype=np.float64))
 
     @classmethod
-    def evenly(cls, number: int, *, a_x: float) -> Kernels:
+    def evenly(cls, number: int, *, a_x: float) -> GaussianKernels:
         """Return kernels that follow each other at even times from the start to tau."""
         if number == 1:
             return cls(c=np.exp([-a_x / 2.0]), sigma=np.ones(1))

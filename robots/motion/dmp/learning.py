@@ -10,15 +10,15 @@ from typing import TypeVar
 import msgspec
 import numpy as np
 
-from engine.demonstration import Trajectory
 from engine.errors import RobotError
-from engine.primitive import CartDmp, JointDmp
-from engine.skills.dmp import CartFit, Cut, JointFit, LearnedCartDmp, LearnedJointDmp
-from robots.motion.dmp.kernels import Kernels, phase_at
-from robots.motion.dmp.roll_out import roll_out_joints, roll_out_pose
-from robots.motion.dmp.smoothing import Rests, smooth
-from robots.motion.dmp.trimming import Channel, moving_part
-from robots.motion.dmp.turns import conjugate, continuous, log, product, toward
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, JointDmp
+from engine.skills.dmp import CartFit, JointFit, LearnedCartDmp, LearnedJointDmp, TrimInterval
+from robots.motion.dmp.integration import integrate_joints, integrate_pose
+from robots.motion.dmp.kernels import GaussianKernels, phase_at
+from robots.motion.dmp.quaternions import conjugate, continuous, log, product, toward
+from robots.motion.dmp.smoothing import RestEnds, smooth
+from robots.motion.dmp.trimming import MotionChannel, find_motion_window
 from robots.port import Array
 
 L = TypeVar("L")
@@ -44,14 +44,14 @@ _RIDGE = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Part:
+class _LearnedSection:
     """The part of a recording that is learned: shares of its duration (T,), where it rests, and what was cut."""
 
     shares: Array
     duration_s: float
     taken: slice
-    rests: Rests
-    cut: Cut
+    rests: RestEnds
+    cut: TrimInterval
 
 
 def learn_joint_dmp(
@@ -73,7 +73,7 @@ def learn_joint_dmp(
     if not recorded.joints:
         raise RobotError("the recording has no joints", hint="record `joints`, or learn a Cartesian primitive")
     joints = np.array(recorded.joints)
-    part = _part(recorded, [Channel(values=joints, rest=_REST_RAD_S)], trim=trim)
+    part = _part(recorded, [MotionChannel(values=joints, rest=_REST_RAD_S)], trim=trim)
     wanted = joints[part.taken]
 
     def learned(number: int) -> LearnedJointDmp:
@@ -100,9 +100,9 @@ def learn_cart_dmp(
     poses = np.array(recorded.poses)
     turns = continuous(poses[:, 3:])
     moving = [
-        Channel(values=poses[:, :3], rest=_REST_M_S),
+        MotionChannel(values=poses[:, :3], rest=_REST_M_S),
         # Half the speed of turning is that of the quaternion's components.
-        Channel(values=turns, rest=_REST_TURN_RAD_S / 2.0),
+        MotionChannel(values=turns, rest=_REST_TURN_RAD_S / 2.0),
     ]
     part = _part(recorded, moving, trim=trim)
     xyz, xyzw = poses[part.taken, :3], _positive_goal(turns[part.taken])
@@ -135,17 +135,19 @@ def _check_turn(xyzw: Array) -> None:
         )
 
 
-def _part(recorded: Trajectory, channels: Sequence[Channel], *, trim: bool) -> _Part:
+def _part(recorded: Trajectory, channels: Sequence[MotionChannel], *, trim: bool) -> _LearnedSection:
     times = np.array(recorded.times_s)
-    moving = moving_part(times, channels)
+    moving = find_motion_window(times, channels)
     taken = moving.taken if trim else slice(0, len(times))
     used = times[taken]
     duration_s = float(used[-1] - used[0])
-    cut = Cut(start_s=float(used[0] - times[0]), end_s=float(used[-1] - times[0]))
-    return _Part(shares=(used - used[0]) / duration_s, duration_s=duration_s, taken=taken, rests=moving.rests, cut=cut)
+    cut = TrimInterval(start_s=float(used[0] - times[0]), end_s=float(used[-1] - times[0]))
+    return _LearnedSection(
+        shares=(used - used[0]) / duration_s, duration_s=duration_s, taken=taken, rests=moving.rests, cut=cut
+    )
 
 
-def _numbers(kernels: int, part: _Part) -> tuple[int, ...]:
+def _numbers(kernels: int, part: _LearnedSection) -> tuple[int, ...]:
     if kernels:
         return (kernels,)
     most = max(CANDIDATES[0], len(part.shares) // 3)
@@ -174,7 +176,7 @@ def _fit_shares(number: int) -> Array:
 
 
 def _weights(
-    kernels: Kernels, shares: Array, force: Array, *, a_x: float, rests: Rests
+    kernels: GaussianKernels, shares: Array, force: Array, *, a_x: float, rests: RestEnds
 ) -> tuple[tuple[float, ...], ...]:
     """Return the weights, one row for each column of the forcing term (T, n), by least squares.
 
@@ -191,8 +193,8 @@ def _weights(
     return tuple(tuple(row) for row in np.linalg.solve(normal, basis.T @ force).T.tolist())
 
 
-def _joint_dmp(part: _Part, joints: Array, number: int, *, a_z: float, a_x: float) -> JointDmp:
-    kernels, shares = Kernels.evenly(number, a_x=a_x), _fit_shares(number)
+def _joint_dmp(part: _LearnedSection, joints: Array, number: int, *, a_z: float, a_x: float) -> JointDmp:
+    kernels, shares = GaussianKernels.evenly(number, a_x=a_x), _fit_shares(number)
     value, rate, push = smooth(part.shares, joints, intervals=2 * number, rests=part.rests).at(shares)
     force = push + a_z * rate - a_z * a_z / 4.0 * (value[-1] - value)
     return JointDmp(
@@ -209,8 +211,8 @@ def _joint_dmp(part: _Part, joints: Array, number: int, *, a_z: float, a_x: floa
     )
 
 
-def _cart_dmp(part: _Part, xyz: Array, xyzw: Array, number: int, *, a_z: float, a_x: float) -> CartDmp:
-    kernels, shares = Kernels.evenly(number, a_x=a_x), _fit_shares(number)
+def _cart_dmp(part: _LearnedSection, xyz: Array, xyzw: Array, number: int, *, a_z: float, a_x: float) -> CartDmp:
+    kernels, shares = GaussianKernels.evenly(number, a_x=a_x), _fit_shares(number)
     motion = smooth(part.shares, np.hstack((xyz, xyzw)), intervals=2 * number, rests=part.rests)
     value, rate, push = motion.at(shares)
     turn, spin, spin_push = _spin(value[:, 3:], rate[:, 3:], push[:, 3:])
@@ -243,8 +245,8 @@ def _spin(raw: Array, rate: Array, push: Array) -> tuple[Array, Array, Array]:
     return raw / np.sqrt(square), spin, 2.0 * product(push, conjugate(raw))[:, :3] / square - spin * growth
 
 
-def _joint_fit(dmp: JointDmp, part: _Part, wanted: Array) -> JointFit:
-    path = roll_out_joints(dmp)
+def _joint_fit(dmp: JointDmp, part: _LearnedSection, wanted: Array) -> JointFit:
+    path = integrate_joints(dmp)
     error = _at(part.shares, path.shares, path.position) - wanted
     return JointFit(
         kernels=dmp.N,
@@ -257,10 +259,10 @@ def _joint_fit(dmp: JointDmp, part: _Part, wanted: Array) -> JointFit:
 
 
 def _with_tool(
-    learned: LearnedJointDmp, part: _Part, wanted: Array, tool_at: Callable[[Array], Array]
+    learned: LearnedJointDmp, part: _LearnedSection, wanted: Array, tool_at: Callable[[Array], Array]
 ) -> LearnedJointDmp:
     """Add how far the tool is off, at no more than so many samples of the whole."""
-    path = roll_out_joints(learned.dmp)
+    path = integrate_joints(learned.dmp)
     rows = np.unique(np.linspace(0, len(wanted) - 1, min(len(wanted), _TOOL_SAMPLES)).astype(int))
     made = _at(part.shares[rows], path.shares, path.position)
     pairs = zip(made, wanted[rows], strict=True)
@@ -269,8 +271,8 @@ def _with_tool(
     return msgspec.structs.replace(learned, fit=fit)
 
 
-def _cart_fit(dmp: CartDmp, part: _Part, xyz: Array, xyzw: Array) -> CartFit:
-    path = roll_out_pose(dmp)
+def _cart_fit(dmp: CartDmp, part: _LearnedSection, xyz: Array, xyzw: Array) -> CartFit:
+    path = integrate_pose(dmp)
     turn = _at(part.shares, path.shares, path.xyzw)
     away = np.linalg.norm(_at(part.shares, path.shares, path.xyz) - xyz, axis=1)
     angle = np.linalg.norm(log(product(turn / np.linalg.norm(turn, axis=1, keepdims=True), conjugate(xyzw))), axis=1)

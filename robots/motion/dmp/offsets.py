@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from engine.errors import RobotError
-from engine.primitive import CartOffsets, ForceReference
-from robots.motion.dmp.kernels import Kernels
+from engine.messages.primitives import CartOffsets, ForceReference
+from robots.motion.dmp.kernels import GaussianKernels
 from robots.port import Array
 
 OFFSET_KERNELS = 50
@@ -23,17 +23,17 @@ _KEEP = 1e-3
 
 def offsets_at(offsets: CartOffsets, phase: Array) -> Array:
     """Return the offsets at each phase: metres and rotation vector, (T, 6)."""
-    return _sum(Kernels.of(offsets.c_o, offsets.sigma_o), np.array(offsets.weights), phase)
+    return _sum(GaussianKernels.of(offsets.c_o, offsets.sigma_o), np.array(offsets.weights), phase)
 
 
 def wrench_at(force: ForceReference, phase: Array) -> Array:
     """Return the wanted force (N) and torque (Nm) at each phase, (T, 6)."""
-    return _sum(Kernels.of(force.c_f, force.sigma_f), np.array(force.weights), phase)
+    return _sum(GaussianKernels.of(force.c_f, force.sigma_f), np.array(force.weights), phase)
 
 
 def no_offsets(kernels: int = OFFSET_KERNELS, *, a_x: float) -> CartOffsets:
     """Return offsets of zero with `kernels` kernels, evenly over a primitive's duration."""
-    return _offsets(Kernels.evenly(kernels, a_x=a_x), np.zeros((6, kernels)))
+    return _offsets(GaussianKernels.evenly(kernels, a_x=a_x), np.zeros((6, kernels)))
 
 
 def offsets_from_samples(phase: Array, added: Array, *, given: CartOffsets, share: float = 1.0) -> CartOffsets:
@@ -54,18 +54,18 @@ def offsets_from_samples(phase: Array, added: Array, *, given: CartOffsets, shar
         )
     if not (np.isfinite(phase).all() and np.isfinite(added).all()):
         raise RobotError("the recorded offsets have numbers that are not finite")
-    kernels = Kernels.of(given.c_o, given.sigma_o)
+    kernels = GaussianKernels.of(given.c_o, given.sigma_o)
     activations = kernels.at(phase)
     normal = activations.T @ activations + _KEEP * np.eye(len(kernels.c))
     learned: Array = np.linalg.solve(normal, activations.T @ added).astype(np.float64)
     return _offsets(kernels, np.array(given.weights) + share * learned.T)
 
 
-def _sum(kernels: Kernels, weights: Array, phase: Array) -> Array:
+def _sum(kernels: GaussianKernels, weights: Array, phase: Array) -> Array:
     return kernels.at(np.atleast_1d(phase)) @ weights.T
 
 
-def _offsets(kernels: Kernels, weights: Array) -> CartOffsets:
+def _offsets(kernels: GaussianKernels, weights: Array) -> CartOffsets:
     w1o, w2o, w3o, w4o, w5o, w6o = (tuple(row) for row in weights.tolist())
     return CartOffsets(
         c_o=tuple(kernels.c.tolist()), sigma_o=tuple(kernels.sigma.tolist()),

@@ -8,16 +8,16 @@ from itertools import pairwise
 import numpy as np
 
 from engine.errors import RobotError
-from engine.primitive import CartDmp
+from engine.messages.primitives import CartDmp
 from robots.model.inverse_kinematics import pose_error
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
-from robots.motion.cart_line import splined
-from robots.motion.dmp.plan_joint import never_there, slower
-from robots.motion.dmp.rest import END_SHARE, ENDS, START_SHARE, fade, fade_in, hardly_missing
-from robots.motion.dmp.roll_out import GoalChange, PosePath, roll_out_pose
-from robots.motion.dmp.task_frame import moved, poses_in_task_frame
-from robots.motion.dmp.turns import conjugate, exp, log, product, toward
+from robots.model.transform import RigidTransform
+from robots.motion.cart_line import spline_trajectory
+from robots.motion.dmp.boundary_conditions import END_SHARE, ENDS, START_SHARE, fade, fade_in, is_negligible
+from robots.motion.dmp.integration import GoalChange, PosePath, integrate_pose
+from robots.motion.dmp.plan_joint import advise_slower, unreachable_goal_error
+from robots.motion.dmp.quaternions import conjugate, exp, log, product, toward
+from robots.motion.dmp.task_frame import poses_in_task_frame, transform_dmp
 from robots.motion.joint_checks import check_duration, check_speed
 from robots.motion.tool_path import (
     FEWEST_KNOTS,
@@ -25,7 +25,7 @@ from robots.motion.tool_path import (
     KNOT_RAD,
     KNOT_S,
     MOST_KNOTS,
-    SHYNESS,
+    SINGULARITY_CAUTION,
     ToolPath,
     follow_tool_path,
 )
@@ -35,7 +35,7 @@ START_REACH_M, START_REACH_RAD = 0.03, 0.2
 """How far the tool may be from where the primitive starts."""
 
 _NEAR = 0.01
-WORLD = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+WORLD = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def plan_cart_dmp(
@@ -43,8 +43,8 @@ def plan_cart_dmp(
     dmp: CartDmp,
     start: Array,
     *,
-    frame: Rigid = WORLD,
-    goal: Rigid | None = None,
+    frame: RigidTransform = WORLD,
+    goal: RigidTransform | None = None,
     start_reach_m: float = START_REACH_M,
     start_reach_rad: float = START_REACH_RAD,
 ) -> JointTrajectory:
@@ -57,24 +57,24 @@ def plan_cart_dmp(
         RobotError: the tool stands too far from the start, the path is out of reach or passes a singularity, or a
             joint would leave its range, its speed or its acceleration; the message names joint, time and amount.
     """
-    own = moved(poses_in_task_frame(dmp), frame, frame="world")
+    own = transform_dmp(poses_in_task_frame(dmp), frame, frame="world")
     here = kinematics.tool_pose(start)
     _check_start(own, here, start_reach_m, start_reach_rad)
     path = resting_pose(own, here, goal)
     duration_s = float(path.shares[-1]) * own.tau
     check_duration(duration_s, "movement")
     knots = follow_tool_path(kinematics, start, _tool_path(path, duration_s))
-    trajectory = splined(knots, duration_s=duration_s)
+    trajectory = spline_trajectory(knots, duration_s=duration_s)
     check_speed(
         kinematics.limits,
         kinematics.model.arm_joints,
         trajectory,
-        advice=lambda least_s: slower(own.tau, least_s / duration_s),
+        advice=lambda least_s: advise_slower(own.tau, least_s / duration_s),
     )
     return trajectory
 
 
-def resting_pose(dmp: CartDmp, start: Rigid, goal: Rigid | None = None) -> PosePath:
+def resting_pose(dmp: CartDmp, start: RigidTransform, goal: RigidTransform | None = None) -> PosePath:
     """Return the path of a primitive without `tasktrans` from `start` at rest to its goal, or to `goal`, at rest.
 
     Raises:
@@ -83,12 +83,12 @@ def resting_pose(dmp: CartDmp, start: Rigid, goal: Rigid | None = None) -> PoseP
     target = np.array(dmp.goal) if goal is None else np.concatenate((goal.xyz, goal.xyzw))
     changes = () if goal is None else (GoalChange(share=0.0, goal=target),)
     for end in ENDS:
-        path = roll_out_pose(dmp, end=end, changes=changes)
+        path = integrate_pose(dmp, end=end, changes=changes)
         missing = _missing(path, -1, target)
-        if hardly_missing(missing, path.rate[-1], path.push[-1], a_z=dmp.a_z, least=_NEAR):
+        if is_negligible(missing, path.rate[-1], path.push[-1], a_z=dmp.a_z, least=_NEAR):
             break
     else:
-        raise never_there()
+        raise unreachable_goal_error()
     before = _missing(path, 0, np.concatenate((start.xyz, start.xyzw)))
     first, first_rate = fade(path.shares, START_SHARE, value=before, rate=-path.rate[0])
     last, last_rate = fade_in(path.shares, END_SHARE, value=missing, rate=-path.rate[-1], push=-path.push[-1])
@@ -108,8 +108,8 @@ def _missing(path: PosePath, at: int, pose: Array) -> Array:
     return np.concatenate((pose[:3] - path.xyz[at], log(turn / np.linalg.norm(turn))))
 
 
-def _check_start(dmp: CartDmp, here: Rigid, reach_m: float, reach_rad: float) -> None:
-    start = Rigid.of(dmp.y0[:3], dmp.y0[3:])
+def _check_start(dmp: CartDmp, here: RigidTransform, reach_m: float, reach_rad: float) -> None:
+    start = RigidTransform.of(dmp.y0[:3], dmp.y0[3:])
     away_m, away_rad = start.distance_m(here), start.angle_rad(here)
     if away_m > reach_m or away_rad > reach_rad:
         place = "({:.3f}, {:.3f}, {:.3f})".format(*start.xyz)
@@ -133,14 +133,14 @@ def _tool_path(path: PosePath, duration_s: float) -> ToolPath:
     return ToolPath(
         poses=poses,
         steps=steps,
-        drifts=SHYNESS * lengths,
+        drifts=SINGULARITY_CAUTION * lengths,
         shares=done / max(float(done[-1]), 1e-12),
         duration_s=duration_s,
         word="movement",
     )
 
 
-def _poses_at(path: PosePath, shares: Array) -> list[Rigid]:
+def _poses_at(path: PosePath, shares: Array) -> list[RigidTransform]:
     """Return the poses at shares between the samples: cubic in place, and turning on from the sample before."""
     step = float(path.shares[1])
     below = np.minimum((shares / step).astype(int), len(path.shares) - 2)
@@ -153,4 +153,4 @@ def _poses_at(path: PosePath, shares: Array) -> list[Rigid]:
     )
     turn = log(product(path.xyzw[below + 1], conjugate(path.xyzw[below])))
     xyzw = product(exp(u * turn), path.xyzw[below])
-    return [Rigid.of(place, quaternion) for place, quaternion in zip(xyz, xyzw, strict=True)]
+    return [RigidTransform.of(place, quaternion) for place, quaternion in zip(xyz, xyzw, strict=True)]

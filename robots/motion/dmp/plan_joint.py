@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from engine.errors import RobotError
-from engine.primitive import JointDmp
+from engine.messages.primitives import JointDmp
 from robots.model.robot_model import JointLimits
-from robots.motion.dmp.rest import END_SHARE, ENDS, START_SHARE, fade, fade_in, hardly_missing
-from robots.motion.dmp.roll_out import GoalChange, JointPath, roll_out_joints
+from robots.motion.dmp.boundary_conditions import END_SHARE, ENDS, START_SHARE, fade, fade_in, is_negligible
+from robots.motion.dmp.integration import GoalChange, JointPath, integrate_joints
 from robots.motion.dmp.task_frame import joints_in_task_frame
 from robots.motion.joint_checks import check_duration, check_range, check_speed
 from robots.port import Array, JointTrajectory
@@ -51,7 +51,7 @@ def plan_joint_dmp(
         limits,
         joint_names,
         trajectory,
-        advice=lambda least_s: slower(own.tau, least_s / duration_s),
+        advice=lambda least_s: advise_slower(own.tau, least_s / duration_s),
     )
     return trajectory
 
@@ -65,12 +65,12 @@ def resting_joints(dmp: JointDmp, start: Array, goal: Array | None = None) -> Jo
     changes = () if goal is None else (GoalChange(share=0.0, goal=goal),)
     target = np.array(dmp.goal) if goal is None else goal
     for end in ENDS:
-        path = roll_out_joints(dmp, end=end, changes=changes)
+        path = integrate_joints(dmp, end=end, changes=changes)
         missing, rate, push = target - path.position[-1], -path.rate[-1], -path.push[-1]
-        if hardly_missing(missing, rate, push, a_z=dmp.a_z, least=_NEAR_RAD):
+        if is_negligible(missing, rate, push, a_z=dmp.a_z, least=_NEAR_RAD):
             break
     else:
-        raise never_there()
+        raise unreachable_goal_error()
     first, first_rate = fade(path.shares, START_SHARE, value=start - path.position[0], rate=-path.rate[0])
     last, last_rate = fade_in(path.shares, END_SHARE, value=missing, rate=rate, push=push)
     position, rates = path.position + first + last, path.rate + first_rate + last_rate
@@ -78,7 +78,7 @@ def resting_joints(dmp: JointDmp, start: Array, goal: Array | None = None) -> Jo
     return JointPath(shares=path.shares, position=position, rate=rates, push=path.push)
 
 
-def never_there() -> RobotError:
+def unreachable_goal_error() -> RobotError:
     """Return the refusal of a primitive whose forcing term keeps it away from its goal."""
     return RobotError(
         f"the movement primitive is not at rest at its goal after {ENDS[-1]:g} tau",
@@ -86,7 +86,7 @@ def never_there() -> RobotError:
     )
 
 
-def slower(tau_s: float, factor: float) -> str:
+def advise_slower(tau_s: float, factor: float) -> str:
     """Return the advice to make a primitive slower."""
     return f"give it a tau of at least {np.ceil(tau_s * factor * 100.0 + 1e-6) / 100.0:.2f} s"
 

@@ -21,7 +21,7 @@ FEWEST_SAMPLES = 10
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rests:
+class RestEnds:
     """At which ends of a recording the arm rests."""
 
     start: bool
@@ -29,7 +29,7 @@ class Rests:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Smooth:
+class SmoothMotion:
     """A smooth motion over the shares 0 to 1 of its duration; `pieces` polynomials."""
 
     spline: Any
@@ -41,7 +41,7 @@ class Smooth:
         return values, rates, pushes
 
 
-def smooth(shares: Array, values: Array, *, intervals: int, rests: Rests) -> Smooth:
+def smooth(shares: Array, values: Array, *, intervals: int, rests: RestEnds) -> SmoothMotion:
     """Return the spline of at most `intervals` pieces nearest to samples, least squares.
 
     Args:
@@ -68,10 +68,10 @@ def smooth(shares: Array, values: Array, *, intervals: int, rests: Rests) -> Smo
     normal: Array = np.asarray(ties.T @ (design.T @ design) @ ties, dtype=np.float64)
     right: Array = np.asarray(ties.T @ (design.T @ values), dtype=np.float64)
     free = np.linalg.solve(normal + 1e-12 * len(shares) / pieces * np.eye(len(normal)), right)
-    return Smooth(spline=splines.BSpline(knots, ties @ free, _DEGREE), pieces=pieces)
+    return SmoothMotion(spline=splines.BSpline(knots, ties @ free, _DEGREE), pieces=pieces)
 
 
-def _ties(coefficients: int, rests: Rests) -> Array:
+def _ties(coefficients: int, rests: RestEnds) -> Array:
     """Return the matrix that makes the spline's coefficients of the free ones: at rest those at the end are one."""
     kept = list(range(coefficients))
     if rests.start and len(kept) > _EQUAL_AT_REST:

@@ -9,9 +9,9 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from engine.primitive import CartDmp, JointDmp
-from robots.model.rigid import Rigid
-from robots.motion.dmp.turns import of_matrix, product
+from engine.messages.primitives import CartDmp, JointDmp
+from robots.model.transform import RigidTransform
+from robots.motion.dmp.quaternions import of_matrix, product
 from robots.port import Array
 
 
@@ -36,11 +36,11 @@ def poses_in_task_frame(dmp: CartDmp) -> CartDmp:
     if not dmp.tasktrans:
         return dmp
     matrix = np.array(dmp.tasktrans).reshape(4, 4)
-    transform = Rigid(xyz=matrix[:3, 3], xyzw=of_matrix(matrix[:3, :3]))
-    return moved(msgspec.structs.replace(dmp, tasktrans=()), transform, frame=dmp.frame)
+    transform = RigidTransform(xyz=matrix[:3, 3], xyzw=of_matrix(matrix[:3, :3]))
+    return transform_dmp(msgspec.structs.replace(dmp, tasktrans=()), transform, frame=dmp.frame)
 
 
-def moved(dmp: CartDmp, transform: Rigid, *, frame: str) -> CartDmp:
+def transform_dmp(dmp: CartDmp, transform: RigidTransform, *, frame: str) -> CartDmp:
     """Return `dmp` as it is said in another frame, in which its own one lies at `transform`; it has no `tasktrans`."""
     turn = transform.rotation
     weights = turn @ np.array(dmp.weights[:3]), turn @ np.array(dmp.weights[3:])
@@ -55,7 +55,7 @@ def moved(dmp: CartDmp, transform: Rigid, *, frame: str) -> CartDmp:
     )  # fmt: skip
 
 
-def _moved_pose(transform: Rigid, pose: tuple[float, ...]) -> tuple[float, ...]:
+def _moved_pose(transform: RigidTransform, pose: tuple[float, ...]) -> tuple[float, ...]:
     xyz = transform.xyz + transform.rotation @ np.array(pose[:3])
     return _row(np.concatenate((xyz, product(transform.xyzw, np.array(pose[3:])))))
 

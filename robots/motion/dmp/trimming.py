@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.errors import RobotError
-from robots.motion.dmp.smoothing import FEWEST_SAMPLES, Rests, smooth
+from robots.motion.dmp.smoothing import FEWEST_SAMPLES, RestEnds, smooth
 from robots.port import Array
 
 # Speeds are judged after smoothing over about this time; this much rest is left at either end.
@@ -19,7 +19,7 @@ _NOISE_GAIN = 8.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Channel:
+class MotionChannel:
     """Values that move together, (T, n), and the speed below which they rest whatever their peak."""
 
     values: Array
@@ -27,14 +27,14 @@ class Channel:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moving:
+class MotionWindow:
     """The samples from the beginning to the end of a motion with a little rest, and whether it was at rest there."""
 
     taken: slice
-    rests: Rests
+    rests: RestEnds
 
 
-def moving_part(times_s: Array, channels: Sequence[Channel]) -> Moving:
+def find_motion_window(times_s: Array, channels: Sequence[MotionChannel]) -> MotionWindow:
     """Return where the motion is in a recording.
 
     Raises:
@@ -52,20 +52,20 @@ def moving_part(times_s: Array, channels: Sequence[Channel]) -> Moving:
     first, last = (float(times_s[at]) for at in np.flatnonzero(moves)[[0, -1]])
     begin = int(np.searchsorted(times_s, first - _KEPT_REST_S))
     end = int(np.searchsorted(times_s, last + _KEPT_REST_S, side="right"))
-    return Moving(
+    return MotionWindow(
         taken=slice(begin, end),
-        rests=Rests(
+        rests=RestEnds(
             start=first - float(times_s[0]) >= _KEPT_REST_S / 2.0, end=float(times_s[-1]) - last >= _KEPT_REST_S / 2.0
         ),
     )
 
 
-def _moves(times_s: Array, channel: Channel) -> Array:
+def _moves(times_s: Array, channel: MotionChannel) -> Array:
     """Tell at which samples a channel moves faster than its rest, its noise and a small share of its peak."""
     duration_s = float(times_s[-1] - times_s[0])
     shares = (times_s - times_s[0]) / duration_s
     wanted = max(8, round(duration_s / _SMOOTHING_S))
-    smoothed = smooth(shares, channel.values, intervals=wanted, rests=Rests(start=True, end=True))
+    smoothed = smooth(shares, channel.values, intervals=wanted, rests=RestEnds(start=True, end=True))
     values, rates, _ = smoothed.at(shares)
     speed = np.linalg.norm(rates, axis=1) / duration_s
     scatter = float(np.linalg.norm((channel.values - values).std(axis=0)))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Protocol
 
 from robots.control.motion_event import AnyMotionEvent
-from robots.sim.commands import ToolCommand
+from robots.sim.commands.world_commands import ToolCommand
 
 
-class Drive(Protocol):
+class ToolDrive(Protocol):
     """The motor or switch of a tool: carries out one numbered motion at a time."""
 
     @property
@@ -33,11 +33,11 @@ class Drive(Protocol):
         ...
 
 
-class Mechanics(Protocol):
+class ToolMechanics(Protocol):
     """One tool in the loop."""
 
     @property
-    def drive(self) -> Drive:
+    def drive(self) -> ToolDrive:
         """What carries out its motions."""
         ...
 

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robots.port import Array
-from robots.sim.people.person_spec import PersonIndices
-from robots.sim.physics import Physics
+from robots.sim.physics.person_spec import PersonIndices
+from robots.sim.physics.physics import Physics
 
 _CONTACTS, _TOUCHING_S, _GREATEST_N, _PAIRS = 0, 1, 2, 3
 _BEFORE, _NOW = 1.0, 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Touched:
+class ContactStatistics:
     """How often bodies of a person began to touch others, for how long any did, the hardest of all, and which.
 
     `pairs` are numbers of bodies, the person's own first, by how `BODIES` counts them.
@@ -33,10 +33,10 @@ def count_size(body_count: int, own: int) -> int:
     return _PAIRS + own * body_count
 
 
-def touched(numbers: Array, body_count: int) -> Touched:
+def read_contact_statistics(numbers: Array, body_count: int) -> ContactStatistics:
     """Return what the numbers of a count say."""
     own, others = np.nonzero(numbers[_PAIRS:].reshape(-1, body_count))
-    return Touched(
+    return ContactStatistics(
         contacts=int(numbers[_CONTACTS]),
         touching_s=float(numbers[_TOUCHING_S]),
         greatest_force_n=float(numbers[_GREATEST_N]),

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from engine.skills.people import ContactCount
 from robots.port import Array
-from robots.sim.people.contact_counter import count_size, touched
-from robots.sim.people.hand_way import HandState
-from robots.sim.people.limb import BODIES
+from robots.sim.people.contact_counter import count_size, read_contact_statistics
+from robots.sim.people.hand_trajectory import HandMotion
+from robots.sim.physics.limb import BODIES
 
 # Place and velocity of the hand, and how long it is still on its way.
 _HAND_FIELDS = 7
@@ -18,7 +18,7 @@ _HAND_FIELDS = 7
 class PersonSample:
     """One person at an instant."""
 
-    hand: HandState
+    hand: HandMotion
     arrives_in_s: float
     count: ContactCount
 
@@ -31,9 +31,9 @@ def report_size(people: int, *, body_count: int) -> int:
 def person_sample(values: Array, people: tuple[str, ...], person: str, *, bodies: tuple[str, ...]) -> PersonSample:
     """Return what a snapshot's numbers for `people` say of one of them; `bodies` are all names of the world."""
     row = values.reshape(len(people), -1)[people.index(person)]
-    count = touched(row[_HAND_FIELDS:], len(bodies))
+    count = read_contact_statistics(row[_HAND_FIELDS:], len(bodies))
     return PersonSample(
-        hand=HandState(xyz=row[0:3].copy(), velocity=row[3:6].copy()),
+        hand=HandMotion(xyz=row[0:3].copy(), velocity=row[3:6].copy()),
         arrives_in_s=float(row[6]),
         count=ContactCount(
             contacts=count.contacts,

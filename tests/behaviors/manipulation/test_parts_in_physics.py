@@ -7,10 +7,10 @@ from textwrap import dedent, indent
 
 import pytest
 
-from engine.cause import describe
+from engine.cause_chain import describe_cause
 from engine.document import load_cell
 from engine.registry import load_states
-from engine.testing.behavior import Ran, run_behavior
+from engine.testing.behavior_run import CompletedRun, run_behavior
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 
@@ -93,15 +93,15 @@ def _parts(steps: str) -> tuple[str, str, str]:
     return head, f"place:{place}", f"expect:{expect}"
 
 
-def run(folder: Path, cell: Path, steps: str, *, seed: int | None = None) -> Ran:
+def run(folder: Path, cell: Path, steps: str, *, seed: int | None = None) -> CompletedRun:
     file = folder / "behavior.yaml"
     file.write_text(behavior(steps), encoding="utf-8")
     return run_behavior(file, catalogue=load_states(), store=folder / "store.db", cell=cell, seed=seed)
 
 
-def told(ran: Ran) -> tuple[str | None, str]:
+def told(ran: CompletedRun) -> tuple[str | None, str]:
     """The outcome, and its causes."""
-    return ran.outcome, describe(ran.result.cause) if ran.result.cause else ""
+    return ran.outcome, describe_cause(ran.result.cause) if ran.result.cause else ""
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from engine.event import GoalFinished, GoalSent
-from engine.testing.behavior import Ran
+from engine.testing.behavior_run import CompletedRun
 from tests.behaviors.manipulation.test_parts_in_physics import BEHAVIORS, PANDA_HAND, run, told
 
 CELL = BEHAVIORS / "cells" / "dual_panda.yaml"
@@ -20,7 +20,7 @@ HIGH = PANDA_HAND.replace("turns: 2", "turns: 2, grasp: {xyz: [0, 0, 0.012], xyz
 THERE = "region: {center_m: [-0.11, -0.28], size_m: [0.02, 0.02], height_m: [0.02, 0.03]}"
 
 
-def went(ran: Ran) -> int:
+def went(ran: CompletedRun) -> int:
     """How many straight lines the arm has gone."""
     lines = {event.goal for event in ran.events if isinstance(event, GoalSent) and "cart_lin_task" in event.address}
     ends = [event for event in ran.events if isinstance(event, GoalFinished) and event.goal in lines]

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.messages import JointState
-from engine.run import Run
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
 from engine.skills.planning import PathPreview
-from engine.supervision import Supervision
 from tests.behaviors.application import BEHAVIORS, Application, causes, shipped_cell
 from tests.engine.cli.command import FLEXCELL
 from tests.tiers import nightly
@@ -21,7 +21,7 @@ from tests.tiers import nightly
 BEHAVIOR = "pick_and_place/confirmed_move.yaml"
 PLAN = "root/plan"
 WAIT_RAD = (-1.1, -1.4915, 1.8008, -1.8801, -1.5708, -1.1)
-ASKING = Supervision(autonomy="low", demand_operator=True)
+ASKING = RunOptions(autonomy="low", demand_operator=True)
 _LOOK_S, _THINK_S = 0.02, 3.0
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from engine.bus import Holder
-from engine.cell import OpenCell
-from engine.event import Entered, Event, Exited
-from engine.run import Run
+from engine.cell.open_cell import OpenCell
+from engine.event import Event, NodeEntered, NodeExited
+from engine.runtime.run import Run
 from engine.skills.gripper import GripperOpen
 from tests.behaviors.application import BEHAVIORS, Application, causes, changed_cell, shipped_cell, without_parts
 from tests.behaviors.stopping import stop_in
@@ -117,7 +117,7 @@ async def _lose(run: Run, cell: OpenCell) -> None:
 
 
 def _tell(event: Event, set_out: asyncio.Future[None]) -> None:
-    if isinstance(event, Entered) and event.path.endswith("/carry"):
+    if isinstance(event, NodeEntered) and event.path.endswith("/carry"):
         set_out.set_result(None)
 
 
@@ -132,8 +132,8 @@ def test_a_payload_that_is_lost_on_the_way_is_not_carried_on(tmp_path: Path) -> 
     assert result.outcome == "missed"
     assert "arm lost part payload: the fingers are" in causes(result).replace("; ", ": ")
     at_s = {type(each): each.time_s for each in lost.log if getattr(each, "path", "").endswith("/carry")}
-    assert at_s[Exited] - at_s[Entered] == pytest.approx(INTO_S, abs=0.5)
-    ends = [each for each in lost.log if isinstance(each, Exited) and each.path.endswith("/carry")]
+    assert at_s[NodeExited] - at_s[NodeEntered] == pytest.approx(INTO_S, abs=0.5)
+    ends = [each for each in lost.log if isinstance(each, NodeExited) and each.path.endswith("/carry")]
     assert [each.preempted for each in ends] == [True]
     assert lost.last("payload").xyz[2] < 0.1
     assert lost.greatest_last_speed_rad_s < REST_RAD_S

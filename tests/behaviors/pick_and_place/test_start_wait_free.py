@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import Exited
+from engine.event import NodeExited
 from tests.behaviors.application import Application, causes, shipped_cell
 from tests.tiers import nightly
 
@@ -22,7 +22,7 @@ def test_it_goes_there_and_back_around_the_box(tmp_path: Path, planner: str) -> 
     done = Application(behavior=BEHAVIOR, cell=shipped_cell("ur10"), parameters={"rounds": 2, "planner": planner})
     result = done.run(tmp_path)
     assert (result.outcome, causes(result)) == ("finished", "")
-    ends = [event for event in done.log if isinstance(event, Exited) and event.path.endswith(("to_wait", "back"))]
+    ends = [event for event in done.log if isinstance(event, NodeExited) and event.path.endswith(("to_wait", "back"))]
     assert [event.outcome for event in ends] == ["reached"] * 4
     assert done.seen[-1].joints.position_rad == pytest.approx(START_RAD, abs=0.01)
     assert detour_rad(done) > 0.2
@@ -37,7 +37,9 @@ def test_without_the_box_the_way_is_straight(tmp_path: Path) -> None:
 
 def detour_rad(done: Application) -> float:
     """How far the arm went off the straight joint line between start and wait in the rounds."""
-    began_s = next(event.time_s for event in done.log if isinstance(event, Exited) and event.path == "root/to_start")
+    began_s = next(
+        event.time_s for event in done.log if isinstance(event, NodeExited) and event.path == "root/to_start"
+    )
     return max(_off_the_line(seen.joints.position_rad) for seen in done.seen if seen.time_s > began_s + 0.2)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from engine.messages import Pose
-from engine.pose_algebra import composed
+from engine.messages.pose_algebra import compose_poses
 from tests.behaviors.application import Application, causes, changed_cell, shipped_cell, without_parts
 from tests.behaviors.plate_transfer_shared.test_plate_transfer_shared import QUICK, TRANSFER, free_motion
 
@@ -22,7 +22,7 @@ PLATE_M = (0.15, 0.15, 0.004)
 def corners(plate: Pose) -> list[tuple[float, ...]]:
     """Where the corners and the middle of the plate are."""
     signs = [*product((-1, 1), (-1, 1), (-1, 1)), (0, 0, 0)]
-    return [composed(plate, Pose(xyz=(a * PLATE_M[0], b * PLATE_M[1], c * PLATE_M[2]))).xyz for a, b, c in signs]
+    return [compose_poses(plate, Pose(xyz=(a * PLATE_M[0], b * PLATE_M[1], c * PLATE_M[2]))).xyz for a, b, c in signs]
 
 
 def in_crate(point: tuple[float, ...]) -> bool:

@@ -8,9 +8,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.event import GoalFinished
-from engine.run import Run
+from engine.runtime.run import Run
 from engine.skills.people import ContactCount, CountContacts, Reach
 from engine.skills.planning import FreeMotionResult
 from tests.behaviors.application import Application, causes, shipped_cell

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from engine.check import check_file
-from engine.document.entries import load_entries
+from engine.document.entries_document import load_entries
 from engine.messages import Vector3
 from engine.registry import load_states
 from engine.skills.proposing import ProposalOptions, StepKind, TaughtStep
-from engine.store.kinds import Pose, read_as
-from engine.teaching.proposal import proposed
-from engine.teaching.roles import Taught
+from engine.store.entry_kinds import Pose, decode_entry
+from engine.teaching.behavior_proposal import build_proposal
+from engine.teaching.step_roles import ObservedStep
 from tests.behaviors.application import BEHAVIORS, Application, causes, changed_cell, shipped_cell
 from tests.tiers import nightly
 
@@ -24,10 +24,10 @@ OPTIONS = ProposalOptions(name="taught", cell=str(BEHAVIORS / "cells" / "ur10.ya
 PARTS: dict[str, Vector3 | None] = {"payload": (0.2, 0.7, 0.05)}
 
 
-def step(kind: StepKind, name: str) -> Taught:
+def step(kind: StepKind, name: str) -> ObservedStep:
     """A step without a role."""
-    pose = read_as(ENTRIES["pose", name], Pose) if kind == "pose" else None
-    return Taught(TaughtStep(kind=kind, name=name), tool=pose)
+    pose = decode_entry(ENTRIES["pose", name], Pose) if kind == "pose" else None
+    return ObservedStep(TaughtStep(kind=kind, name=name), tool=pose)
 
 
 SHORT = [
@@ -44,17 +44,17 @@ WITH_APPROACHES = [
 ]  # fmt: skip
 
 
-def written(folder: Path, steps: list[Taught]) -> str:
+def written(folder: Path, steps: list[ObservedStep]) -> str:
     """The file of the proposed behavior."""
     file = folder / "taught.yaml"
-    file.write_text(proposed(steps, OPTIONS, arm="arm", parts=PARTS).text, encoding="utf-8")
+    file.write_text(build_proposal(steps, OPTIONS, arm="arm", parts=PARTS).text, encoding="utf-8")
     return str(file)
 
 
 @pytest.mark.parametrize(
     "steps", [nightly(SHORT), WITH_APPROACHES], ids=["approaches by the tool's axis", "taught approaches"]
 )
-def test_the_payload_is_where_it_was_shown(steps: list[Taught], tmp_path: Path) -> None:
+def test_the_payload_is_where_it_was_shown(steps: list[ObservedStep], tmp_path: Path) -> None:
     """The check finds nothing, the run ends well, and the part stands at the place."""
     file = written(tmp_path, steps)
     assert check_file(file, load_states()) == ()

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
 from engine.errors import JournalError
-from engine.event import Event, Exited, GoalFinished, GoalSent
+from engine.event import Event, GoalFinished, GoalSent, NodeExited
 from engine.messages import JointState
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 
 BEHAVIORS = Path(__file__).parents[3] / "behaviors"
 REST_RAD_S = 0.02
@@ -37,10 +37,10 @@ class FullDisk:
         """Have nothing to tell."""
         return ()
 
-    async def keep_up(self) -> None:
+    async def apply_backpressure(self) -> None:
         """Nothing waits."""
 
-    def keep_world(self, state: bytes) -> None:
+    def append_world_state(self, state: bytes) -> None:
         """Take it."""
 
     def on_failure(self, listener: Callable[[JournalError], None]) -> None:
@@ -76,4 +76,4 @@ def test_both_arms_rest_when_the_disk_is_full(tmp_path: Path, room: int) -> None
     assert max(speeds) < REST_RAD_S
     sent = {event.goal for event in events if isinstance(event, GoalSent)}
     assert sent == {event.goal for event in events if isinstance(event, GoalFinished)}
-    assert [event.path for event in events if isinstance(event, Exited)].count("root") == 1
+    assert [event.path for event in events if isinstance(event, NodeExited)].count("root") == 1

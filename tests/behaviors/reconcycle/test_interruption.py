@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import AnyEvent, Exited, GoalFinished, GoalSent, RunEnded
+from engine.event import AnyEvent, GoalFinished, GoalSent, NodeExited, RunEnded
 from engine.journal import list_runs
 from tests.engine.cli.process import events_in, started, until
 from tests.robots.sim.demo_cell import patient_copy
@@ -32,7 +32,7 @@ def test_both_arms_come_to_rest_in_mid_motion(tmp_path: Path, number: signal.Sig
     events = events_in(tmp_path)
     ends = {event.goal: event.status for event in events if isinstance(event, GoalFinished)}
     cancelled = [goal for goal, status in ends.items() if status == "canceled"]
-    preempted = [event.path for event in events if isinstance(event, Exited) and event.preempted]
+    preempted = [event.path for event in events if isinstance(event, NodeExited) and event.preempted]
     assert process.returncode == 130, errors
     assert _moving(events) == set()
     assert len(cancelled) == 2, ends

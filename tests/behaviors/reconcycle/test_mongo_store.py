@@ -10,9 +10,9 @@ import pytest
 
 from engine.clock import run_virtual
 from engine.document.cell import Cell
-from engine.event import Exited
+from engine.event import NodeExited
 from engine.journal import encode_event_log
-from engine.store import EntryChange, Joints, open_store, read_as
+from engine.store import EntryChange, Joints, decode_entry, open_store
 from tests.behaviors.reconcycle.test_two_arm_transfer import Transfer, cell_as_it_is, changed_cell
 from tests.engine.store.mongod import RUNS_HERE, Mongod
 
@@ -72,7 +72,7 @@ async def _turned(address: str, *, by_rad: float) -> tuple[float, ...]:
     """Turn the base joint of `left_home` and return its joints."""
     async with await open_store(address, inline=True) as store:
         entry = await store.get("joints", "left_home")
-        first, *others = read_as(entry, Joints).joints
+        first, *others = decode_entry(entry, Joints).joints
         turned = Joints(joints=(first + by_rad, *others))
         await store.put("joints", "left_home", turned, expected_revision=entry.revision, by="ana", reason="more room")
         return turned.joints
@@ -84,4 +84,4 @@ async def _undone(address: str) -> EntryChange:
 
 
 def _way(transfer: Transfer) -> list[tuple[str, str]]:
-    return [(event.path, event.outcome) for event in transfer.log if isinstance(event, Exited)]
+    return [(event.path, event.outcome) for event in transfer.log if isinstance(event, NodeExited)]

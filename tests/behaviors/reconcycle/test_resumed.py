@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_cell
-from engine.event import Exited
+from engine.event import NodeExited
 from engine.journal import Journal
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.session import Session
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import JOURNAL, events_in, run_id_in
 
@@ -31,7 +31,9 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "crash.yaml").write_text(CRASH, encoding="utf-8")
     said = flexcell("run", ROOT / TRANSFER, "--clock", "virtual", "-q", "--faults", "crash.yaml", cwd=folder)
     assert said.code == -9
-    grasped = [event.path for event in events_in(folder) if isinstance(event, Exited) and event.path.endswith("grasp")]
+    grasped = [
+        event.path for event in events_in(folder) if isinstance(event, NodeExited) and event.path.endswith("grasp")
+    ]
     assert sorted(grasped) == ["root/transfer/left/grasp", "root/transfer/right/grasp"]
     return folder
 
@@ -55,7 +57,7 @@ def test_a_session_brings_the_world_back_and_carries_on(killed: Path, tmp_path: 
                 return (await session.wait(await session.resume(run))).outcome
 
     assert run_virtual(main()) == "finished"
-    again = [e.path for e in events_in(folder) if isinstance(e, Exited) and e.path.endswith("grasp")]
+    again = [e.path for e in events_in(folder) if isinstance(e, NodeExited) and e.path.endswith("grasp")]
     assert len(again) == 2
 
 

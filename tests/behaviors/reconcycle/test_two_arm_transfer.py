@@ -14,19 +14,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
 from engine.document.loader import load_behavior
 from engine.event import Event
 from engine.journal import NullJournal, encode_event_log
 from engine.messages import JointState
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 from robots.port import Array
-from robots.sim.cell_model import ArmIndices, build_cell
-from robots.sim.cell_scene import scene_of
+from robots.sim.physics.cell_model import ArmIndices, build_cell
+from robots.sim.scene.scene_builder import build_scene
 from tests.tiers import nightly
 
 mujoco: Any = import_module("mujoco")
@@ -171,7 +171,7 @@ def test_the_extremes_of_the_parameters_work(tmp_path: Path, parameters: dict[st
 
 def least_distance_m(transfer: Transfer) -> float:
     """Return the smallest distance between the two arms over all samples."""
-    cell = build_cell(scene_of(transfer.cell.document, seed=0))
+    cell = build_cell(build_scene(transfer.cell.document, seed=0))
     model: Any = cell.model
     data: Any = mujoco.MjData(model)
     left, right = (_collision_shapes(model, arm) for arm in cell.arms)

@@ -1,6 +1,6 @@
 """The rinsing is killed, as by `kill -9`, on its way; another engine finds the arm where it stood and goes on.
 
-The processes are those of `benchmarks/crashes.py`, which kills at every event and commit.
+The processes are those of `benchmarks/crash_recovery.py`, which kills at every event and commit.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import msgspec
 import pytest
 
 from benchmarks.crash_trial import Trial
-from engine.event import Exited
+from engine.event import NodeExited
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import events_in, run_id_in
 from tests.tiers import nightly
@@ -58,4 +58,4 @@ def test_flexcell_resume_goes_on_in_the_stage_it_was_killed_in(tmp_path: Path, s
 
 def ended(folder: Path) -> list[str]:
     """Return the paths of what the journal knows to have ended, in order."""
-    return [event.path for event in events_in(folder) if isinstance(event, Exited)]
+    return [event.path for event in events_in(folder) if isinstance(event, NodeExited)]

@@ -7,12 +7,12 @@ from collections.abc import Generator
 import pytest
 import viser
 
-from editor_web.cell_view.lock import new_server
+from editor_web.cell_view.rendering.viser_gateway import new_viser_server
 
 
 @pytest.fixture
 def server() -> Generator[viser.ViserServer]:
     """Of its own for each test."""
-    opened = new_server("key")
+    opened = new_viser_server("key")
     yield opened
     opened.stop()

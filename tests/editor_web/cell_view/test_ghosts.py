@@ -8,8 +8,8 @@ from contextlib import asynccontextmanager
 import viser
 
 from editor_web.cell_view import CellView
-from editor_web.cell_view.newest import Newest
-from editor_web.cell_view.ways import Ghosts, Ways
+from editor_web.cell_view.layers.path_view import GhostLayer, PathLayer
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
 from engine.skills.planning import PathPreview
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.fake_scene import frames_at, new_scene
@@ -20,11 +20,11 @@ NOBODY_LOOKS = PathPreview(robot="left", state="none")
 
 
 def test_a_ghost_stands_beside_the_planned_way_and_goes_when_nobody_looks(server: viser.ViserServer) -> None:
-    newest = Newest()
+    newest = LatestMessages()
     for name, message in (("left", description("left")), ("cell", new_scene()), ("cell", frames_at(0.0))):
         newest.put(name, message)
     newest.put("left", way("left", "moving"))
-    planned, ghosts = Ways(server), Ghosts(server)
+    planned, ghosts = PathLayer(server), GhostLayer(server)
     planned.draw(newest, 0.0, is_shown=True)
     ghosts.draw({("left", 0): way("left"), ("left", 2): way("left")}, newest, 0.0)
     for node in ("/ways/left", "/taught/left.0", "/taught/left.2"):

@@ -8,7 +8,7 @@ from threading import Event
 
 import pytest
 
-from editor_web.cell_view.lock import new_server
+from editor_web.cell_view.rendering.viser_gateway import new_viser_server
 
 
 def test_viser_says_nothing_though_other_threads_put_standard_output_back(capsys: pytest.CaptureFixture[str]) -> None:
@@ -21,7 +21,7 @@ def test_viser_says_nothing_though_other_threads_put_standard_output_back(capsys
     with ThreadPoolExecutor(1) as threads:
         putting_back = threads.submit(put_back)
         try:
-            new_server("key").stop()
+            new_viser_server("key").stop()
         finally:
             ending.set()
         putting_back.result()

@@ -8,10 +8,10 @@ from typing import TypeVar
 import numpy as np
 import pytest
 
-from editor_web.cell_view.linkage import Linkage
-from editor_web.cell_view.placement import Matrix, by_name, rigid
+from editor_web.cell_view.rendering.transforms import Matrix, matrix_of_pose, poses_by_frame
+from editor_web.cell_view.rendering.urdf_tree import UrdfTree
 from engine.bus import SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import FramePoses, JointState, RobotDescription, SceneDescription
 from engine.skills.planning import MotionTarget, PathPreview, PlanMotion
@@ -29,8 +29,8 @@ def latest(bus: SkillBus, topic: str, kind: type[M]) -> M:
 
 def frames_of(bus: SkillBus, arm: str) -> dict[str, Matrix]:
     """Where the links of an arm are."""
-    poses = by_name(latest(bus, "cell/frames", FramePoses))
-    return {name.partition("/")[2]: rigid(pose) for name, pose in poses.items() if name.startswith(f"{arm}/")}
+    poses = poses_by_frame(latest(bus, "cell/frames", FramePoses))
+    return {name.partition("/")[2]: matrix_of_pose(pose) for name, pose in poses.items() if name.startswith(f"{arm}/")}
 
 
 @pytest.mark.virtual
@@ -46,7 +46,7 @@ async def test_the_ghost_of_an_arm_at_its_measured_joints_is_the_arm(name: str, 
             joints = latest(cell.bus, f"{arm.name}/joint_state", JointState)
             at = dict(zip(joints.names, joints.position_rad, strict=True))
             seen = frames_of(cell.bus, arm.name)
-            links = Linkage(arm.urdf).links(rigid(arm.base), at, seen=seen)
+            links = UrdfTree(arm.urdf).links(matrix_of_pose(arm.base), at, seen=seen)
             drawn = {g.frame.partition("/")[2] for g in scene.geometries if g.frame.startswith(f"{arm.name}/")}
             assert drawn
             assert {link: np.allclose(links[link], seen[link], atol=1e-5) for link in drawn} == dict.fromkeys(
@@ -65,10 +65,10 @@ async def test_a_proposed_way_begins_where_the_tool_is(tmp_path: Path) -> None:
         preview = latest(cell.bus, "arm/planned_path", PathPreview)
         assert preview.state == "proposed"
         tool = frames_of(cell.bus, "arm")
-        linkage = Linkage(arm.urdf)
+        linkage = UrdfTree(arm.urdf)
         for joints, point in zip(preview.joints, preview.tool_path, strict=True):
             at = dict(zip(preview.joint_names, joints, strict=True))
-            links = linkage.links(rigid(arm.base), at, seen=tool)
+            links = linkage.links(matrix_of_pose(arm.base), at, seen=tool)
             assert np.allclose(links[arm.tool_frame.partition("/")[2]][:3, 3], point, atol=1e-6)
         assert np.allclose(preview.joints[0], now, atol=1e-2)
         assert np.allclose(preview.joints[-1], goal, atol=1e-6)

@@ -6,18 +6,18 @@ from hypothesis import strategies as st
 
 from engine.event import (
     Cause,
-    Commanded,
-    Diverted,
-    Entered,
     Event,
-    Exited,
     GoalFinished,
     GoalSent,
-    Logged,
+    MessageLogged,
+    NodeDiverted,
+    NodeEntered,
+    NodeExited,
+    OperatorCommanded,
     RunEnded,
     RunStarted,
     StatusChanged,
-    Transitioned,
+    TransitionTaken,
 )
 
 PATHS = ("root", "root/a", "root/b", "root/b/x", "root/b/y", "root/b/y/deep", "root/c")
@@ -45,21 +45,25 @@ def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
         match what:
             case "enter":
                 visits[path] = visits.get(path, 0) + 1
-                events.append(Entered(seq=seq, time_s=time_s, path=path, visit=visits[path], kind="state", inputs={}))
+                events.append(
+                    NodeEntered(seq=seq, time_s=time_s, path=path, visit=visits[path], kind="state", inputs={})
+                )
             case "exit":
-                events.append(Exited(seq=seq, time_s=time_s, path=path, visit=visit, outcome="done"))
+                events.append(NodeExited(seq=seq, time_s=time_s, path=path, visit=visit, outcome="done"))
             case "fail":
                 events.append(
-                    Exited(seq=seq, time_s=time_s, path=path, visit=visit, outcome="", cause=Cause(message="lost"))
+                    NodeExited(seq=seq, time_s=time_s, path=path, visit=visit, outcome="", cause=Cause(message="lost"))
                 )
             case "divert":
-                events.append(Diverted(seq=seq, time_s=time_s, path=path, visit=visit, by="timeout", target="c"))
+                events.append(NodeDiverted(seq=seq, time_s=time_s, path=path, visit=visit, by="timeout", target="c"))
             case "status":
                 events.append(
                     StatusChanged(seq=seq, time_s=time_s, path=path, status=("running", "success")[int(pause_s)])
                 )
             case "follow":
-                events.append(Transitioned(seq=seq, time_s=time_s, path=path, source="a", outcome="done", target="b"))
+                events.append(
+                    TransitionTaken(seq=seq, time_s=time_s, path=path, source="a", outcome="done", target="b")
+                )
             case "goal":
                 events.append(
                     GoalSent(seq=seq, time_s=time_s, path=path, goal="g", address="left/move_joints", request={})
@@ -69,9 +73,9 @@ def made_up(steps: list[tuple[str, str, float]], *, ended: bool) -> list[Event]:
                     GoalFinished(seq=seq, time_s=time_s, path=path, goal="g", status="succeeded", result={"x": 1})
                 )
             case "command":
-                events.append(Commanded(seq=seq, time_s=time_s, command="pause", path="", arguments={}))
+                events.append(OperatorCommanded(seq=seq, time_s=time_s, command="pause", path="", arguments={}))
             case _:
-                events.append(Logged(seq=seq, time_s=time_s, path=path, level="info", message="said"))
+                events.append(MessageLogged(seq=seq, time_s=time_s, path=path, level="info", message="said"))
     if ended:
         events.append(RunEnded(seq=len(events) + 1, time_s=time_s, status="finished", outcome="good"))
     return events

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from editor_web.past.failure import Failure, failure_of
+from editor_web.past.failure import RunFailure, failure_of
 from engine.event import Event
 from tests.engine.run_document import run_document
 
@@ -37,7 +37,7 @@ root:
 """
 
 
-def failure(text: str) -> tuple[Failure, tuple[Event, ...]]:
+def failure(text: str) -> tuple[RunFailure, tuple[Event, ...]]:
     """How a behavior fails."""
     events = run_document(text).events
     found = failure_of(events, is_failed=True)

@@ -7,9 +7,9 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from editor_web.past.marks import TimeMark, bounded
-from editor_web.past.spans import Span
-from editor_web.past.timeline import Course, Timeline
+from editor_web.past.intervals import ActivationInterval
+from editor_web.past.markers import TimelineMarker, limit_markers
+from editor_web.past.timeline import RunHistory, Timeline
 from engine.event import Event
 from tests.editor_web.past.events import STEPS, made_up
 
@@ -18,15 +18,15 @@ LONG = [("enter", "root", 0.0)] + [
 ]
 
 
-def followed(events: list[Event]) -> Course:
+def followed(events: list[Event]) -> RunHistory:
     """A run whose events are all taken."""
-    course = Course("r")
+    course = RunHistory("r")
     for event in events:
         course.follow(event)
     return course
 
 
-def spans_of(timeline: Timeline) -> dict[str, tuple[Span, ...]]:
+def spans_of(timeline: Timeline) -> dict[str, tuple[ActivationInterval, ...]]:
     """By path."""
     return {row.path: row.spans for row in timeline.rows}
 
@@ -89,10 +89,10 @@ def test_a_part_of_a_long_run_is_told_exactly() -> None:
 def test_goals_make_room_for_marks_that_matter_more() -> None:
     """And what is left out is counted."""
     marks = [
-        TimeMark(seq=seq, time_s=seq, kind="failure" if seq % 100 == 0 else "goal", path="", text="")
+        TimelineMarker(seq=seq, time_s=seq, kind="failure" if seq % 100 == 0 else "goal", path="", text="")
         for seq in range(1, 1001)
     ]
-    kept, left_out = bounded(marks, most=50)
+    kept, left_out = limit_markers(marks, most=50)
     assert (len(kept), left_out) == (50, 950)
     assert [mark.seq for mark in kept if mark.kind == "failure"] == list(range(100, 1001, 100))
     assert [mark.seq for mark in kept] == sorted(mark.seq for mark in kept)

@@ -11,9 +11,9 @@ import msgspec
 import pytest
 
 from engine.bus import ActiveGoal, Holder, SkillBus
-from engine.bus.access import LocalBus
-from engine.bus.desk import BusDesk
-from engine.bus.remote import RemoteBus
+from engine.bus.bus_inspector import BusInspector
+from engine.bus.json_bus import LocalJsonBus
+from engine.bus.remote_bus import RemoteJsonBus
 from engine.clock import LoopClock
 from engine.errors import BusError
 from engine.messages import Message
@@ -71,7 +71,7 @@ def wired(bus: SkillBus) -> tuple[FakeBackend, Device]:
     bus.advertise_service(Double, device.double, namespace="left")
     bus.advertise_action(Rest, device.rest, namespace="left")
     bus.topic("left/number", Number).publish(Number(value=7))
-    backend.known_bus = LocalBus(bus)
+    backend.known_bus = LocalJsonBus(bus)
     return backend, device
 
 
@@ -80,7 +80,7 @@ async def test_the_command_lines_bus_works_through_the_server(serve: Serve) -> N
     async with SkillBus(LoopClock()) as bus:
         backend, _ = wired(bus)
         async with serve(backend) as served:
-            remote = RemoteBus(served.http)
+            remote = RemoteJsonBus(served.http)
             assert {"left/number", "left/double", "left/rest"} <= {entry.name for entry in await remote.listing()}
             assert msgspec.json.decode(await remote.call("left/double", {"value": 21})) == {"value": 42}
             end = await remote.perform("left/rest", {"until": "now"})
@@ -103,9 +103,9 @@ async def test_messages_reach_the_server_that_obeys_their_topic(serve: Serve) ->
     async with SkillBus(LoopClock()) as bus:
         backend, _ = wired(bus)
         heard: list[Number] = []
-        bus.topic("left/wanted", Number).obey(heard.append)
+        bus.topic("left/wanted", Number).subscribe_commands(heard.append)
         async with serve(backend) as served:
-            remote = RemoteBus(served.http)
+            remote = RemoteJsonBus(served.http)
             for value in (1, 2):
                 await remote.publish("left/wanted", {"value": value})
             with pytest.raises(BusError, match=r"it only tells.*commands are taken on left/wanted"):
@@ -122,7 +122,7 @@ async def test_a_goal_is_cancelled_when_its_client_goes(serve: Serve) -> None:
     async with SkillBus(LoopClock()) as bus:
         backend, device = wired(bus)
         async with serve(backend) as served:
-            asking = asyncio.create_task(RemoteBus(served.http).perform("left/rest", {}))
+            asking = asyncio.create_task(RemoteJsonBus(served.http).perform("left/rest", {}))
             await device.started.wait()
             asking.cancel()
             async with asyncio.timeout(GUARD_S):
@@ -151,7 +151,7 @@ async def test_the_page_gets_what_there_is_with_words_and_forms(serve: Serve) ->
     """Docstrings, schemas, numbers to plot, parameters."""
     async with SkillBus(LoopClock()) as bus:
         backend, _ = wired(bus)
-        backend.known_desk = BusDesk(bus)
+        backend.known_desk = BusInspector(bus)
         bus.parameters.declare("left/gain", Annotated[float, msgspec.Meta(ge=0)], 0.5, description="How stiff it is")
         async with serve(backend) as served:
             board = (await served.http.get("/api/v1/bus/board")).json()
@@ -184,7 +184,7 @@ async def test_a_goal_of_the_page_tells_its_course_and_can_be_cancelled(serve: S
     """The end comes when the device rests; the lease is given back."""
     async with SkillBus(LoopClock()) as bus:
         backend, device = wired(bus)
-        backend.known_desk = BusDesk(bus)
+        backend.known_desk = BusInspector(bus)
         async with serve(backend) as served:
             body = {"address": "left/rest"}
             async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:
@@ -211,7 +211,7 @@ async def test_a_goal_whose_page_goes_is_cancelled_and_one_of_a_run_is_not_for_t
     """Closing the tab must not leave a robot moving."""
     async with SkillBus(LoopClock()) as bus:
         backend, device = wired(bus)
-        backend.known_desk = BusDesk(bus)
+        backend.known_desk = BusInspector(bus)
         async with serve(backend) as served:
             body = {"address": "left/rest"}
             async with served.http.stream("POST", "/api/v1/bus/goals", json=body) as response:

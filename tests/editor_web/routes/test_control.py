@@ -12,13 +12,13 @@ from typing import Any
 import httpx
 import pytest
 
-from editor_web.access import VIEWER, load_access
+from editor_web.security.authentication import VIEWER, load_access_tokens
 from editor_web.server import dashboard
-from engine.cell import OpenCell
-from engine.event import Entered, Event, GateReached, OperatorChanged, SteppedBack
+from engine.cell.open_cell import OpenCell
+from engine.event import Event, GateReached, NodeEntered, OperatorChanged, RunSteppedBack
 from engine.journal import Journal
+from engine.project.session import Session
 from engine.registry import load_states
-from engine.session import Session
 from tests.editor_web.fake_backend import FakeBackend
 from tests.editor_web.limits import GUARD_S
 from tests.editor_web.served import Served
@@ -103,7 +103,7 @@ async def site(project: Path, host: str) -> AsyncGenerator[Site]:
             Session(cell, project=project, catalogue=load_states(), journal=journal) as session,
             dashboard(session, token_file=tokens, host=host, cell_view=False, shadows=False) as running,
         ):
-            access = load_access(tokens)
+            access = load_access_tokens(tokens)
             headers = {"Authorization": f"Bearer {access.operator}"}
             async with httpx.AsyncClient(
                 base_url=running.url, headers=headers, trust_env=False, timeout=GUARD_S
@@ -138,7 +138,7 @@ async def test_a_paused_run_is_stepped_back_until_nothing_is_left(project: Path,
         back = await there.command(run, "step_back")
         assert back.status_code == 200
         assert [(each["path"], each["point"]) for each in back.json()["waiting"]] == [("root/one", "before")]
-        await there.told(run, SteppedBack)
+        await there.told(run, RunSteppedBack)
         book = there.session.userdata(run)
         book.read(there.session.events(run))
         assert {key: entry.value for key, entry in book.scopes[""].values.items()} == {"value": 0}
@@ -229,7 +229,7 @@ async def test_what_runs_is_given_up_for_the_file_only_where_that_is_said(projec
     async with site(project, loopback) as there:
         answer = await there.served.http.post("/api/v1/runs", json={"behavior": "behaviors/asks.yaml"})
         run = answer.json()["run"]
-        await there.told(run, Entered, 2)
+        await there.told(run, NodeEntered, 2)
         await there.command(run, "pause")
         other = ASKS.replace("flow.Wait, with: {duration_s: 3000}", "flow.Log, with: {message: hi}")
         (project / "behaviors" / "asks.yaml").write_text(other, encoding="utf-8")

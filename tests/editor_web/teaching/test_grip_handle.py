@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from typing import cast
 
-from editor_web.cell_view import CellView, Handle, Pull
-from editor_web.cell_view.placement import Placed
-from editor_web.grip import Grip, Take
+from editor_web.cell_view import CellView, DragHandle, HandlePull
+from editor_web.cell_view.rendering.transforms import WorldPose
+from editor_web.teaching.handle_drag import HandleDrag, ShowHandle
 from engine.messages import Pose, RobotDescription
 from tests.editor_web.fake_backend import FakeBackend
 
-POSE = Placed(xyz=(0.0, 0.0, 0.0), xyzw=(0.0, 0.0, 0.0, 1.0))
+POSE = WorldPose(xyz=(0.0, 0.0, 0.0), xyzw=(0.0, 0.0, 0.0, 1.0))
 
 DESCRIPTION = RobotDescription(
     name="left",
@@ -31,15 +31,15 @@ class PulledView:
     """Its handle is pulled at just while it is taken away."""
 
     def __init__(self) -> None:
-        self.handle: Handle | None = None
+        self.handle: DragHandle | None = None
 
-    def give_handle(self, page: str, handle: Handle) -> None:
+    def give_handle(self, page: str, handle: DragHandle) -> None:
         del page
         self.handle = handle
 
-    def take_handle(self, page: str, handle: Handle) -> None:
+    def take_handle(self, page: str, handle: DragHandle) -> None:
         del page
-        handle.pulled(Pull(phase="start", pose=POSE))
+        handle.pulled(HandlePull(phase="start", pose=POSE))
         if self.handle is handle:
             self.handle = None
 
@@ -47,8 +47,8 @@ class PulledView:
 async def test_a_handle_that_is_pulled_while_its_page_goes_moves_nothing() -> None:
     backend, view = FakeBackend(), PulledView()
     backend.publish("left/description", DESCRIPTION)
-    grip = Grip(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None)
-    await grip.take(Take(arm="left"))
+    grip = HandleDrag(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None)
+    await grip.take(ShowHandle(arm="left"))
     assert view.handle is not None
     grip.held()
     await grip.close()
@@ -60,9 +60,11 @@ async def test_a_connection_that_goes_late_takes_only_its_own_handle_away() -> N
     """A page that came back has another one by then."""
     backend, view = FakeBackend(), PulledView()
     backend.publish("left/description", DESCRIPTION)
-    before, after = (Grip(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None) for _ in range(2))
-    await before.take(Take(arm="left"))
-    await after.take(Take(arm="left"))
+    before, after = (
+        HandleDrag(backend, cast("CellView", view), "page", joggers={}, tell=lambda _: None) for _ in range(2)
+    )
+    await before.take(ShowHandle(arm="left"))
+    await after.take(ShowHandle(arm="left"))
     shown = view.handle
     await before.close()
     assert view.handle is shown

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 
 from editor_web.teaching.jogging import Jogger
-from editor_web.teaching_wire import Jog
+from editor_web.teaching.teaching_messages import StartJog
 from engine.bus.action import GoalEnd
 from engine.errors import BusError
 from tests.editor_web.fake_backend import TopicBus
 
-JOG = Jog(arm="left", space="joints")
+JOG = StartJog(arm="left", space="joints")
 
 
 class BrakingArm(TopicBus):

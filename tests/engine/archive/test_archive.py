@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from engine.archive import Archive, PastRun
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.errors import JournalError, RecordingError
 from engine.event import RunEnded
 from engine.journal import Journal
+from engine.project.session import Session
+from engine.project.session_recordings import SessionRecordings
 from engine.recording import load_recording
-from engine.session import Session
-from engine.session_recordings import SessionRecordings
 from tests.engine.fake_states import CATALOGUE
 
 HEAD = "flexcell: 1\noutcomes: [good, bad]\nsuccess: [good]\n"

@@ -15,9 +15,9 @@ from engine.bus import SkillBus
 from engine.check import check_behavior
 from engine.clock import new_clock, run_virtual
 from engine.document import Behavior, parse_behavior
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "docs" / "how-to" / "write-behaviors-in-python.md").read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ import pytest
 
 from engine.authoring import load_python_behavior
 from engine.errors import DocumentError
-from engine.plan import new_plan
+from engine.runtime.plan import new_plan
 from tests.engine.fake_states import CATALOGUE
 
 ONE = """

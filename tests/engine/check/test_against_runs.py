@@ -13,9 +13,9 @@ from engine.bus import SkillBus
 from engine.check import Finding, check_behavior
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
-from engine.event import Cause, Entered, Event, Exited, RunEnded
-from engine.plan import new_plan
-from engine.run import Run
+from engine.event import Cause, Event, NodeEntered, NodeExited, RunEnded
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run
 from tests.engine.check.data_states import CATALOGUE
 from tests.engine.check.random_behaviors import Plain, behaviors
 
@@ -55,7 +55,7 @@ def causes(events: Iterable[Event]) -> list[Cause]:
     """Return everything that made a node fail, down to the first cause."""
     found: list[Cause] = []
     for event in events:
-        cause = event.cause if isinstance(event, Exited) else None
+        cause = event.cause if isinstance(event, NodeExited) else None
         while cause is not None:
             found.append(cause)
             cause = cause.because
@@ -81,8 +81,8 @@ def test_what_is_said_for_certain_never_goes_well(document: Plain) -> None:
     for seed in SEEDS:
         events = events_of(document, seed)
         # A foreach that collects reads only at the end of a round that others follow.
-        rounds = {event.path for event in events if isinstance(event, Entered) and event.kind == "foreach"}
-        went_well = {event.path for event in events if isinstance(event, Exited) and event.outcome}
+        rounds = {event.path for event in events if isinstance(event, NodeEntered) and event.kind == "foreach"}
+        went_well = {event.path for event in events if isinstance(event, NodeExited) and event.outcome}
         assert not (certain - rounds) & went_well
 
 

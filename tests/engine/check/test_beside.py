@@ -7,7 +7,7 @@ from pathlib import Path
 
 from engine.check import check_file, read_beside
 from engine.document import load_behavior
-from engine.library import Library
+from engine.library.behavior_library import Library
 from tests.engine.check.checking import CATALOGUE, HEAD
 
 MOVE = """\

@@ -8,7 +8,7 @@ import pytest
 
 from engine.check import check_cell, check_entries_document
 from engine.document.cell import load_cell
-from engine.document.entries import load_entries
+from engine.document.entries_document import load_entries
 
 CELL = """\
 flexcell: 1

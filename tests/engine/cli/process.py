@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from engine.errors import JournalError
-from engine.event import AnyEvent, Entered
+from engine.event import AnyEvent, NodeEntered
 from engine.journal import RunRecord, list_runs, read_events
 from tests.engine.cli.command import FLEXCELL
 
@@ -56,7 +56,7 @@ def until(
 
 def entered(path: str, visit: int = 1) -> Callable[[Sequence[AnyEvent]], bool]:
     """Tell whether a node was entered for the n-th time."""
-    return lambda events: any(isinstance(e, Entered) and e.path == path and e.visit >= visit for e in events)
+    return lambda events: any(isinstance(e, NodeEntered) and e.path == path and e.visit >= visit for e in events)
 
 
 def run_id_in(folder: Path) -> str:

@@ -126,13 +126,13 @@ def test_a_file_that_cannot_be_written_whole_is_as_it_was(file: Path, monkeypatc
 
 
 def test_a_file_that_was_changed_meanwhile_is_left(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = check_fix.repair
+    real = check_fix.fix_text
 
     def slow(text: str, **options: object) -> object:
         file.write_text(f"{WRONG}# of somebody else\n", encoding="utf-8")
         return real(text, **options)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(check_fix, "repair", slow)
+    monkeypatch.setattr(check_fix, "fix_text", slow)
     with pytest.raises(FlexcellError, match="changed meanwhile"):
         check_fix.fix_file(file, load_states(file.parent), likely=False)
     assert file.read_text(encoding="utf-8").endswith("# of somebody else\n")

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from engine.cli.runs import app
 from engine.errors import JournalError
-from engine.event import Logged
+from engine.event import MessageLogged
 from engine.journal import Journal, RunOrigin
 from tests.engine.journal.older_journal import write_older_journal
 
@@ -28,7 +28,7 @@ async def test_a_damaged_run_is_listed_and_its_events_are_not_shown(tmp_path: Pa
             origin = RunOrigin(behavior="/b.yaml")
             run = journal.begin(name, behavior="b", document="d", started_unix_s=0.0, origin=origin)
             for seq in (1, 2, 3):
-                run.append(Logged(seq=seq, time_s=0.0, path="root", level="info", message=f"step {seq}"))
+                run.append(MessageLogged(seq=seq, time_s=0.0, path="root", level="info", message=f"step {seq}"))
             await run.commit()
     changed(tmp_path, "UPDATE run SET behavior = 'other' WHERE id = 'first'")
     damaged = "CAST(replace(CAST(data AS TEXT), 'step 2', 'step 9') AS BLOB)"
@@ -45,7 +45,7 @@ async def test_a_damaged_run_is_listed_and_its_events_are_not_shown(tmp_path: Pa
 
 
 def test_a_run_of_an_older_version_is_said_to_be_unverified(tmp_path: Path) -> None:
-    event = Logged(seq=1, time_s=0.0, path="root", level="info", message="x")
+    event = MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="x")
     write_older_journal(tmp_path / "journal.db", 3, "old", [event])
     said = CliRunner().invoke(app, ["--journal", str(tmp_path)])
     assert said.stderr == "flexcell: unverified, written by an older version: old\n"

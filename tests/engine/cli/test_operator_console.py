@@ -11,7 +11,7 @@ from typing import IO
 
 import pytest
 
-from engine.event import AnyEvent, Commanded, GateReached, OperatorChanged, RunEnded, StopRequested
+from engine.event import AnyEvent, GateReached, OperatorChanged, OperatorCommanded, RunEnded, StopRequested
 from tests.engine.cli.command import FLEXCELL, Said, flexcell
 from tests.engine.cli.process import entered, events_in, started, until
 
@@ -83,7 +83,7 @@ def operated(file: Path, script: str, *options: str) -> Said:
 
 def commanded(folder: Path) -> list[str]:
     """Return what the journal knows of the operator."""
-    return [f"{e.command} {e.path}".strip() for e in events_in(folder) if isinstance(e, Commanded)]
+    return [f"{e.command} {e.path}".strip() for e in events_in(folder) if isinstance(e, OperatorCommanded)]
 
 
 def gates(folder: Path) -> list[str]:
@@ -266,7 +266,7 @@ def test_a_run_is_paused_while_it_goes_on(nested: Path) -> None:
         until(process, nested.parent, entered("root/one"))
         process.stdin.write("pause\n")
         process.stdin.flush()
-        until(process, nested.parent, lambda events: any(isinstance(e, Commanded) for e in events))
+        until(process, nested.parent, lambda events: any(isinstance(e, OperatorCommanded) for e in events))
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60)
     assert process.returncode == 130

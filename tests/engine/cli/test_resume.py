@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import BehaviorChanged, Called, Entered, GateReached, RunResumed
+from engine.event import BehaviorChanged, GateReached, NodeEntered, RunResumed, ServiceCalled
 from engine.journal import list_runs
 from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.cli.process import JOURNAL, entered, events_in, run_id_in, runs_in, started, until
@@ -83,7 +83,7 @@ def test_a_killed_run_ends_as_it_would_have(tmp_path: Path) -> None:
     result = json.loads(said.out)
     assert (said.code, result["run"], result["outcome"]) == (0, run, "finished")
     assert result["userdata"] == {"round": 30, "entry": {"round": 30}}
-    rounds = [event.request["value"] for event in events_in(tmp_path) if isinstance(event, Called)]
+    rounds = [event.request["value"] for event in events_in(tmp_path) if isinstance(event, ServiceCalled)]
     assert [{"round": n} for n in range(1, 31)] == [value for i, value in enumerate(rounds) if value not in rounds[:i]]
     assert [event.epoch for event in events_in(tmp_path) if isinstance(event, RunResumed)] == [2]
     assert [event.seq for event in events_in(tmp_path)] == list(range(1, len(events_in(tmp_path)) + 1))
@@ -187,7 +187,7 @@ def test_a_run_whose_running_state_was_given_up_for_another_class_is_resumed_wit
         until(
             process,
             tmp_path,
-            lambda events: sum(isinstance(e, Entered) and e.path == "root/second" for e in events) > 1,
+            lambda events: sum(isinstance(e, NodeEntered) and e.path == "root/second" for e in events) > 1,
         )
     changes = [event for event in events_in(tmp_path) if isinstance(event, BehaviorChanged)]
     assert [event.restarted for event in changes] == [("root/second",)]

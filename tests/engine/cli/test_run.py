@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from engine.event import RunEnded, StopRequested
+from engine.host.thread_switch_interval import INTERVAL_S
 from engine.journal import list_runs, read_events
-from engine.prompt_turns import INTERVAL_S
 from tests.engine.cli.command import FLEXCELL, flexcell
 from tests.engine.project_folder import STATE, ProjectFolder
 
@@ -113,7 +113,7 @@ def test_an_error_in_a_state_is_exit_code_3_with_its_cause(tmp_path: Path) -> No
     said = flexcell("run", file, "--clock", "virtual", "--json", cwd=tmp_path)
     result = json.loads(said.out)
     assert (said.code, result["status"]) == (3, "errored")
-    assert "nobody answers at this address" in str(result["cause"])
+    assert "no such service" in str(result["cause"])
 
 
 def test_a_timeout_stops_the_run(behavior: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import Called
+from engine.event import ServiceCalled
 from engine.journal import list_runs, read_events
 from tests.engine.cli.command import Said, flexcell
 
@@ -77,7 +77,7 @@ def test_a_crash_kills_the_process_and_leaves_a_journal_to_resume(folder: Path, 
     assert said.code == -signal.SIGKILL
     (run,) = list_runs(folder / "runs")
     events = read_events(folder / "runs", run.id)
-    assert (run.status, any(isinstance(event, Called) for event in events)) == ("running", "request" in crash)
+    assert (run.status, any(isinstance(event, ServiceCalled) for event in events)) == ("running", "request" in crash)
 
 
 def test_a_bad_fault_document_is_exit_code_2(folder: Path) -> None:

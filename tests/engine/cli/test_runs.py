@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import Entered, Exited
+from engine.event import NodeEntered, NodeExited
 from tests.engine.cli.command import Said, flexcell
 from tests.engine.cli.process import entered, events_in, run_id_in, runs_in, started, until
 
@@ -106,12 +106,12 @@ def test_a_run_begins_at_a_moment_of_another(behavior: Path) -> None:
     folder = behavior.parent
     finished(behavior, "-p", "factor=5")
     before = run_id_in(folder)
-    seq = next(e.seq for e in events_in(folder) if isinstance(e, Entered) and e.path == "root/two/times")
+    seq = next(e.seq for e in events_in(folder) if isinstance(e, NodeEntered) and e.path == "root/two/times")
     said = finished(behavior, "--from", f"{before}@{seq}", "--json")
     result = json.loads(said.out)
     assert (said.code, said.err, result["userdata"]) == (0, "", {"value": 110.0})
     assert result["run"] != before
-    paths = [e.path for e in events_in(folder) if isinstance(e, Entered)]
+    paths = [e.path for e in events_in(folder) if isinstance(e, NodeEntered)]
     assert paths == ["root", "root/two", "root/two/times", "root/three", "root/decide"]
 
 
@@ -119,7 +119,7 @@ def test_it_may_begin_elsewhere_and_with_another_version(behavior: Path) -> None
     folder = behavior.parent
     finished(behavior)
     before = run_id_in(folder)
-    seq = next(e.seq for e in events_in(folder) if isinstance(e, Exited) and e.path == "root/one")
+    seq = next(e.seq for e in events_in(folder) if isinstance(e, NodeExited) and e.path == "root/one")
     behavior.write_text(STEPS.replace("+ 100.0", "+ 1000.0"), encoding="utf-8")
     said = finished(behavior, "--from", f"{before}@{seq}", "--at", "root/three", "-p", "factor=7", "--json")
     assert (said.code, json.loads(said.out)["userdata"]) == (0, {"value": 1002.0})

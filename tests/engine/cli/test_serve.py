@@ -9,7 +9,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from engine.bus.remote import ServerRecord
+from engine.bus.remote_bus import ServerRecord
 from engine.cli.login import login
 from engine.cli.serve import serve
 from engine.errors import BusError, FlexcellError

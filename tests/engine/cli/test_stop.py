@@ -14,9 +14,9 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.bus.remote import ServerRecord
+from engine.bus.remote_bus import ServerRecord
 from engine.cli.stop import stop_cell
-from engine.state_names import SERVER_FILE
+from engine.host.state_folder_names import SERVER_FILE
 from engine.stop import StopEndpoint, StopRelay
 from tests.engine.cli.command import flexcell
 from tests.engine.stop.device import device, endpoint_of

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.event import Entered
+from engine.event import NodeEntered
 from tests.engine.cli.command import flexcell
 from tests.engine.cli.process import JOURNAL, events_in, run_id_in
 
@@ -57,7 +57,7 @@ def test_what_stood_in_is_told(folder: Path) -> None:
     assert result["userdata"] == {"width": 0.03}
     shown = flexcell("run", "rounds.yaml", "--substitutes", "substitutes.yaml", "--clock", "virtual", cwd=folder)
     assert "substitutes stood in for root/read" in shown.err
-    kinds = {event.path: event.kind for event in events_in(folder) if isinstance(event, Entered)}
+    kinds = {event.path: event.kind for event in events_in(folder) if isinstance(event, NodeEntered)}
     assert kinds["root/read"] == "substitute"
 
 

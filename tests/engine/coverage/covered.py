@@ -9,11 +9,11 @@ from textwrap import dedent
 
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
-from engine.coverage import Coverage
+from engine.coverage import CoverageCollector
 from engine.document import Behavior, load_behavior, parse_behavior
 from engine.event import Event
-from engine.plan import Catalogue, new_plan
-from engine.run import Run
+from engine.runtime.plan import Catalogue, new_plan
+from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE
 
 HEAD = "flexcell: 1\nname: test\noutcomes: [good, bad]\nsuccess: [good]\n"
@@ -53,19 +53,19 @@ def events_of(
     return tuple(events)
 
 
-def covered(behavior: Behavior, *inputs: Mapping[str, object], stop_at_s: float | None = None) -> Coverage:
+def covered(behavior: Behavior, *inputs: Mapping[str, object], stop_at_s: float | None = None) -> CoverageCollector:
     """Run it once for each of `inputs`, once at least, and return what that covered."""
-    coverage = Coverage(behavior, CATALOGUE)
+    coverage = CoverageCollector(behavior, CATALOGUE)
     for given in inputs or ({},):
         coverage.add(events_of(behavior, inputs=given, stop_at_s=stop_at_s))
     return coverage
 
 
-def seen(coverage: Coverage) -> dict[str, int]:
+def seen(coverage: CoverageCollector) -> dict[str, int]:
     """Return what was seen, and how often, as `path: label`."""
     return {f"{item.path}: {item.label}": item.count for item in coverage.items if item.count}
 
 
-def missing(coverage: Coverage) -> list[str]:
+def missing(coverage: CoverageCollector) -> list[str]:
     """Return what was not, as `path: label`."""
     return [f"{item.path}: {item.label}" for item in coverage.missing]

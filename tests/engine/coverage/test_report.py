@@ -10,8 +10,8 @@ import msgspec
 import pytest
 
 from engine.coverage import BehaviorCoverage
-from engine.coverage.lines import by_file
-from engine.coverage.record import CoverageFile
+from engine.coverage.coverage_file import CoverageFile
+from engine.coverage.line_coverage import by_file
 from engine.coverage.report import report
 from tests.engine.coverage.covered import covered, written
 
@@ -161,4 +161,4 @@ def test_a_line_is_partial_when_some_of_it_was_seen(coverages: tuple[BehaviorCov
     assert {line.number: line.status for line in main.lines} == {
         3: "partial", 6: "covered", 10: "partial", 11: "covered", 14: "covered", 15: "missed", 16: "missed",
     }  # fmt: skip
-    assert (main.ways_taken, main.ways, sub.ways_taken, sub.ways) == (3, 9, 2, 5)
+    assert (main.branches_taken, main.branches, sub.branches_taken, sub.branches) == (3, 9, 2, 5)

@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from engine.document.cel_environment import environment
-from engine.document.cel_syntax import Call, Comprehension, Literal, Name, ParsedExpression, Selection, read_parsed
+from engine.document.cel_syntax import (
+    CelCall,
+    CelComprehension,
+    CelIdentifier,
+    CelLiteral,
+    CelSelect,
+    ParsedExpression,
+    read_parsed,
+)
 
 
 def parsed(text: str) -> ParsedExpression:
@@ -16,20 +24,20 @@ def parsed(text: str) -> ParsedExpression:
 def test_calls_selections_and_literals_are_read() -> None:
     """Operators are calls; text is kept, numbers are not."""
     root = parsed("a.b + 'é😀'").root
-    assert isinstance(root, Call)
+    assert isinstance(root, CelCall)
     assert root.function == "_+_"
     field, text = root.arguments
-    assert isinstance(field, Selection)
-    assert isinstance(field.operand, Name)
-    assert (field.operand.name, text) == ("a", Literal("é😀"))
+    assert isinstance(field, CelSelect)
+    assert isinstance(field.operand, CelIdentifier)
+    assert (field.operand.name, text) == ("a", CelLiteral("é😀"))
 
 
 def test_a_macro_is_a_fold() -> None:
     """`map` goes over its list and adds one item a round."""
     root = parsed("xs.map(x, x * 2)").root
-    assert isinstance(root, Comprehension)
+    assert isinstance(root, CelComprehension)
     assert root.variable == "x"
-    assert isinstance(root.step, Call)
+    assert isinstance(root.step, CelCall)
     assert root.step.function == "_+_"
 
 

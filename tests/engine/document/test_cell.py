@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from engine.document import Placement, load_cell
-from engine.document.cell import MongoStore, SqliteStore
+from engine.document.cell import MongoStoreSpec, SqliteStoreSpec
 from engine.errors import DocumentError, Position
 
 DEMO = Path(__file__).parents[3] / "behaviors" / "cells" / "dual_panda.yaml"
@@ -98,7 +98,7 @@ def test_paths_are_relative_to_the_document_except_the_database(tmp_path: Path) 
     file.write_text(SMALL, encoding="utf-8")
     cell = load_cell(file)
     assert cell.seed_file == tmp_path / "entries" / "small.yaml"
-    assert isinstance(cell.document.store, SqliteStore)
+    assert isinstance(cell.document.store, SqliteStoreSpec)
     assert cell.document.store.path == "data/cell.db"
 
 
@@ -109,7 +109,7 @@ def test_a_store_may_be_on_a_server(tmp_path: Path) -> None:
     file.write_text(re.sub("store: .*", store, SMALL), encoding="utf-8")
     cell = load_cell(file)
     uri = "mongodb://cell:${CELL_PASSWORD}@db:27017"
-    assert cell.document.store == MongoStore(uri=uri, database="flexcell", seed="e.yaml")
+    assert cell.document.store == MongoStoreSpec(uri=uri, database="flexcell", seed="e.yaml")
     assert cell.seed_file == tmp_path / "e.yaml"
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from engine.document.faults import Crash, Failure, Fault, load_faults, parse_faults
+from engine.document.faults import CrashFault, ErrorFault, Fault, load_faults, parse_faults
 from engine.errors import DocumentError
 
 HEAD = "flexcell: 1\nfaults:\n"
@@ -24,8 +24,8 @@ def test_a_document_says_what_goes_wrong_where_and_when(tmp_path: Path) -> None:
     faults = load_faults(file)
     late, blocked, crash = faults.document.faults
     assert late == Fault(at="root/*/grasp", address="left/*", request=2, times=3, probability=0.5, late="500 ms")
-    assert (late.kind, late.late_s, blocked.failure) == ("late", 0.5, Failure(message="the fingers are blocked"))
-    assert (crash.crash, crash.crashes_at, faults.position(1).line) == (Crash(at_event=7), 7, 4)
+    assert (late.kind, late.late_s, blocked.failure) == ("late", 0.5, ErrorFault(message="the fingers are blocked"))
+    assert (crash.crash, crash.crashes_at, faults.position(1).line) == (CrashFault(at_event=7), 7, 4)
 
 
 @pytest.mark.parametrize(

@@ -19,5 +19,5 @@ def test_the_schema_of_a_node_has_the_keys_of_documents() -> None:
     """Keys are named as in YAML, not as in Python."""
     schema = json.loads((SCHEMA_FOLDER / "behavior.schema.json").read_text(encoding="utf-8"))
     assert {"state", "machine", "concurrency", "behavior", "with", "in", "out"} <= set(
-        schema["$defs"]["Node"]["properties"]
+        schema["$defs"]["NodeSpec"]["properties"]
     )

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.document.value_size import MAX_WEIGHT, SCALAR, Size, either, joined, measure, text_size
+from engine.document.value_size import MAX_WEIGHT, SCALAR, ValueSize, either_size, joined_size, measure_value, text_size
 from engine.errors import ExpressionError
 from engine.messages import Pose
 
@@ -19,7 +19,7 @@ plain = st.recursive(
 )
 
 
-def keeps_to(value: object, size: Size) -> bool:
+def keeps_to(value: object, size: ValueSize) -> bool:
     """Tell whether a value is within a size, everywhere inside too."""
     if isinstance(value, str):
         return len(value) <= size.text
@@ -33,20 +33,20 @@ def keeps_to(value: object, size: Size) -> bool:
 @given(one=plain, other=plain)
 def test_values_keep_to_their_sizes_alone_and_together(one: object, other: object) -> None:
     """Also to the size of either of them."""
-    sizes = measure(one, name="one"), measure(other, name="other")
+    sizes = measure_value(one, name="one"), measure_value(other, name="other")
     assert keeps_to(one, sizes[0])
-    assert keeps_to(one, either(*sizes))
-    assert keeps_to(other, either(*sizes))
+    assert keeps_to(one, either_size(*sizes))
+    assert keeps_to(other, either_size(*sizes))
     if isinstance(one, list) and isinstance(other, list):
-        assert keeps_to([*cast("list[object]", one), *cast("list[object]", other)], joined(*sizes))
+        assert keeps_to([*cast("list[object]", one), *cast("list[object]", other)], joined_size(*sizes))
 
 
 def test_weight_counts_values_and_text() -> None:
     """A text of 100 characters weighs one more than a number."""
-    assert measure(3, name="x") == SCALAR
-    assert measure("a" * 100, name="x").weight == text_size(100).weight == 2
-    assert measure([1, [2, 3], {"k": 4}], name="x").weight == pytest.approx(8, abs=0.1)
-    assert measure(Pose(xyz=(1.0, 2.0, 3.0)), name="x").weight < 30
+    assert measure_value(3, name="x") == SCALAR
+    assert measure_value("a" * 100, name="x").weight == text_size(100).weight == 2
+    assert measure_value([1, [2, 3], {"k": 4}], name="x").weight == pytest.approx(8, abs=0.1)
+    assert measure_value(Pose(xyz=(1.0, 2.0, 3.0)), name="x").weight < 30
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_weight_counts_values_and_text() -> None:
 def test_what_is_too_large_or_no_value_of_a_document_is_refused(value: object, says: str) -> None:
     """The message names the variable."""
     with pytest.raises(ExpressionError, match=says) as refusal:
-        measure(value, name="image")
+        measure_value(value, name="image")
     assert "`image`" in str(refusal.value)
 
 
@@ -71,4 +71,4 @@ def test_a_list_that_holds_itself_is_refused() -> None:
     value: list[object] = []
     value.append(value)
     with pytest.raises(ExpressionError, match="nested"):
-        measure(value, name="x")
+        measure_value(value, name="x")

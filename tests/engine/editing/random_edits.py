@@ -6,7 +6,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from engine.editing.outline import Outline, Spot
+from engine.editing.outline import NodeRef, Outline
 from tests.engine.editing.layouts import Plain
 
 MACHINES = ("machine", "priority")
@@ -19,44 +19,44 @@ DESCRIPTIONS = ("One.", "a: b # c", "two\nlines", "  x ")
 def simple_edits(draw: st.DrawFn, data: Plain) -> Plain | None:
     """Draw one of the edits that `model_of` knows; None where there is nothing to edit."""
     outline = Outline(data)
-    spots = list(outline.spots.values())
+    refs = list(outline.refs.values())
     kind = draw(st.sampled_from(["rename", "remove", "wire", "unwire", "initial", "give", "describe"]))
     if kind in ("rename", "remove"):
-        spot = _one(draw, [s for s in spots if s.parent is not None and s.parent.kind in NAMED])
-        if spot is None or spot.parent is None or "other" in spot.parent.states:
+        ref = _one(draw, [s for s in refs if s.parent is not None and s.parent.kind in NAMED])
+        if ref is None or ref.parent is None or "other" in ref.parent.states:
             return None
-        named = {"edit": "rename_node", "path": spot.path, "name": "other"}
-        return named if kind == "rename" else {"edit": "remove_nodes", "paths": [spot.path]}
+        named = {"edit": "rename_node", "path": ref.path, "name": "other"}
+        return named if kind == "rename" else {"edit": "remove_nodes", "paths": [ref.path]}
     if kind in ("wire", "unwire"):
-        spot = _one(draw, [s for s in spots if s.parent is not None and s.parent.kind in MACHINES])
-        return None if spot is None else _wiring(draw, spot, clear=kind == "unwire")
+        ref = _one(draw, [s for s in refs if s.parent is not None and s.parent.kind in MACHINES])
+        return None if ref is None else _wiring(draw, ref, clear=kind == "unwire")
     if kind == "initial":
-        spot = _one(draw, [s for s in spots if s.kind in MACHINES and outline.children(s)])
-        if spot is None:
+        ref = _one(draw, [s for s in refs if s.kind in MACHINES and outline.children(s)])
+        if ref is None:
             return None
-        return {"edit": "set_initial", "path": spot.path, "child": draw(st.sampled_from(list(spot.states)))}
-    spot = _one(draw, [s for s in spots if "state" in s.data])
-    if spot is None:
+        return {"edit": "set_initial", "path": ref.path, "child": draw(st.sampled_from(list(ref.states)))}
+    ref = _one(draw, [s for s in refs if "state" in s.data])
+    if ref is None:
         return None
     if kind == "give":
         name = draw(st.sampled_from(["value", "text", "fresh"]))
-        return {"edit": "set_parameter", "path": spot.path, "name": name, "value": draw(st.sampled_from(VALUES))}
+        return {"edit": "set_parameter", "path": ref.path, "name": name, "value": draw(st.sampled_from(VALUES))}
     said = draw(st.sampled_from(DESCRIPTIONS))
-    return {"edit": "set_field", "path": spot.path, "field": "description", "value": said}
+    return {"edit": "set_field", "path": ref.path, "field": "description", "value": said}
 
 
-def _wiring(draw: st.DrawFn, spot: Spot, *, clear: bool) -> Plain | None:
-    wired: Any = spot.data.get("transitions", {})
+def _wiring(draw: st.DrawFn, ref: NodeRef, *, clear: bool) -> Plain | None:
+    wired: Any = ref.data.get("transitions", {})
     if not clear:
         target = draw(st.sampled_from(["x", "y", "s0"]))
-        return {"edit": "set_transition", "path": spot.path, "outcome": "done", "target": target}
+        return {"edit": "set_transition", "path": ref.path, "outcome": "done", "target": target}
     if not wired:
         return None
-    return {"edit": "clear_transition", "path": spot.path, "outcome": draw(st.sampled_from(sorted(wired)))}
+    return {"edit": "clear_transition", "path": ref.path, "outcome": draw(st.sampled_from(sorted(wired)))}
 
 
-def _one(draw: st.DrawFn, spots: list[Spot]) -> Spot | None:
-    return draw(st.sampled_from(spots)) if spots else None
+def _one(draw: st.DrawFn, refs: list[NodeRef]) -> NodeRef | None:
+    return draw(st.sampled_from(refs)) if refs else None
 
 
 _NAMES = st.sampled_from(["fresh", "s0", "s1", "x", "b0", "child", "a b", ""])

@@ -5,17 +5,17 @@ from __future__ import annotations
 import weakref
 from pathlib import Path
 
-from engine.document.collection_pause import collection_paused
-from engine.editing.desk import KEPT_ENTRIES, Desk
 from engine.editing.draft import Draft
-from engine.editing.knowledge import Knowledge
+from engine.editing.draft_cache import MAX_ENTRIES, DraftCache
+from engine.editing.project_context import ProjectContext
+from engine.host.gc_pause import gc_paused
 
 TEXT = "flexcell: 1\nname: x\noutcomes: [a]\nroot: {state: flow.Wait, with: {duration_s: 1}, description: "
 
 
 def test_a_draft_has_no_cycles() -> None:
     """Without the collector nothing of it is left: each collection in it holds the origin."""
-    with collection_paused():
+    with gc_paused():
         draft = Draft(f"{TEXT}x}}\n", file="x.yaml")
         left = [weakref.ref(draft), *(weakref.ref(found.origin) for found in draft.collections())]
         del draft
@@ -24,9 +24,9 @@ def test_a_draft_has_no_cycles() -> None:
 
 def test_of_long_texts_only_the_last_are_kept(tmp_path: Path) -> None:
     """What they hold together is bounded."""
-    desk = Desk()
-    knowledge = Knowledge({}, tmp_path, tmp_path)
+    desk = DraftCache()
+    context = ProjectContext({}, tmp_path, tmp_path)
     for letter in "abc":
-        text = f"{TEXT}{letter}}}\n" + "\n" * (KEPT_ENTRIES // 2)
-        desk.draw(text, file=tmp_path / "x.yaml", knowledge=knowledge)
-    assert desk.kept_entries <= KEPT_ENTRIES
+        text = f"{TEXT}{letter}}}\n" + "\n" * (MAX_ENTRIES // 2)
+        desk.draw(text, file=tmp_path / "x.yaml", context=context)
+    assert desk.kept_entries <= MAX_ENTRIES

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from engine.editing import examine
-from tests.engine.editing.bench import knowledge
-from tests.engine.editing.test_mending import states
+from engine.editing import analyze_text
+from tests.engine.editing.edit_fixtures import context
+from tests.engine.editing.test_fixes import states
 
 WAIT = "{state: flow.Wait, with: {duration_s: 1}, transitions: {done: good}, timeout: {after: 1 s, to: failed}}"
 
@@ -16,7 +16,7 @@ WAIT = "{state: flow.Wait, with: {duration_s: 1}, transitions: {done: good}, tim
 def test_each_mistake_is_a_finding_and_the_check_goes_on(tmp_path: Path) -> None:
     text = states(f"first: {WAIT[:-1]}, flavour: 1}}", f"second: {WAIT.replace('1 s', 'soon')}", f"third: {WAIT}")
     text = text.replace("done: good", "done: second", 1).replace("flow.Wait", "flow.Wiat")
-    found = examine(text, file=tmp_path / "x.yaml", knowledge=knowledge(tmp_path))
+    found = analyze_text(text, file=tmp_path / "x.yaml", context=context(tmp_path))
     assert [(each.code, each.path, each.line) for each in found.findings] == [
         ("invalid-document", "root/first", 9),
         ("invalid-document", "root/second", 10),
@@ -28,7 +28,7 @@ def test_each_mistake_is_a_finding_and_the_check_goes_on(tmp_path: Path) -> None
 def test_a_line_that_is_no_yaml_hides_no_other(tmp_path: Path) -> None:
     """The canvas stays as it was; the list has everything."""
     text = states(f"first: {WAIT[:-1]}", f"second: {WAIT.replace('flow.Wait', 'flow.Wiat')}", "third: {state: *x}")
-    found = examine(text, file=tmp_path / "x.yaml", knowledge=knowledge(tmp_path))
+    found = analyze_text(text, file=tmp_path / "x.yaml", context=context(tmp_path))
     assert found.graph is None
     assert [(each.code, each.line) for each in found.findings] == [
         ("invalid-document", 10),
@@ -44,7 +44,7 @@ def test_what_leads_out_of_the_project_is_not_looked_at(tmp_path: Path, key: str
     project.mkdir()
     (tmp_path / "secret.yaml").write_text("password: 1\n", encoding="utf-8")
     text = states(f"first: {{{key}: ../secret.yaml, transitions: {{}}}}").replace("root:", "cel: ../secret.yaml\nroot:")
-    found = examine(text, file=project / "x.yaml", knowledge=knowledge(project))
+    found = analyze_text(text, file=project / "x.yaml", context=context(project))
     said = str(found.findings)
     assert "`../secret.yaml` leads out of the project" in said
     assert "password" not in said

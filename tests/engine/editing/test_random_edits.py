@@ -16,7 +16,7 @@ from engine.document.yaml_source import parse_source
 from engine.editing import Draft, apply_edits, copy_nodes, read_edits
 from engine.editing.outline import Outline
 from tests.engine.check.random_behaviors import behaviors
-from tests.engine.editing.bench import edited, knowledge
+from tests.engine.editing.edit_fixtures import context, edited
 from tests.engine.editing.layouts import Layout, Plain, chances
 from tests.engine.editing.model import flattened, model_of
 from tests.engine.editing.random_edits import MACHINES, NAMED, any_edits, simple_edits
@@ -27,10 +27,10 @@ from tests.engine.editing.random_edits import MACHINES, NAMED, any_edits, simple
 def test_the_nodes_of_a_text_are_those_of_the_loaded_behavior(data: Plain, chance: random.Random) -> None:
     text = Layout(chance).document(data)
     behavior = parse_behavior(text, file="x.yaml")
-    spots = Outline(Draft(text, file="x.yaml").data).spots
-    assert [(path, node.kind) for path, node in behavior.nodes()] == [(path, spot.kind) for path, spot in spots.items()]
-    for path, spot in spots.items():
-        assert behavior.source.position(spot.keys, of_key=True) == behavior.position(path)
+    refs = Outline(Draft(text, file="x.yaml").data).refs
+    assert [(path, node.kind) for path, node in behavior.nodes()] == [(path, ref.kind) for path, ref in refs.items()]
+    for path, ref in refs.items():
+        assert behavior.source.position(ref.keys, of_key=True) == behavior.position(path)
 
 
 @settings(max_examples=60, deadline=None)
@@ -55,11 +55,11 @@ def test_an_edit_does_to_the_text_what_it_does_to_the_model(
 @given(data=behaviors(), chance=chances, draw=st.data())
 def test_a_rename_and_its_inverse_give_the_same_text(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
     text = Layout(chance).document(data)
-    spots = [s for s in Outline(data).spots.values() if s.parent is not None and s.parent.kind in NAMED]
-    spot = draw.draw(st.sampled_from(spots))
-    there = edited(text, {"edit": "rename_node", "path": spot.path, "name": "fresh"})
-    parent = spot.path.rpartition("/")[0]
-    back = edited(there, {"edit": "rename_node", "path": f"{parent}/fresh", "name": spot.name})
+    refs = [s for s in Outline(data).refs.values() if s.parent is not None and s.parent.kind in NAMED]
+    ref = draw.draw(st.sampled_from(refs))
+    there = edited(text, {"edit": "rename_node", "path": ref.path, "name": "fresh"})
+    parent = ref.path.rpartition("/")[0]
+    back = edited(there, {"edit": "rename_node", "path": f"{parent}/fresh", "name": ref.name})
     assert _unquoted(back) == _unquoted(text)
 
 
@@ -70,14 +70,14 @@ def test_grouping_as_a_machine_means_the_same_and_ungrouping_takes_it_back(
 ) -> None:
     text = Layout(chance).document(data)
     outline = Outline(data)
-    machine = draw.draw(st.sampled_from([spot for spot in outline.spots.values() if spot.kind in MACHINES]))
+    machine = draw.draw(st.sampled_from([ref for ref in outline.refs.values() if ref.kind in MACHINES]))
     children = [child.path for child in outline.children(machine)]
     size = draw.draw(st.integers(1, len(children)))
     start = draw.draw(st.integers(0, len(children) - size))
     edits, _ = read_edits(
         [{"edit": "group", "paths": children[start : start + size], "kind": "machine", "name": "inner"}]
     )
-    done = apply_edits(text, edits, file="x.yaml", knowledge=knowledge())
+    done = apply_edits(text, edits, file="x.yaml", context=context())
     if done.refused is not None:
         assert "entered from outside" in done.refused.message
         return
@@ -94,7 +94,7 @@ def test_adding_a_node_and_removing_it_gives_the_same_text(
     data: Plain, chance: random.Random, draw: st.DataObject
 ) -> None:
     text = Layout(chance).document(data)
-    containers = [spot for spot in Outline(data).spots.values() if spot.kind in (*NAMED, "sequence")]
+    containers = [ref for ref in Outline(data).refs.values() if ref.kind in (*NAMED, "sequence")]
     path = draw.draw(st.sampled_from(containers)).path
     index = draw.draw(st.integers(0, 4))
     add = {"edit": "add_node", "parent": path, "kind": "state", "runs": "data.Choose", "name": "fresh", "index": index}
@@ -110,12 +110,12 @@ def test_whatever_is_asked_is_done_whole_or_refused_in_words(
     """Also nonsense; the result can always be read, checked and drawn."""
     text = Layout(chance).document(data)
     for _ in range(4):
-        raw = draw.draw(any_edits(list(Outline(Draft(text, file="x.yaml").data).spots)))
+        raw = draw.draw(any_edits(list(Outline(Draft(text, file="x.yaml").data).refs)))
         edits, refusal = read_edits([raw])
         if refusal is not None:
             assert refusal.message
             continue
-        done = apply_edits(text, edits, file="x.yaml", knowledge=knowledge())
+        done = apply_edits(text, edits, file="x.yaml", context=context())
         if done.refused is not None:
             assert done.refused.message
             assert "laid out" not in done.refused.message
@@ -129,16 +129,16 @@ def test_whatever_is_asked_is_done_whole_or_refused_in_words(
 def test_what_is_copied_and_pasted_is_the_same(data: Plain, chance: random.Random, draw: st.DataObject) -> None:
     """In another behavior only the transitions stay that lead to something there."""
     text = Layout(chance).document(data)
-    spots = [s for s in Outline(data).spots.values() if s.parent is not None and s.parent.kind in MACHINES]
-    spot = draw.draw(st.sampled_from(spots))
-    yaml = copy_nodes(text, [spot.path], file="x.yaml", knowledge=knowledge())
-    assert _read(yaml) == {spot.name: spot.data}
+    refs = [s for s in Outline(data).refs.values() if s.parent is not None and s.parent.kind in MACHINES]
+    ref = draw.draw(st.sampled_from(refs))
+    yaml = copy_nodes(text, [ref.path], file="x.yaml", context=context())
+    assert _read(yaml) == {ref.name: ref.data}
     target = "flexcell: 1\nname: t\noutcomes: [x, y]\nroot:\n  machine:\n    states: {}\n"
     made = _read(edited(target, {"edit": "paste", "parent": "root", "yaml": yaml}))
     ((name, pasted),) = made["root"]["machine"]["states"].items()
-    expected = copy.deepcopy(cast("Plain", spot.data))
-    wired = {how: to for how, to in expected.pop("transitions", {}).items() if to in ("x", "y", spot.name)}
-    assert pasted.pop("transitions", {}) == {how: name if to == spot.name else to for how, to in wired.items()}
+    expected = copy.deepcopy(cast("Plain", ref.data))
+    wired = {how: to for how, to in expected.pop("transitions", {}).items() if to in ("x", "y", ref.name)}
+    assert pasted.pop("transitions", {}) == {how: name if to == ref.name else to for how, to in wired.items()}
     assume("timeout" not in expected)  # what it leads to may be called otherwise now
     assert pasted == expected
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from engine.editing import Documents, NoSuchDocument, hash_of
-from engine.editing.references import move, referrers
+from engine.editing import DocumentRepository, NoSuchDocument, text_hash
+from engine.editing.references import move_with_references, referrers
 from engine.errors import DocumentError
-from tests.engine.editing.bench import STATES
+from tests.engine.editing.edit_fixtures import STATES
 
 INNER_ID, OUTER_ID, OTHER_ID = "behaviors/parts/inner.yaml", "behaviors/outer.yaml", "behaviors/other.yaml"
 INNER = """\
@@ -39,24 +39,26 @@ root:
 
 
 @pytest.fixture
-def documents(tmp_path: Path) -> Documents:
+def documents(tmp_path: Path) -> DocumentRepository:
     # Every look at the clock is a second later.
-    made = Documents(tmp_path, STATES, now_s=count(1_800_000_000.0).__next__)
+    made = DocumentRepository(tmp_path, STATES, now_s=count(1_800_000_000.0).__next__)
     (tmp_path / "behaviors/parts").mkdir(parents=True)
     for behavior_id, text in ((INNER_ID, INNER), (OUTER_ID, OUTER), (OTHER_ID, INNER.replace("inner", "inner.yaml"))):
         (tmp_path / behavior_id).write_text(text)
     return made
 
 
-def test_those_that_refer_to_a_document_are_told_with_their_nodes(documents: Documents) -> None:
+def test_those_that_refer_to_a_document_are_told_with_their_nodes(documents: DocumentRepository) -> None:
     """However they write its path; a name that only occurs is no reference."""
     found = referrers(documents, INNER_ID)
     assert [(each.id, each.name, each.paths) for each in found] == [(OUTER_ID, "outer", ("root/one", "root/two"))]
     assert referrers(documents, OUTER_ID) == ()
 
 
-def test_references_follow_a_document_that_moves_and_nothing_else_changes(documents: Documents, tmp_path: Path) -> None:
-    moved = move(documents, INNER_ID, "behaviors/more/grasp.yaml", follow=True)
+def test_references_follow_a_document_that_moves_and_nothing_else_changes(
+    documents: DocumentRepository, tmp_path: Path
+) -> None:
+    moved = move_with_references(documents, INNER_ID, "behaviors/more/grasp.yaml", follow=True)
     assert (moved.opened.id, moved.followed, moved.left) == ("behaviors/more/grasp.yaml", (OUTER_ID,), ())
     text = (tmp_path / OUTER_ID).read_text()
     assert text == OUTER.replace("./parts/inner.yaml", "more/grasp.yaml").replace("parts/inner.yaml", "more/grasp.yaml")
@@ -64,25 +66,25 @@ def test_references_follow_a_document_that_moves_and_nothing_else_changes(docume
     assert not (tmp_path / INNER_ID).exists()
 
 
-def test_what_a_document_refers_to_is_found_from_its_new_folder(documents: Documents, tmp_path: Path) -> None:
-    moved = move(documents, OUTER_ID, "behaviors/deep/er/outer.yaml", follow=True)
+def test_what_a_document_refers_to_is_found_from_its_new_folder(documents: DocumentRepository, tmp_path: Path) -> None:
+    moved = move_with_references(documents, OUTER_ID, "behaviors/deep/er/outer.yaml", follow=True)
     assert "behavior: ../../parts/inner.yaml" in moved.opened.text
     assert "# the first" in moved.opened.text
     assert documents.examine(moved.opened.id, moved.opened.text).findings == ()
 
 
-def test_without_following_the_references_stay(documents: Documents, tmp_path: Path) -> None:
-    moved = move(documents, INNER_ID, "behaviors/parts/grasp.yaml", follow=False)
+def test_without_following_the_references_stay(documents: DocumentRepository, tmp_path: Path) -> None:
+    moved = move_with_references(documents, INNER_ID, "behaviors/parts/grasp.yaml", follow=False)
     assert (moved.followed, (tmp_path / OUTER_ID).read_text()) == ((), OUTER)
 
 
-def test_a_name_that_is_taken_changes_no_file(documents: Documents, tmp_path: Path) -> None:
+def test_a_name_that_is_taken_changes_no_file(documents: DocumentRepository, tmp_path: Path) -> None:
     with pytest.raises(DocumentError, match="there is a document"):
-        move(documents, INNER_ID, OTHER_ID, follow=True)
+        move_with_references(documents, INNER_ID, OTHER_ID, follow=True)
     assert (tmp_path / OUTER_ID).read_text() == OUTER
 
 
-def test_a_deleted_document_is_listed_and_comes_back_as_it_was(documents: Documents, tmp_path: Path) -> None:
+def test_a_deleted_document_is_listed_and_comes_back_as_it_was(documents: DocumentRepository, tmp_path: Path) -> None:
     assert documents.deleted() == ()
     documents.delete(OTHER_ID)
     documents.delete(OUTER_ID)
@@ -95,16 +97,16 @@ def test_a_deleted_document_is_listed_and_comes_back_as_it_was(documents: Docume
         documents.restore("behaviors/never.yaml")
 
 
-def test_versions_say_who_wrote_them(documents: Documents, tmp_path: Path) -> None:
+def test_versions_say_who_wrote_them(documents: DocumentRepository, tmp_path: Path) -> None:
     """The editor, or another program; also when an older text comes back."""
     documents.open(INNER_ID)
-    documents.save(INNER_ID, INNER + "# mine\n", base_hash=hash_of(INNER))
+    documents.save(INNER_ID, INNER + "# mine\n", base_hash=text_hash(INNER))
     (tmp_path / INNER_ID).write_text(INNER + "# theirs\n")
     assert [each.by for each in documents.versions(INNER_ID)] == ["file", "editor", "file"]
-    documents.save(INNER_ID, INNER, base_hash=hash_of(INNER + "# theirs\n"))
-    assert [(each.by, each.hash == hash_of(INNER)) for each in documents.versions(INNER_ID)] == [
+    documents.save(INNER_ID, INNER, base_hash=text_hash(INNER + "# theirs\n"))
+    assert [(each.by, each.hash == text_hash(INNER)) for each in documents.versions(INNER_ID)] == [
         ("editor", True),
         ("file", False),
         ("editor", False),
     ]
-    assert documents.version(INNER_ID, hash_of(INNER)) == INNER
+    assert documents.version(INNER_ID, text_hash(INNER)) == INNER

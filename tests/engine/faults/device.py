@@ -11,15 +11,15 @@ from engine.bus import ActiveGoal, SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.errors import SkillFailed
-from engine.event import Event, FaultInjected, GoalFinished, Logged
+from engine.event import Event, FaultInjected, GoalFinished, MessageLogged
 from engine.faults import FaultPort, parse_faults
 from engine.messages import GripperState
-from engine.plan import new_plan
-from engine.run import Run, RunResult
-from engine.skill_port import BusPort
+from engine.runtime.plan import new_plan
+from engine.runtime.record.skill_port import BusPort
+from engine.runtime.run import Run, RunResult
+from engine.runtime.run_options import RunOptions
 from engine.skills.gripper import GraspResult, GripperFeedback, GripperGrasp, ReadGripper
 from engine.state import Context, Outcome, State
-from engine.supervision import Supervision
 from tests.engine.fake_states import CATALOGUE
 
 HEAD = "flexcell: 1\nname: test\noutcomes: [good, bad]\nsuccess: [good]\n"
@@ -134,7 +134,7 @@ class Told:
     @property
     def logged(self) -> list[tuple[float, str]]:
         """What states and faults said."""
-        return [(e.time_s, e.message) for e in self.events if isinstance(e, Logged)]
+        return [(e.time_s, e.message) for e in self.events if isinstance(e, MessageLogged)]
 
 
 @dataclass
@@ -172,7 +172,7 @@ def run_with_faults(
         bus.advertise_service(ReadGripper, gripper.read, namespace="left/gripper")
         document = parse_faults("flexcell: 1\nfaults:\n" + dedent(faults), file="faults.yaml")
         port = FaultPort(BusPort(bus), document, clock=bus.clock, seed=seed, kill=killer)
-        run = Run(plan, run="r", bus=bus, seed=seed, skills=port, supervision=Supervision(abandon_after_s=30.0))
+        run = Run(plan, run="r", bus=bus, seed=seed, skills=port, supervision=RunOptions(abandon_after_s=30.0))
         run.watch(events.append)
         loop = asyncio.get_running_loop()
         if stop_at_s is not None:

@@ -14,9 +14,9 @@ from engine.event import Event, FaultInjected
 from engine.faults import FaultPort, parse_faults
 from engine.journal import NullRunJournal
 from engine.messages import GripperState
-from engine.recorder import Recorder
+from engine.runtime.record.recorder import Recorder
+from engine.runtime.record.skill_port import Goal
 from engine.skill import Action, Service
-from engine.skill_port import Goal
 from engine.skills.gripper import GraspResult, GripperGrasp, ReadGripper
 
 R = TypeVar("R")

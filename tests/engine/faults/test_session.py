@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.event import FaultInjected
 from engine.faults import parse_faults
 from engine.journal import Journal
-from engine.session import Session
+from engine.project.session import Session
 from engine.skills.gripper import ReadGripper
 from tests.engine.faults.device import HEAD, STATES, Gripper
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.errors import JournalError
-from engine.event import AnyEvent, Cause, Entered, Exited, GoalSent, Logged, RunEnded, UserdataWritten
+from engine.event import AnyEvent, Cause, GoalSent, MessageLogged, NodeEntered, NodeExited, RunEnded, UserdataWritten
 from engine.journal import decode_event, encode_event, encode_event_log
 from engine.messages import Pose
 from tests.engine.json_values import JSON, TEXT
@@ -19,9 +19,9 @@ CAUSES = st.recursive(
 )
 HEAD = {"seq": st.integers(1, 2**53), "time_s": st.floats(0, 1e9)}
 EVENTS: st.SearchStrategy[AnyEvent] = st.one_of(
-    st.builds(Entered, **HEAD, path=TEXT, visit=st.integers(1, 99), kind=TEXT, inputs=st.dictionaries(TEXT, JSON)),
+    st.builds(NodeEntered, **HEAD, path=TEXT, visit=st.integers(1, 99), kind=TEXT, inputs=st.dictionaries(TEXT, JSON)),
     st.builds(UserdataWritten, **HEAD, path=TEXT, scope=TEXT, key=TEXT, value=JSON),
-    st.builds(Exited, **HEAD, path=TEXT, visit=st.integers(1, 99), outcome=TEXT, cause=st.none() | CAUSES),
+    st.builds(NodeExited, **HEAD, path=TEXT, visit=st.integers(1, 99), outcome=TEXT, cause=st.none() | CAUSES),
     st.builds(RunEnded, **HEAD, status=TEXT, outcome=st.none() | TEXT, cause=st.none() | CAUSES),
 )
 
@@ -47,8 +47,8 @@ def test_the_order_of_dictionary_keys_does_not_change_the_bytes(inputs: dict[str
 def test_the_log_is_one_line_for_each_event() -> None:
     """The exact bytes are a format: whoever changes them breaks every recording."""
     events = [
-        Logged(seq=1, time_s=0.0, path="root", level="info", message="two\nlines"),
-        Exited(seq=2, time_s=1.25, path="root", visit=1, outcome="done"),
+        MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="two\nlines"),
+        NodeExited(seq=2, time_s=1.25, path="root", visit=1, outcome="done"),
     ]
     assert encode_event_log(events) == (
         b'{"event":"log","seq":1,"time_s":0.0,"path":"root","level":"info","message":"two\\nlines"}\n'

@@ -11,7 +11,7 @@ import pytest
 
 from engine.archive.past_runs import PastRuns
 from engine.errors import JournalError
-from engine.event import Logged, RunEnded
+from engine.event import MessageLogged, RunEnded
 from engine.journal import Journal, RunOrigin, list_runs, read_events, read_origin, read_world
 from tests.engine.journal.older_journal import write_format_4, write_older_journal
 
@@ -20,8 +20,10 @@ EVENTS = 20
 A_COMMIT = 6
 
 
-def said(seq: int) -> Logged:
-    return Logged(seq=seq, time_s=seq * 0.5, path="root", level="info", message=f"step {seq} " + "x" * (seq * 7 % 150))
+def said(seq: int) -> MessageLogged:
+    return MessageLogged(
+        seq=seq, time_s=seq * 0.5, path="root", level="info", message=f"step {seq} " + "x" * (seq * 7 % 150)
+    )
 
 
 async def written(folder: Path) -> Path:
@@ -33,7 +35,7 @@ async def written(folder: Path) -> Path:
             for seq in range(1, EVENTS):
                 run.append(said(seq))
                 if seq % A_COMMIT == 0 or seq == EVENTS - 1:
-                    run.keep_world(bytes(range(100)))
+                    run.append_world_state(bytes(range(100)))
                     await run.commit()
             run.append(RunEnded(seq=EVENTS, time_s=30.0, status="finished", outcome="done"))
             await run.commit()
@@ -290,7 +292,7 @@ async def test_a_run_of_an_older_version_goes_on_with_checksums(tmp_path: Path, 
         assert read_events(file, "old") == events
         run.append(said(6))
         run.append(said(7))
-        run.keep_world(b"now")
+        run.append_world_state(b"now")
         await run.commit()
     (record,) = list_runs(file)
     assert (record.verified, record.damage, record.last_seq) == (False, "", 7)

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 
 from engine.errors import JournalError
-from engine.event import Logged, RunEnded
+from engine.event import MessageLogged, RunEnded
 from engine.journal import Journal, JournalPort, NullJournal, RunJournal, RunRecord, list_runs, read_events
 
 BOTH = pytest.mark.parametrize("inline", [True, False], ids=["inline", "threaded"])
 
 
-def said(seq: int, message: str = "x") -> Logged:
+def said(seq: int, message: str = "x") -> MessageLogged:
     """Make an event."""
-    return Logged(seq=seq, time_s=seq * 0.5, path="root", level="info", message=message)
+    return MessageLogged(seq=seq, time_s=seq * 0.5, path="root", level="info", message=message)
 
 
 def begun(journal: Journal, run: str = "run-1") -> RunJournal:
@@ -51,10 +51,10 @@ async def test_a_run_that_is_faster_than_the_writer_waits_for_it(tmp_path: Path)
     with Journal.open(tmp_path) as journal:
         run = begun(journal)
         run.append(said(1))
-        await run.keep_up()
+        await run.apply_backpressure()
         for seq in range(2, 100_001):
             run.append(said(seq))
-        await run.keep_up()
+        await run.apply_backpressure()
         assert len(read_events(tmp_path, "run-1")) > 100_000 - 20_000
 
 
@@ -172,11 +172,11 @@ async def test_an_event_that_cannot_be_written_stops_its_own_run_only(tmp_path: 
     """A strange value in the userdata of one run does not cost another its journal."""
     with Journal.open(tmp_path, inline=inline) as journal:
         bad, good = begun(journal, "bad"), begun(journal, "good")
-        bad.append(Logged(seq=1, time_s=0.0, path="root", level="info", message="\ud800"))
+        bad.append(MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="\ud800"))
         good.append(said(1))
         ends = await asyncio.gather(bad.commit(), good.commit(), return_exceptions=True)
         assert [type(end) for end in ends] == [JournalError, type(None)]
-        assert "event 1 (Logged) cannot be written as JSON" in str(ends[0])
+        assert "event 1 (MessageLogged) cannot be written as JSON" in str(ends[0])
         assert (read_events(tmp_path, "bad"), read_events(tmp_path, "good")) == ((), (said(1),))
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from engine.errors import JournalError
-from engine.event import Logged
+from engine.event import MessageLogged
 from engine.journal import Journal, list_runs, read_events
 from tests.engine.journal.older_journal import write_older_journal
 
@@ -31,7 +31,7 @@ def test_an_unknown_run_gets_the_near_names(tmp_path: Path) -> None:
 def test_a_damaged_event_is_reported_as_damage(tmp_path: Path) -> None:
     """A row that is no event raises the journal's error."""
     file = tmp_path / "journal.db"
-    write_older_journal(file, 3, "r", [Logged(seq=1, time_s=0.0, path="root", level="info", message="x")])
+    write_older_journal(file, 3, "r", [MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="x")])
     connection = sqlite3.connect(file)
     connection.execute('UPDATE event SET data = \'{"event": "lo\'')
     connection.commit()

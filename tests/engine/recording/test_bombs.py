@@ -19,13 +19,13 @@ from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 from engine.archive.recording_files import read_description, recording_files
 from engine.errors import RecordingError
-from engine.event import Logged
+from engine.event import MessageLogged
 from engine.journal import encode_event
 from engine.recording import load_recording
-from engine.recording.allowance import MAX_CHUNK, MAX_FILE, MAX_NAMES, MAX_RECORD
 from engine.recording.file_content import open_records
-from engine.recording.finished_file import finish
-from engine.recording.moments import Moments
+from engine.recording.finalization import finalize_recording
+from engine.recording.indexed_recording import IndexedRecording
+from engine.recording.read_budget import MAX_CHUNK, MAX_FILE, MAX_NAMES, MAX_RECORD
 
 lz4: Any = import_module("lz4.frame")
 MB = 2**20
@@ -80,7 +80,7 @@ def test_a_bomb_is_refused_when_it_is_loaded_recovered_and_listed(tmp_path: Path
     with pytest.raises(RecordingError, match=f"this file is damaged: .*{said}"):
         load_recording(part)
     with pytest.raises(RecordingError, match=f"this file is damaged: .*{said}"):
-        finish(part, tmp_path / "r.mcap")
+        finalize_recording(part, tmp_path / "r.mcap")
     assert [file.name for file in tmp_path.iterdir()] == ["r.mcap.part"]
     (listed,) = recording_files(tmp_path)
     assert listed.problem
@@ -93,7 +93,11 @@ def test_a_bomb_is_refused_when_it_is_loaded_recovered_and_listed(tmp_path: Path
 def test_a_file_that_is_mostly_a_hole_is_not_read(tmp_path: Path, size: int, length: int, said: str) -> None:
     part = written(tmp_path / "r.mcap.part", [struct.pack("<BQ", Opcode.MESSAGE, length)])
     os.truncate(part, size)
-    for use in (lambda: load_recording(part), lambda: finish(part, tmp_path / "r.mcap"), lambda: Moments.open(part)):
+    for use in (
+        lambda: load_recording(part),
+        lambda: finalize_recording(part, tmp_path / "r.mcap"),
+        lambda: IndexedRecording.open(part),
+    ):
         with pytest.raises(RecordingError, match=f"this file is damaged: .*{said}"):
             use()
     with pytest.raises(RecordingError):
@@ -116,7 +120,7 @@ def test_chunks_that_others_have_packed_are_read(tmp_path: Path) -> None:
 def test_an_index_that_leads_to_one_place_again_and_again_ends(tmp_path: Path) -> None:
     """A thousand entries of the index that all name one chunk."""
     path = tmp_path / "r.mcap"
-    event = Logged(seq=1, time_s=0.0, path="root", level="info", message="x" * 4 * MB)
+    event = MessageLogged(seq=1, time_s=0.0, path="root", level="info", message="x" * 4 * MB)
     with path.open("wb") as stream:
         writer = Writer(stream, chunk_size=MAX_CHUNK, compression=CompressionType.ZSTD)
         writer.start(profile="flexcell", library="")
@@ -129,7 +133,7 @@ def test_an_index_that_leads_to_one_place_again_and_again_ends(tmp_path: Path) -
         writer.finish()
     with pytest.raises(RecordingError, match="unfolds to more than 300 times its size"):
         load_recording(path)
-    with Moments.open(path) as moments:
+    with IndexedRecording.open(path) as moments:
         assert moments.topics == {}
 
 
@@ -141,4 +145,4 @@ def test_a_flood_of_topics_ends(tmp_path: Path) -> None:
     )
     part = written(tmp_path / "r.mcap.part", channels)
     with pytest.raises(RecordingError, match="more than 8192 topics"):
-        Moments.open(part)
+        IndexedRecording.open(part)

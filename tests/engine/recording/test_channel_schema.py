@@ -10,11 +10,11 @@ import msgspec
 import pytest
 
 from engine import messages
-from engine.event import AnyEvent, Cause, Exited, Received, RunEnded
+from engine.event import AnyEvent, Cause, MessageReceived, NodeExited, RunEnded
 from engine.journal import encode_event
 from engine.recording.channel_schema import channel_schema
-from engine.recording.foxglove import FrameTransforms, JointStates, Log
-from engine.recording.foxglove_scene import SceneUpdate
+from engine.recording.foxglove_scene import FoxgloveSceneUpdate
+from engine.recording.foxglove_views import FoxgloveFrameTransforms, FoxgloveJointStates, FoxgloveLog
 from tests.engine.recording.foxglove_rules import complaints
 
 MESSAGES = [each for each in vars(messages).values() if isinstance(each, type) and issubclass(each, messages.Message)]
@@ -44,7 +44,11 @@ def _schema(kind: Any) -> dict[str, Any]:
     return json.loads(channel_schema(kind, title="t"))
 
 
-@pytest.mark.parametrize("kind", [*MESSAGES, AnyEvent, FrameTransforms, JointStates, SceneUpdate, Log], ids=str)
+@pytest.mark.parametrize(
+    "kind",
+    [*MESSAGES, AnyEvent, FoxgloveFrameTransforms, FoxgloveJointStates, FoxgloveSceneUpdate, FoxgloveLog],
+    ids=str,
+)
 def test_foxglove_reads_every_schema(kind: Any) -> None:
     assert list(complaints(_schema(kind))) == []
 
@@ -74,10 +78,10 @@ def test_a_union_has_what_its_members_agree_on() -> None:
 @pytest.mark.parametrize(
     "event",
     [
-        Exited(
+        NodeExited(
             seq=1, time_s=0.5, path="root", visit=1, outcome="a", cause=Cause(message="m", because=Cause(message="n"))
         ),
-        Received(seq=2, time_s=0.5, path="root", topic="t", message={"a": [1, None]}),
+        MessageReceived(seq=2, time_s=0.5, path="root", topic="t", message={"a": [1, None]}),
         RunEnded(seq=3, time_s=0.5, status="stopped"),
     ],
     ids=lambda event: type(event).__name__,

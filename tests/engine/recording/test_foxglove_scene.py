@@ -7,7 +7,7 @@ from typing import Any
 
 from engine.messages import SceneDescription, VisualGeometry
 from engine.recording.foxglove_scene import scene_update
-from engine.recording.foxglove_types import Color, Time, Vector3
+from engine.recording.foxglove_types import FoxgloveColor, FoxgloveTime, FoxgloveVector3
 
 WHITE = (1.0, 1.0, 1.0, 1.0)
 
@@ -26,13 +26,13 @@ def test_every_kind_of_body_has_its_primitive() -> None:
     )
     box, sphere, cylinder, mesh = scene_update(SceneDescription(geometries=bodies), 1_500_000_000).entities
     assert (box.timestamp, box.frame_id, box.frame_locked, box.cubes[0].size) == (
-        Time(1, 500_000_000), "f", True, Vector3(1.0, 2.0, 3.0),
+        FoxgloveTime(1, 500_000_000), "f", True, FoxgloveVector3(1.0, 2.0, 3.0),
     )  # fmt: skip
-    assert box.cubes[0].pose.position == Vector3(1.0, 0.0, 0.0)
-    assert sphere.spheres[0].size == Vector3(1.0, 1.0, 1.0)
-    assert cylinder.cylinders[0].size == Vector3(1.0, 1.0, 2.0)
-    assert mesh.triangles[0].points == (Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0))
-    assert (mesh.triangles[0].indices, mesh.triangles[0].color) == ((0, 1, 2), Color(*WHITE))
+    assert box.cubes[0].pose.position == FoxgloveVector3(1.0, 0.0, 0.0)
+    assert sphere.spheres[0].size == FoxgloveVector3(1.0, 1.0, 1.0)
+    assert cylinder.cylinders[0].size == FoxgloveVector3(1.0, 1.0, 2.0)
+    assert mesh.triangles[0].points == (FoxgloveVector3(0, 0, 0), FoxgloveVector3(1, 0, 0), FoxgloveVector3(0, 1, 0))
+    assert (mesh.triangles[0].indices, mesh.triangles[0].color) == ((0, 1, 2), FoxgloveColor(*WHITE))
 
 
 def test_a_body_of_an_unknown_kind_is_left_out() -> None:

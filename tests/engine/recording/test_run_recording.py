@@ -21,12 +21,12 @@ from mcap.records import Channel, Message, Schema
 from engine.bus import SkillBus
 from engine.clock import run_virtual
 from engine.errors import RecordingError
-from engine.event import Entered, Logged, RunStarted
+from engine.event import MessageLogged, NodeEntered, RunStarted
 from engine.journal import encode_event_log
 from engine.messages import FramePoses, JointState
 from engine.recording import load_recording, part_file, recovered_file
 from engine.recording.recording import RecordedEvent
-from engine.run import Run
+from engine.runtime.run import Run
 from tests.engine.recording.foxglove_rules import complaints
 from tests.engine.replay.bench import Tick, record_run, recorded
 from tests.engine.run_document import run_document
@@ -215,7 +215,7 @@ def test_what_a_killed_process_left_is_read_and_kept_beside_the_next_recording(
         process.kill()
     left = load_recording(target)
     assert (left.path, left.complete) == (part_file(target), False)
-    assert [type(each.event) for each in left.events] == [RunStarted, Entered, Entered]
+    assert [type(each.event) for each in left.events] == [RunStarted, NodeEntered, NodeEntered]
     with caplog.at_level(logging.WARNING, logger="flexcell.recording"):
         run_virtual(record_run(TEXT, target))
     assert f"a recording was cut off here; what there is of it is in {recovered_file(target)}" in caplog.text
@@ -239,7 +239,7 @@ def test_userdata_that_is_no_json_ends_the_recording_and_not_the_run(
 ) -> None:
     def spoil(run: Run) -> None:
         broken: Any = object()
-        run.recorder.emit(Logged, path="", level="info", message=broken)
+        run.recorder.emit(MessageLogged, path="", level="info", message=broken)
 
     with caplog.at_level(logging.WARNING, logger="flexcell.recording"):
         result, _ = run_virtual(record_run(TEXT, tmp_path / "r.mcap", acts={1.0: spoil}))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from engine.event import Entered, Event, Exited
+from engine.event import Event, NodeEntered, NodeExited
 from tests.engine.reference.interpreter import Line
 
 
@@ -34,9 +34,9 @@ def lines_of(events: Iterable[Event]) -> list[Line]:
     """Return what a run's events say about entering and leaving."""
     lines: list[Line] = []
     for event in events:
-        if isinstance(event, Entered):
+        if isinstance(event, NodeEntered):
             lines.append(("+", event.time_s, event.path, event.kind, False))
-        elif isinstance(event, Exited):
+        elif isinstance(event, NodeExited):
             lines.append(("-", event.time_s, event.path, event.outcome, event.preempted))
     return lines
 

@@ -9,8 +9,8 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import Behavior
 from engine.event import Event
-from engine.plan import new_plan
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 from tests.engine.reference.act import CATALOGUE
 
 

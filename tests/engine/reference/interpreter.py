@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal, cast
 
-from engine.document import Behavior, Node
-from engine.document.condition import Condition
-from engine.document.parameter import bind_parameters
+from engine.document import Behavior, NodeSpec
+from engine.document.concurrency_condition import ConcurrencyCondition
+from engine.document.parameter_spec import bind_parameters
 from tests.engine.reference.schedule import Children, Deadline, End, Preempted, Schedule, Sleep, Steps, Task
 from tests.engine.reference.scope import Failed, Scope
 
@@ -49,7 +49,7 @@ class Interpreter:
         assert self.schedule.current is not None
         return self.schedule.current
 
-    def perform(self, node: Node, path: str, scope: Scope) -> Steps:
+    def perform(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         """Run a node with its guard, timeout, retry and on_error."""
         self.budget[0] -= 1
         if not self.budget[0]:
@@ -59,7 +59,7 @@ class Interpreter:
             return End(end.at_s, node.on_error, straight=True)
         return end
 
-    def _guarded(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _guarded(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         if node.guard is not None:
             try:
                 is_open = scope.evaluate(node.guard.when)
@@ -85,7 +85,7 @@ class Interpreter:
         task.asked.clear()
         return End(end.at_s, failed=True) if end.failed else End(end.at_s, str(node.timeout.to), straight=True)
 
-    def _retried(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _retried(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         again = 0
         while True:
             end = yield from self._attempt(node, path, scope)
@@ -102,8 +102,8 @@ class Interpreter:
             except Preempted:
                 return End(self._now_s, preempted=True)
 
-    def _attempt(self, node: Node, path: str, scope: Scope) -> Steps:
-        work: Callable[[Node, str, Scope], Steps] = getattr(self, f"_{node.kind}")
+    def _attempt(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
+        work: Callable[[NodeSpec, str, Scope], Steps] = getattr(self, f"_{node.kind}")
         self.log.append(("+", self._now_s, path, node.kind, False))
         try:
             end = yield from work(node, path, scope)
@@ -112,7 +112,7 @@ class Interpreter:
         self.log.append(("-", end.at_s, path, end.outcome, end.preempted))
         return End(end.at_s, preempted=True, failed=end.failed) if end.preempted else end
 
-    def _state(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _state(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         given = cast("dict[str, object]", scope.evaluate(node.parameters))
         source = node.inputs.get("seen", "seen")
         seen = scope.read(source) if scope.has(source) else 0
@@ -133,7 +133,7 @@ class Interpreter:
             scope.write(node.outputs.get("sum", "sum"), seen + cast("int", given["add"]))
         return End(self._now_s, ends)
 
-    def _machine(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _machine(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         assert node.machine is not None
         inner = Scope(dict(node.userdata), scope)
         name = node.machine.initial
@@ -149,7 +149,7 @@ class Interpreter:
                 return End(end.at_s, target)
             name = target
 
-    def _concurrency(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _concurrency(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         assert node.concurrency is not None
         inner = Scope(dict(node.userdata), scope)
         shared = frozenset(node.concurrency.shared)
@@ -181,7 +181,7 @@ class Interpreter:
                 inner.write(key, value)
         return End(self._now_s, decided.outcome)
 
-    def _decided(self, node: Node, path: str, tasks: Mapping[str, Task]) -> Steps:
+    def _decided(self, node: NodeSpec, path: str, tasks: Mapping[str, Task]) -> Steps:
         fired: set[int] = set()
         while True:
             try:
@@ -193,7 +193,7 @@ class Interpreter:
                 return End(self._now_s, end.outcome, failed=end.failed)
             self._preempt_some(node, path, tasks, fired)
 
-    def _preempt_some(self, node: Node, path: str, tasks: Mapping[str, Task], fired: set[int]) -> None:
+    def _preempt_some(self, node: NodeSpec, path: str, tasks: Mapping[str, Task], fired: set[int]) -> None:
         """End the branches that conditions name which hold for the first time, first in the document first."""
         assert node.concurrency is not None
         finished = {name: task.end for name, task in tasks.items() if task.end is not None}
@@ -206,7 +206,7 @@ class Interpreter:
             if name in ending and task.end is None:
                 self.schedule.preempt(task, path.count("/"))
 
-    def _foreach(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _foreach(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         rounds = node.foreach
         assert rounds is not None
         given = scope.evaluate(rounds.items if rounds.times is None else rounds.times)
@@ -230,7 +230,7 @@ class Interpreter:
                 scope.write(target, [*cast("list[object]", gathered), inner.read(key)])
         return End(self._now_s, "exhausted")
 
-    def _behavior(self, node: Node, path: str, scope: Scope) -> Steps:
+    def _behavior(self, node: NodeSpec, path: str, scope: Scope) -> Steps:
         target = self.behavior.references[node.behavior or ""]
         given = cast("Mapping[str, object]", scope.evaluate(node.parameters))
         if any(target.parameters[name].problem(value) for name, value in given.items()):
@@ -248,7 +248,7 @@ class Interpreter:
         return End(end.at_s, end.outcome)
 
 
-def _decision(node: Node, finished: Mapping[str, End]) -> End | None:
+def _decision(node: NodeSpec, finished: Mapping[str, End]) -> End | None:
     """Return for what a concurrency container decides; None where it waits for more."""
     assert node.concurrency is not None
     if any(end.failed for end in finished.values()):
@@ -262,6 +262,6 @@ def _decision(node: Node, finished: Mapping[str, End]) -> End | None:
     return None
 
 
-def _holds(rule: Condition, finished: Mapping[str, End]) -> bool:
+def _holds(rule: ConcurrencyCondition, finished: Mapping[str, End]) -> bool:
     ended_so = [name for name, due in rule.when.items() if name in finished and finished[name].outcome == due]
     return len(ended_so) >= (rule.at_least or len(rule.when))

@@ -7,7 +7,7 @@ from textwrap import indent
 import pytest
 
 from engine.document import Behavior, parse_behavior
-from engine.event import Entered
+from engine.event import NodeEntered
 from tests.engine.reference.activation import lines_of, story_of
 from tests.engine.reference.engine_run import run_to_end
 from tests.engine.reference.interpreter import Interpreter
@@ -127,7 +127,7 @@ def test_a_machine_goes_on_at_the_very_instant_of_its_timeout() -> None:
 def test_branches_are_entered_in_document_order() -> None:
     """Also the one that has a timeout; the order decides who is given a resource that two branches want."""
     events = run_to_end(_behavior(TWO_BRANCHES), 10.0).events
-    assert [event.path for event in events if isinstance(event, Entered)] == ["root", "root/p", "root/q"]
+    assert [event.path for event in events if isinstance(event, NodeEntered)] == ["root", "root/p", "root/q"]
 
 
 @pytest.mark.parametrize(

@@ -18,14 +18,14 @@ from engine.errors import GoalRejected, SkillFailed
 from engine.event import Event
 from engine.journal import MemoryRunJournal
 from engine.messages import Message
-from engine.plan import new_plan
-from engine.recording import Documents, Recording, RecordingOrder, RunRecording, load_recording
+from engine.recording import RecordedDocuments, Recording, RecordingOptions, RunRecording, load_recording
 from engine.replay import ReplayReport, replay
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.record.skill_port import BusPort, SkillPort
+from engine.runtime.run import Run, RunResult
+from engine.runtime.run_options import RunOptions
 from engine.skill import Action, Service
-from engine.skill_port import BusPort, SkillPort
 from engine.state import ActivationRecord, Context, Outcome, State
-from engine.supervision import Supervision
 from tests.engine.fake_states import CATALOGUE as PLAIN
 from tests.engine.run_document import HEAD
 
@@ -265,7 +265,7 @@ async def record_run(
     parameters: Mapping[str, object] | None = None,
     inputs: Mapping[str, object] | None = None,
     seed: int = 0,
-    supervision: Supervision | None = None,
+    supervision: RunOptions | None = None,
     prepare: Callable[[SkillBus], object] = lambda bus: None,
     skills: Callable[[SkillBus], SkillPort] = BusPort,
 ) -> tuple[RunResult, tuple[Event, ...]]:
@@ -273,8 +273,8 @@ async def record_run(
     behavior = behavior_of(text)
     texts = {"test.yaml": msgspec.json.encode(behavior.document)}
     events: list[Event] = []
-    order = RecordingOrder(
-        path=path, documents=Documents(behavior="test.yaml", texts=texts), rate_hz=rate_hz, topics=topics
+    order = RecordingOptions(
+        path=path, documents=RecordedDocuments(behavior="test.yaml", texts=texts), rate_hz=rate_hz, topics=topics
     )
     loop = asyncio.get_running_loop()
     async with open_bench() as bus, RunRecording.open(order, inline=bus.clock.virtual) as recording:

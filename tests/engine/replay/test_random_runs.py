@@ -19,13 +19,13 @@ import msgspec
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.control import Breakpoint
 from engine.errors import ControlError
 from engine.event import Event
 from engine.replay import replay
-from engine.replay.wording import plain_event
-from engine.run import Run
-from engine.supervision import Supervision
+from engine.replay.event_text import plain_event
+from engine.runtime.control import Breakpoint
+from engine.runtime.run import Run
+from engine.runtime.run_options import RunOptions
 from tests.engine.at_once import at_once
 from tests.engine.replay.bench import CATALOGUE, Act, recorded
 
@@ -164,7 +164,7 @@ PLANS = st.dictionaries(st.integers(0, 24).map(lambda n: n / 8), st.sampled_from
 OVER: dict[float, Act] = {50.0: _careful(lambda run: run.stop("over"))}
 """Whatever is held must go on, or nothing would ever happen again."""
 SUPERVISIONS = st.builds(
-    Supervision,
+    RunOptions,
     start_paused=st.booleans(),
     loss_policy=st.sampled_from(["hold", "continue", "stop"]),
     loss_timeout_s=st.sampled_from([0.5, 5.0]),
@@ -199,7 +199,7 @@ def test_a_run_that_was_stopped_paused_and_stepped_replays_the_same(
 
 @settings(max_examples=40, deadline=None)
 @given(tree=DISTURBED, acts=PLANS, supervision=SUPERVISIONS)
-def test_a_run_under_supervision_replays_the_same(tree: Node, acts: dict[float, Act], supervision: Supervision) -> None:
+def test_a_run_under_supervision_replays_the_same(tree: Node, acts: dict[float, Act], supervision: RunOptions) -> None:
     _same(_document(tree), acts={**acts, **OVER}, supervision=supervision)
 
 

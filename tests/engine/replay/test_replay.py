@@ -10,17 +10,26 @@ import msgspec
 import pytest
 
 from engine.bus import SkillBus
-from engine.clock import NothingCanWake, run_virtual
+from engine.clock import VirtualTimeDeadlock, run_virtual
 from engine.document.faults import parse_faults
 from engine.errors import DocumentError, RecordingError
-from engine.event import BehaviorChanged, Called, FaultInjected, Logged, Received, RunEnded, RunResumed, SteppedBack
+from engine.event import (
+    BehaviorChanged,
+    FaultInjected,
+    MessageLogged,
+    MessageReceived,
+    RunEnded,
+    RunResumed,
+    RunSteppedBack,
+    ServiceCalled,
+)
 from engine.faults import FaultPort
-from engine.hot_change import KeptVersion
-from engine.plan import new_plan
 from engine.recording import RecordedEvent, load_recording
 from engine.replay import ReplayReport, replay
-from engine.replay.attempt import Attempt
-from engine.skill_port import BusPort
+from engine.replay.replay_run import ReplayRun
+from engine.runtime.history.hot_change import VersionSnapshot
+from engine.runtime.plan import new_plan
+from engine.runtime.record.skill_port import BusPort
 from engine.state import Context, Outcome
 from tests.engine.at_once import at_once
 from tests.engine.replay.bench import CATALOGUE, Act, DoLook, Look, Range, behavior_of, record_run, recorded, replayed
@@ -122,7 +131,7 @@ def test_a_request_that_the_recording_does_not_know_is_the_difference(tmp_path: 
 
 def test_what_is_waited_for_in_vain_is_named(tmp_path: Path) -> None:
     recording = recorded(TEXT, tmp_path / "r.mcap")
-    unheard = tuple(each for each in recording.events if not isinstance(each.event, Received))
+    unheard = tuple(each for each in recording.events if not isinstance(each.event, MessageReceived))
     report = replay(replace(recording, events=unheard), CATALOGUE)
     assert "root/listen waits for a message of bench/tick, which the recording does not have" in str(report.difference)
     assert "replayed nothing" in str(report.difference)
@@ -168,11 +177,11 @@ def test_the_order_of_answers_of_one_instant_is_found(
     text = AT_ONCE.replace("TURNS", str(turns)).replace("LOOKING", looking).replace("WORKING", working)
     recording = recorded(text, tmp_path / "r.mcap")
     assert replay(recording, CATALOGUE).difference is None
-    monkeypatch.setattr("engine.replay.replaying.search_order", _first)
+    monkeypatch.setattr("engine.replay.replayer.search_order", _first)
     assert replay(recording, CATALOGUE).difference is not None
 
 
-def _first(first: Attempt, *_: object) -> Attempt:
+def _first(first: ReplayRun, *_: object) -> ReplayRun:
     """Search for nothing."""
     return first
 
@@ -194,7 +203,9 @@ def test_a_run_with_faults_replays_with_what_they_did(tmp_path: Path) -> None:
 
     recording = recorded(TEXT, tmp_path / "r.mcap", skills=port)
     injected = [each.event for each in recording.events if isinstance(each.event, FaultInjected)]
-    warned = [e.event for e in recording.events if isinstance(e.event, Logged) and "never applied" in e.event.message]
+    warned = [
+        e.event for e in recording.events if isinstance(e.event, MessageLogged) and "never applied" in e.event.message
+    ]
     assert (len(injected), len(warned)) == (2, 1)
     report = replay(recording, CATALOGUE)
     assert report.difference is None
@@ -203,7 +214,9 @@ def test_a_run_with_faults_replays_with_what_they_did(tmp_path: Path) -> None:
 
 def test_a_run_in_which_nothing_could_happen_any_more_replays(tmp_path: Path) -> None:
     text = "root: {machine: {initial: w, states: {w: {state: test.Hang, transitions: {never: bad}}}}}"
-    stuck = NothingCanWake("nothing can happen any more at t=1.000 s", where="root", hint="waiting for ever: root/w")
+    stuck = VirtualTimeDeadlock(
+        "nothing can happen any more at t=1.000 s", where="root", hint="waiting for ever: root/w"
+    )
     acts: dict[float, Act] = {1.0: lambda run: run.fail(stuck)}
     recording = recorded(text, tmp_path / "r.mcap", acts=acts)
     assert getattr(recording.events[-1].event, "status", "") == "errored"
@@ -296,7 +309,7 @@ def test_a_check_that_was_observed_turns_at_the_same_moment_again(tmp_path: Path
     """Of the observations that changed nothing there is no event; the camera has looked four times."""
     report = replayed(REACTIVE.replace("PERIOD", "500 ms"), tmp_path / "r.mcap")
     assert (report.difference, report.same) == (None, True)
-    asked = [each for each in report.recording.events if isinstance(each.event, Called)]
+    asked = [each for each in report.recording.events if isinstance(each.event, ServiceCalled)]
     assert [each.at_s for each in asked] == [0.0, 1.5]
 
 
@@ -374,7 +387,7 @@ def test_a_run_that_was_stepped_back_does_it_again_with_what_its_undoing_asked_f
         "{a: good, b: good, c: good}", "{a: good, b: bad, c: bad}"
     )
     recording = recorded(text, tmp_path / "r.mcap", acts=acts)
-    assert [each.event.path for each in recording.events if isinstance(each.event, SteppedBack)] == [
+    assert [each.event.path for each in recording.events if isinstance(each.event, RunSteppedBack)] == [
         "root/listen",
         "root/look",
         "root/work",
@@ -386,7 +399,7 @@ def test_a_run_that_was_stepped_back_does_it_again_with_what_its_undoing_asked_f
 
 def test_a_run_whose_behavior_was_changed_is_replayed_with_both_versions(tmp_path: Path) -> None:
     new = behavior_of(TEXT.replace("for_s: 1", "for_s: 2"))
-    kept = KeptVersion(behavior="test.yaml", documents={"test.yaml": msgspec.json.encode(new.document).decode()})
+    kept = VersionSnapshot(behavior="test.yaml", documents={"test.yaml": msgspec.json.encode(new.document).decode()})
     acts: dict[float, Act] = {
         0.5: lambda run: run.control.pause(),
         1.0: lambda run: run.change(new_plan(new, CATALOGUE), preempt=True, kept=kept),

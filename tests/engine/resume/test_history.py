@@ -6,11 +6,11 @@ import pytest
 
 from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
-from engine.event import Entered, Event, Exited
-from engine.history import History
+from engine.event import Event, NodeEntered, NodeExited
 from engine.journal import decode_event, encode_event
-from engine.plan import Plan
-from engine.run import Run
+from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.plan import Plan
+from engine.runtime.run import Run
 from tests.engine.run_document import Told, plan_of
 
 BEHAVIORS = {
@@ -130,7 +130,7 @@ async def _run(plan: Plan, checkpoint_of: list[Event] | None) -> Told:
     bus = SkillBus(new_clock())
     events: list[Event] = []
     async with bus:
-        history = History(plan, run="r1").read(checkpoint_of) if checkpoint_of is not None else None
+        history = RunStateReducer(plan, run="r1").read(checkpoint_of) if checkpoint_of is not None else None
         run = Run(plan, run="r1", bus=bus, checkpoint=history.checkpoint() if history is not None else None)
         run.watch(events.append)
         result = await run.execute()
@@ -152,8 +152,8 @@ def test_a_run_resumed_after_any_of_its_events_ends_the_same(name: str) -> None:
         assert rest.result.outcome == "good", whole.events[count - 1]
         assert rest.result.userdata == whole.result.userdata, whole.events[count - 1]
         assert rest.events[0].seq == count + 1
-        finished = [(e.path, e.visit) for e in known if isinstance(e, Exited) and not e.preempted]
-        again = {(e.path, e.visit) for e in rest.events if isinstance(e, Entered)}
+        finished = [(e.path, e.visit) for e in known if isinstance(e, NodeExited) and not e.preempted]
+        again = {(e.path, e.visit) for e in rest.events if isinstance(e, NodeEntered)}
         assert again.isdisjoint(finished)
 
 
@@ -188,6 +188,6 @@ def test_a_crash_between_an_end_and_its_retry_loses_no_attempt(name: str) -> Non
         known = _plain(list(whole.events[:count]))
         rest = run_virtual(_run(plan, known))
         told = (*known, *rest.events)
-        ended = [e for e in told if isinstance(e, Exited) and e.path == "root/tries"]
+        ended = [e for e in told if isinstance(e, NodeExited) and e.path == "root/tries"]
         assert len(ended) == 3, whole.events[count - 1]
         assert rest.result.outcome == whole.result.outcome == "good"

@@ -12,10 +12,16 @@ from engine.bus import SkillBus
 from engine.clock import new_clock, run_virtual
 from engine.document import parse_behavior
 from engine.errors import ControlError
-from engine.event import Entered, Event, Exited, RunResumed
-from engine.plan import Plan, new_plan
-from engine.resume import NeedsAnswers, last_entered, read_history, resumed, started_from
-from engine.run import Run
+from engine.event import Event, NodeEntered, NodeExited, RunResumed
+from engine.runtime.history.resume import (
+    ResumeDecisionRequired,
+    last_entered_state,
+    read_history,
+    resume_checkpoint,
+    start_checkpoint,
+)
+from engine.runtime.plan import Plan, new_plan
+from engine.runtime.run import Run
 from tests.engine.fake_states import CATALOGUE, Use
 from tests.engine.run_document import HEAD, Told
 
@@ -45,7 +51,7 @@ def _whole(plan: Plan) -> Told:
 
 def _events_until(told: Told, path: str) -> list[Event]:
     """Return the events up to the entry of a node."""
-    at = next(i for i, event in enumerate(told.events) if isinstance(event, Entered) and event.path == path)
+    at = next(i for i, event in enumerate(told.events) if isinstance(event, NodeEntered) and event.path == path)
     return list(told.events[: at + 1])
 
 
@@ -54,7 +60,9 @@ def _go_on(plan: Plan, events: list[Event], answers: Mapping[str, str], *, deman
         bus = SkillBus(new_clock())
         new: list[Event] = []
         history = read_history(plan, "r1", events)
-        checkpoint = resumed(history, plan, answers=answers, demanded=demanded, last_seq=events[-1].seq, epoch=2)
+        checkpoint = resume_checkpoint(
+            history, plan, answers=answers, demanded=demanded, last_seq=events[-1].seq, epoch=2
+        )
         async with bus:
             run = Run(plan, run="r1", bus=bus, checkpoint=checkpoint)
             run.watch(new.append)
@@ -80,13 +88,13 @@ def test_by_default_a_state_is_entered_again() -> None:
     assert isinstance(told.events[0], RunResumed)
     assert told.events[0].rerun == ("root/second",)
     assert told.story == ["+root/second", "-root/second done", "-root good"]
-    assert next(e.visit for e in told.events if isinstance(e, Entered)) == 2
+    assert next(e.visit for e in told.events if isinstance(e, NodeEntered)) == 2
 
 
 def test_hardware_asks_when_an_operator_is_demanded() -> None:
     plan = _plan(TWO % ("test.Use", ""))
     events = _events_until(_whole(plan), "root/second")
-    with pytest.raises(NeedsAnswers) as refusal:
+    with pytest.raises(ResumeDecisionRequired) as refusal:
         _go_on(plan, events, {}, demanded=True)
     assert [question.path for question in refusal.value.questions] == ["root/second"]
     assert "root/second (rerun, done)" in str(refusal.value)
@@ -99,14 +107,14 @@ def test_an_outcome_is_taken_and_the_state_not_entered_again(state: str, key: st
     told = _go_on(plan, _events_until(_whole(plan), "root/second"), {"root/second": "done"} if not key else {})
     assert told.result.outcome == "good"
     assert told.story == ["-root/second done", "-root good"]
-    assert next(e.cause.kind for e in told.events if isinstance(e, Exited) and e.cause) == "Resumed"
+    assert next(e.cause.kind for e in told.events if isinstance(e, NodeExited) and e.cause) == "Resumed"
 
 
 def test_answers_that_fit_nothing_are_refused() -> None:
     plan = _plan(TWO % ("test.Ask", ""))
     events = _events_until(_whole(plan), "root/second")
     for answers, reason in (
-        ({"root/first": "rerun"}, "root/first: this state was not in mid-work"),
+        ({"root/first": "rerun"}, "root/first: this state was not interrupted"),
         ({"root/second": "dnoe"}, "root/second: there is no outcome 'dnoe'"),
     ):
         with pytest.raises(ControlError) as refusal:
@@ -130,14 +138,14 @@ def test_the_data_of_a_moment_start_a_new_run_at_a_chosen_step() -> None:
     plan = _plan(text)
     whole = _whole(plan)
     events = _events_until(whole, "root/two")
-    assert last_entered(events, events[-1].seq) == "root/two"
+    assert last_entered_state(events, events[-1].seq) == "root/two"
     history = read_history(plan, "r1", whole.events, until_seq=events[-1].seq)
 
     async def main(path: str) -> Told:
         bus = SkillBus(new_clock())
         new: list[Event] = []
         async with bus:
-            run = Run(plan, run="r2", bus=bus, checkpoint=started_from(history, plan, path))
+            run = Run(plan, run="r2", bus=bus, checkpoint=start_checkpoint(history, plan, path))
             run.watch(new.append)
             return Told(await run.execute(), tuple(new))
 
@@ -165,5 +173,5 @@ def test_a_run_that_starts_inside_a_branch_gives_its_container_the_whole_timeout
     whole = _whole(plan)
     history = read_history(plan, "r1", whole.events, until_seq=_events_until(whole, "root/two")[-1].seq + 1)
     assert history.time_s == 2.0
-    points = started_from(history, plan, "root/two").points
+    points = start_checkpoint(history, plan, "root/two").points
     assert (points["root"].elapsed_s, points["root/one"].left) == (0.0, "a")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from engine.bus import SkillBus
-from engine.checkpoint import Checkpoint
 from engine.clock import new_clock, run_virtual
-from engine.event import BranchesPreempted, Entered, Event, Exited
-from engine.history import History
+from engine.event import BranchesPreempted, Event, NodeEntered, NodeExited
 from engine.journal import decode_event, encode_event
-from engine.plan import Plan
-from engine.resume import started_from
-from engine.run import Run
+from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.history.resume import start_checkpoint
+from engine.runtime.history.run_reducer import RunStateReducer
+from engine.runtime.plan import Plan
+from engine.runtime.run import Run
 from tests.engine.run_document import Told, plan_of, run_document
 
 TEXT = """
@@ -39,8 +39,8 @@ def _go_on(plan: Plan, checkpoint: Checkpoint, *, run: str = "r") -> Told:
     return run_virtual(main())
 
 
-def _history(plan: Plan, events: list[Event], *, run: str = "r") -> History:
-    return History(plan, run=run).read([decode_event(encode_event(event)) for event in events])
+def _history(plan: Plan, events: list[Event], *, run: str = "r") -> RunStateReducer:
+    return RunStateReducer(plan, run=run).read([decode_event(encode_event(event)) for event in events])
 
 
 def _after(text: str, count: int) -> Told:
@@ -54,12 +54,12 @@ def _place(told: Told, kind: type[Event], path: str) -> int:
 
 
 def _entered(told: Told) -> list[str]:
-    return [event.path for event in told.events if isinstance(event, Entered)]
+    return [event.path for event in told.events if isinstance(event, NodeEntered)]
 
 
 def test_a_branch_that_had_cleaned_up_is_not_begun_again() -> None:
     whole = run_document(HANGING)
-    rest = _after(HANGING, _place(whole, Exited, "root/mover"))
+    rest = _after(HANGING, _place(whole, NodeExited, "root/mover"))
     assert (rest.result.outcome, _entered(rest)) == ("good", ["root/light"])
 
 
@@ -82,7 +82,7 @@ def test_a_branch_between_two_attempts_had_ended_with_being_preempted() -> None:
 
 def test_a_clean_up_that_had_failed_is_still_an_error_of_the_container() -> None:
     whole = run_document(MESSY)
-    rest = _after(MESSY, _place(whole, Exited, "root/mover"))
+    rest = _after(MESSY, _place(whole, NodeExited, "root/mover"))
     assert (rest.result.status, whole.result.status) == ("errored", "errored")
     assert rest.result.cause is not None
     assert any("in the clean-up" in link.message for link in rest.result.cause.chain())
@@ -92,8 +92,8 @@ def test_a_run_that_starts_from_another_branch_leaves_the_preempted_one_ended() 
     """Also the run that goes on with that one after a crash knows it."""
     plan = plan_of(HANGING)
     whole = run_document(HANGING)
-    history = _history(plan, list(whole.events[: _place(whole, Exited, "root/mover")]))
-    other = _go_on(plan, started_from(history, plan, "root/light"), run="other")
+    history = _history(plan, list(whole.events[: _place(whole, NodeExited, "root/mover")]))
+    other = _go_on(plan, start_checkpoint(history, plan, "root/light"), run="other")
     assert (other.result.outcome, _entered(other)) == ("good", ["root", "root/light"])
     for count in range(_place(other, BranchesPreempted, "root"), len(other.events)):
         rest = _go_on(plan, _history(plan, list(other.events[:count]), run="other").checkpoint(), run="other")
@@ -104,8 +104,8 @@ def test_a_run_that_starts_from_the_preempted_branch_lets_it_work() -> None:
     """The condition has fired at that moment, and does so once; the light decides after five more seconds."""
     plan = plan_of(HANGING)
     whole = run_document(HANGING)
-    history = _history(plan, list(whole.events[: _place(whole, Exited, "root/mover")]))
-    other = _go_on(plan, started_from(history, plan, "root/mover"), run="other")
+    history = _history(plan, list(whole.events[: _place(whole, NodeExited, "root/mover")]))
+    other = _go_on(plan, start_checkpoint(history, plan, "root/mover"), run="other")
     assert other.story == [
         "+root", "+root/mover", "+root/light", "-root/light a",
         "!root/mover cleaned up", "-root/mover preempted", "-root good",

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from engine.messages import Pose
-from engine.pose_algebra import composed, inverse, rotated
+from engine.messages.pose_algebra import compose_poses, invert_pose, rotate_vector
 from engine.skills.vision import Detection, Detections
 
 METRES = st.floats(-2.0, 2.0)
@@ -46,9 +46,9 @@ def said(*found: Detection, frame_pose: Pose) -> Detections:
 @given(each=detections())
 def test_the_eight_corners_are_half_an_edge_away_along_each_axis_of_the_box(each: Detection) -> None:
     assert len(set(each.vertices_m)) == 8
-    back = inverse(each.pose)
+    back = invert_pose(each.pose)
     for corner in each.vertices_m:
-        own = composed(back, Pose(xyz=corner)).xyz
+        own = compose_poses(back, Pose(xyz=corner)).xyz
         assert [abs(value) for value in own] == pytest.approx([edge / 2 for edge in each.size_m], abs=1e-9)
     middle = [sum(axis) / 8 for axis in zip(*each.vertices_m, strict=True)]
     assert middle == pytest.approx(each.pose.xyz, abs=1e-9)
@@ -59,7 +59,7 @@ def test_corners_are_in_order_x_slowest_and_z_fastest(each: Detection) -> None:
     first, *_ = each.vertices_m
     for corner, axis in ((4, (1.0, 0.0, 0.0)), (2, (0.0, 1.0, 0.0)), (1, (0.0, 0.0, 1.0))):
         edge = each.size_m[axis.index(1.0)]
-        along = rotated(each.pose.xyzw, axis)
+        along = rotate_vector(each.pose.xyzw, axis)
         expected = [a + edge * b for a, b in zip(first, along, strict=True)]
         assert each.vertices_m[corner] == pytest.approx(expected, abs=1e-9)
 
@@ -68,7 +68,7 @@ def test_corners_are_in_order_x_slowest_and_z_fastest(each: Detection) -> None:
 def test_a_box_in_a_frame_is_where_that_frame_puts_it_in_the_world(each: Detection, frame: Pose) -> None:
     world = said(each, frame_pose=frame).in_world(each)
     assert world.frame == "world"
-    assert composed(inverse(frame), world).xyz == pytest.approx(each.pose.xyz, abs=1e-9)
+    assert compose_poses(invert_pose(frame), world).xyz == pytest.approx(each.pose.xyz, abs=1e-9)
 
 
 @given(found=st.lists(detections(), max_size=6), label=LABELS, least=st.floats(0.0, 1.0))

@@ -35,7 +35,7 @@ class Device:
             if self.stops and not self.line.latched:
                 self.released.set()
             if self.rests:
-                self.line.tell_rest()
+                self.line.report_at_rest()
 
     def close(self) -> None:
         """End the loop and cut the line."""

@@ -170,7 +170,7 @@ class _Engine:
     def _wait(self) -> str:
         while not (reason := self.line.poll()):
             select.select([self.connection], [], [])
-        self.line.tell_rest()
+        self.line.report_at_rest()
         return reason
 
 

@@ -11,7 +11,7 @@ import pymongo
 import pytest
 
 from engine.store import SqliteStore, Store
-from engine.store.mongo import MongoStore
+from engine.store.mongo.mongo_store import MongoStore
 from tests.engine.store.mongod import Mongod
 
 Opener = Callable[[Path], Store]

@@ -98,13 +98,13 @@ async def test_an_entry_is_adopted_with_its_whole_history_once(opener: Opener, t
         await one.put("record", "a", {"n": 2})
         await one.put("record", "gone", {})
         await one.delete("record", "gone")
-        assert await one.ever() == (("record", "a"), ("record", "gone"))
-        assert await two.adopt([await one.history(*key) for key in await one.ever()]) == 4
-        assert await two.adopt([await one.history("record", "a")]) == 0
+        assert await one.all_names() == (("record", "a"), ("record", "gone"))
+        assert await two.import_histories([await one.history(*key) for key in await one.all_names()]) == 4
+        assert await two.import_histories([await one.history("record", "a")]) == 0
         await one.undo("record", "a")
-        assert await two.adopt([await one.history("record", "a")]) == 1
-        assert [await two.history(*key) for key in await two.ever()] == [
-            await one.history(*key) for key in await one.ever()
+        assert await two.import_histories([await one.history("record", "a")]) == 1
+        assert [await two.history(*key) for key in await two.all_names()] == [
+            await one.history(*key) for key in await one.all_names()
         ]
         assert await two.list() == await one.list()
         assert (await two.list(tags=["t"]))[0].name == "a"
@@ -117,5 +117,5 @@ async def test_an_entry_with_another_history_is_not_adopted(opener: Opener, tmp_
             await store.put("record", "b", {"n": n})
         await one.put("record", "a", {})
         with pytest.raises(EntryConflict, match="record b: another history is there: revision 1 differs"):
-            await two.adopt([await one.history(*key) for key in await one.ever()])
+            await two.import_histories([await one.history(*key) for key in await one.all_names()])
         assert [key.name for key in await two.list()] == ["b"]

@@ -26,7 +26,7 @@ async def _fill(store: Store) -> None:
 
 
 async def _all(store: Store) -> list[tuple[EntryChange, ...]]:
-    return [await store.history(kind, name) for kind, name in await store.ever()]
+    return [await store.history(kind, name) for kind, name in await store.all_names()]
 
 
 async def test_there_and_back_again_nothing_is_lost(mongo: Opener, tmp_path: Path) -> None:

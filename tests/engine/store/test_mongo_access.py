@@ -15,11 +15,11 @@ from pymongo.errors import DocumentTooLarge, OperationFailure, PyMongoError
 
 from engine.errors import StoreError
 from engine.store import open_store
-from engine.store.mongo import MongoStore
-from engine.store.mongo_address import has_literal_password, public_address, with_environment
-from engine.store.mongo_errors import explained
-from engine.store.mongo_server import verify_version
-from engine.store.opening import split_database
+from engine.store.mongo.mongo_address import has_literal_password, public_address, with_environment
+from engine.store.mongo.mongo_errors import translate_mongo_errors
+from engine.store.mongo.mongo_server import verify_version
+from engine.store.mongo.mongo_store import MongoStore
+from engine.store.store_factory import split_database
 from tests.engine.store.mongod import RUNS_HERE, Mongod
 from tests.engine.store.old_server import OldServer
 from tests.engine.store.stores import database_of
@@ -113,7 +113,7 @@ def test_a_server_too_old_for_any_field_name_is_told_with_its_version() -> None:
 )
 def test_what_the_server_refuses_is_said_in_words(error: PyMongoError, says: str) -> None:
     """Errors that a test cannot provoke, told as they would be."""
-    with pytest.raises(StoreError) as refusal, explained("cannot be written", address="here"):
+    with pytest.raises(StoreError) as refusal, translate_mongo_errors("cannot be written", address="here"):
         raise error
     assert says in str(refusal.value)
 
@@ -174,7 +174,7 @@ def test_the_engine_does_not_need_pymongo() -> None:
     """Importing the store, the cell and the command line imports none of it; asking for it says what is missing."""
     program = (
         "import sys; sys.modules['pymongo'] = None\n"
-        "import asyncio, engine.cell, engine.cli.main\n"
+        "import asyncio, engine.cell.open_cell, engine.cli.main\n"
         "from engine.store import open_store\n"
         "assert not [name for name in sys.modules if name.split('.')[0] in ('bson', 'gridfs')]\n"
         "asyncio.run(open_store('mongodb://h'))"

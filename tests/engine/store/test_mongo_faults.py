@@ -14,7 +14,7 @@ import pytest
 from engine.errors import StoreError
 from engine.skills.entries import EntryRecord
 from engine.store import EntryChange, Store
-from engine.store.mongo import MongoStore
+from engine.store.mongo.mongo_store import MongoStore
 from tests.engine.store.mongod import RUNS_HERE, Mongod
 from tests.engine.store.proxy import Proxy
 from tests.engine.store.stores import DURABLE_KINDS, database_of, opener_of
@@ -95,7 +95,7 @@ async def test_a_writing_process_that_is_killed_loses_nothing_that_was_acknowled
             process.send_signal(signal.SIGKILL)
     assert await process.wait() == -signal.SIGKILL
     async with opener(tmp_path) as store:
-        histories = {name: await store.history(kind, name) for kind, name in await store.ever()}
+        histories = {name: await store.history(kind, name) for kind, name in await store.all_names()}
         shown = {record.name: record for record in await store.export()}
         found = [key.name for key in await store.list(text="e")]
     written = sorted(n for history in histories.values() for change in history if (n := _count(change)) is not None)

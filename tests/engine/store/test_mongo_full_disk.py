@@ -14,7 +14,7 @@ import pytest
 
 from engine.errors import StoreError
 from engine.store import Store
-from engine.store.mongo import MongoStore
+from engine.store.mongo.mongo_store import MongoStore
 from tests.engine.store.mongod import RUNS_HERE, Mongod
 
 # A server takes 301 MB of it for its journal.

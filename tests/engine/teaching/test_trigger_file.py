@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from engine.errors import DocumentError
 from engine.skills.teaching import Trigger
-from engine.teaching.document import parse_triggers
-from engine.teaching.trigger_file import TriggerFile, rewritten
+from engine.teaching.teach_document import parse_triggers
+from engine.teaching.trigger_file import TriggerFile, rewrite_triggers
 
 WRITTEN = """\
 # Of the media controller at station 1.
@@ -99,7 +99,9 @@ def test_any_triggers_are_read_back_as_they_were_written(
     before: tuple[Trigger, ...], after: tuple[Trigger, ...]
 ) -> None:
     """Also over what was there before, and one that comes again keeps its place among them."""
-    text = rewritten(rewritten("", before), (*after, *(one for one in before if one.trig_name not in names(after))))
+    text = rewrite_triggers(
+        rewrite_triggers("", before), (*after, *(one for one in before if one.trig_name not in names(after)))
+    )
     read = parse_triggers(text, file="t")
     assert read[: len(after)] == after
 

@@ -146,6 +146,6 @@ def test_fixtures_run_and_replay(project: Path) -> None:
 
 def test_the_engine_is_imported_only_when_it_is_needed(tmp_path: Path) -> None:
     (tmp_path / "test_one.py").write_text(
-        "import sys\ndef test_one(): assert 'engine.run' not in sys.modules\n", encoding="utf-8"
+        "import sys\ndef test_one(): assert 'engine.runtime.run' not in sys.modules\n", encoding="utf-8"
     )
     assert "1 passed" in run_pytest(tmp_path).out

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from engine.messages import Pose
-from engine.primitive import CartDmp, ForceReference, JointDmp
+from engine.messages.primitives import CartDmp, ForceReference, JointDmp
 from engine.skill import Action
 from engine.skills.contact import MoveUntilContact
 from engine.skills.dmp import CartAdmitDMP, CartDMP, Compliance, JointDMP
 from engine.skills.guiding import GuideArm
 from engine.skills.jogging import JogJoints, JogTool, StepJoints, StepTool
 from engine.skills.motion import CartLinTask, CartTrapVel, JointTrapVel
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.panda_arm import home, panda_kinematics, panda_model
 
@@ -33,13 +33,13 @@ def near_home(random_: random.Random) -> tuple[float, ...]:
     return tuple((home() + np.array(some(random_, 0.25, 7))).tolist())
 
 
-def _tool(joints: Array) -> Rigid:
+def _tool(joints: Array) -> RigidTransform:
     return panda_kinematics().tool_pose(joints)
 
 
 def _beside(joints: Array, random_: random.Random) -> Pose:
     tool = _tool(joints)
-    return Rigid(xyz=tool.xyz + np.array(some(random_, 0.05, 3)), xyzw=tool.xyzw).to_pose("world")
+    return RigidTransform(xyz=tool.xyz + np.array(some(random_, 0.05, 3)), xyzw=tool.xyzw).to_pose("world")
 
 
 def joint_dmp(start: Array, goal: tuple[float, ...], **changes: Any) -> JointDmp:

@@ -15,7 +15,7 @@ from engine.skill import Action
 from engine.skills.arm_control import ArmMode, ReadArm
 from engine.skills.motion import JointTrapVel
 from robots.arm import ArmServer
-from robots.arm.outputs import Outputs
+from robots.arm.output_services import OutputServices
 from robots.model import RobotModel
 from tests.robots.fake_port import FakeArmPort, FakeStream
 from tests.robots.panda_arm import BASE, home, panda_model
@@ -56,7 +56,7 @@ class Served:
 
 
 @asynccontextmanager
-async def served(*, outputs: Outputs | None = None, model: RobotModel | None = None) -> AsyncGenerator[Served]:
+async def served(*, outputs: OutputServices | None = None, model: RobotModel | None = None) -> AsyncGenerator[Served]:
     """The left arm, a Panda unless said otherwise, connected and on a bus."""
     model = model or panda_model()
     port = FakeArmPort(model.arm_joints, np.array(model.home_rad))

@@ -18,8 +18,8 @@ from engine.skill import Action
 from engine.skills.arm_control import ArmMode, ReadArm
 from engine.skills.motion import ForwardKinematics, JointTrapVel
 from robots.port import ArmPort, Array
-from robots.sim.simulated_cell import new_world
-from robots.sim.world import SimWorld
+from robots.sim.world.sim_world import SimWorld
+from robots.simulated_cell import new_world
 from tests.robots.panda_arm import home
 
 CELL = Path(__file__).with_name("one_panda.yaml")

@@ -24,7 +24,7 @@ from engine.skills.arm_control import (
     SetLoad,
     SetSpeedOverride,
 )
-from engine.skills.direct import JointCommand, SwitchDirectControl
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
 from engine.skills.guiding import FinishGuiding
 from engine.skills.jogging import JogCommand
 from tests.robots.arm.every_skill import LOWER, MAKERS, UPPER, near_home, some

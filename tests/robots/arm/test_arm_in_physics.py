@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import JointState, Pose
 from engine.skills.motion import CartLinTask, CartMotionFeedback, ForwardKinematics, JointTrapVel

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.cause import describe
-from engine.cell import OpenCell
+from engine.cause_chain import describe_cause
+from engine.cell.open_cell import OpenCell
 from engine.messages import Pose
 from engine.skill import Action, Service
 from engine.skills.contact import MoveUntilContact
@@ -51,7 +51,7 @@ class Carrying:
     async def end(self, goal: Action[Any, Any]) -> ENDED:
         """Send a goal to the left arm; how it ended, and why."""
         end = await self.cell.bus.send_goal(goal, to="left").result()
-        return end.status, describe(end.cause) if end.cause else ""
+        return end.status, describe_cause(end.cause) if end.cause else ""
 
     async def went(self, goal: Action[Any, Any]) -> None:
         """Send a goal that succeeds."""

@@ -9,10 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 from engine.bus import GoalStatus
-from engine.bus.access import LocalBus
+from engine.bus.json_bus import LocalJsonBus
 from engine.cli.bus import repeat
 from engine.cli.main import app
-from engine.skills.direct import SwitchDirectControl
+from engine.skills.direct_control import SwitchDirectControl
 from engine.skills.jogging import JogTool
 from tests.robots.arm.simulated import CELL, simulated
 from tests.robots.panda_arm import home
@@ -60,7 +60,7 @@ def test_what_cannot_be_published_says_why(arguments: tuple[str, ...], words: st
 async def test_hold_to_run_from_the_command_line_moves_the_tool_while_it_is_published_and_no_longer() -> None:
     """For a second at 20 Hz; after it the watchdog brakes and the goal ends by itself."""
     async with simulated() as cell:
-        bus = LocalBus(cell.bus)
+        bus = LocalJsonBus(cell.bus)
         handle = await cell.begun(JogTool(idle_s=0.5), after_s=0.1)
         start = await cell.tool()
 
@@ -77,7 +77,7 @@ async def test_hold_to_run_from_the_command_line_moves_the_tool_while_it_is_publ
 @pytest.mark.virtual
 async def test_set_points_from_the_command_line_lead_the_arm_under_direct_control() -> None:
     async with simulated() as cell:
-        bus = LocalBus(cell.bus)
+        bus = LocalJsonBus(cell.bus)
         assert (await cell.bus.call(SwitchDirectControl(on=True, watchdog_s=0.2), to="left")).success
         turned = home() + np.array((0.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 

@@ -10,22 +10,22 @@ import pytest
 
 from engine.bus import GoalStatus
 from engine.check import check_behavior
-from engine.demonstration import Trajectory
 from engine.document.loader import parse_behavior
 from engine.journal import NullJournal
 from engine.messages import Pose
-from engine.plan import new_plan
+from engine.messages.demonstrations import Trajectory
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 from engine.skills.dmp import JointDMP
 from engine.skills.entries import ListEntries
-from engine.skills.gripper import GripperAction, GripperMove
+from engine.skills.gripper import GripperMove, GripperSetting
 from engine.skills.motion import ForwardKinematics, JointTrapVel
 from engine.skills.proposing import Proposal, ProposeBehavior, TaughtStep
+from engine.skills.simulated_world import PushBody
 from engine.skills.teaching import Callback, Capture, CaptureForm, ReadCapture, SaveCapture, TeachNow
-from engine.skills.world import PushBody
 from engine.store import SqliteStore, register_store
-from engine.store.kinds import Joints, read_as
+from engine.store.entry_kinds import Joints, decode_entry
 from engine.teaching import HelpingHand
 from robots.port import Array
 from tests.robots.arm.simulated import HOME, Simulated, simulated
@@ -136,10 +136,10 @@ async def test_places_a_motion_and_the_gripper_are_taught_and_the_proposed_behav
             ]
             proposal = await cell.bus.call(ProposeBehavior(steps=tuple(steps)), to="teach")
             result = await run(cell, proposal, tmp_path)
-        home = read_as(await store.get("joints", "home"), Joints)
-        gripper = read_as(await store.get("gripper", "narrow"), GripperAction)
+        home = decode_entry(await store.get("joints", "home"), Joints)
+        gripper = decode_entry(await store.get("gripper", "narrow"), GripperSetting)
         tool = await cell.tool()
-        raised = read_as(await store.get("pose", "raised"), Pose)
+        raised = decode_entry(await store.get("pose", "raised"), Pose)
     assert (home.model, len(home.names)) == ("panda", 7)
     assert opened.gripper == gripper
     assert (gripper.held, gripper.width_m) == (False, pytest.approx(0.02, abs=2e-3))

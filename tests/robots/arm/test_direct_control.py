@@ -10,10 +10,10 @@ import pytest
 from engine.bus import GoalStatus, Holder
 from engine.errors import LeaseRefused
 from engine.skill import Action
-from engine.skills.direct import JointCommand, SwitchDirectControl
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
 from engine.skills.guiding import GuideArm
 from engine.skills.jogging import JogTool
-from engine.skills.switched import Switched
+from engine.skills.switch_result import SwitchResult
 from tests.robots.arm.served import ELSEWHERE, MOVE, Served, served
 from tests.robots.panda_arm import home
 
@@ -32,11 +32,11 @@ async def test_set_points_lead_the_arm_only_while_it_is_on() -> None:
     async with served() as cell:
         say(cell, ELSEWHERE)
         assert tuple(cell.port.sample().position_rad) == tuple(home())
-        assert await cell.bus.call(ON, to="left") == Switched(success=True, message="direct joint control is on")
+        assert await cell.bus.call(ON, to="left") == SwitchResult(success=True, message="direct joint control is on")
         say(cell, ELSEWHERE)
         assert tuple(cell.port.sample().position_rad) == ELSEWHERE
         assert (cell.port.streamed, await cell.mode()) == ([("joint_position", 0.1)], "direct")
-        assert await cell.bus.call(OFF, to="left") == Switched(success=True, message="direct joint control is off")
+        assert await cell.bus.call(OFF, to="left") == SwitchResult(success=True, message="direct joint control is off")
         say(cell, tuple(home()))
         assert (tuple(cell.port.sample().position_rad), await cell.mode()) == (ELSEWHERE, "idle")
 
@@ -82,7 +82,7 @@ async def test_switching_twice_is_the_same_as_once() -> None:
     async with served() as cell:
         for request, words in ((OFF, "is off"), (ON, "is on"), (ON, "is on already"), (OFF, "is off"), (OFF, "is off")):
             answer = await cell.bus.call(request, to="left")
-            assert answer == Switched(success=True, message=f"direct joint control {words}")
+            assert answer == SwitchResult(success=True, message=f"direct joint control {words}")
 
 
 @pytest.mark.virtual

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.skills.direct import JointCommand, SwitchDirectControl
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
 from tests.robots.arm.simulated import HOME, simulated
 from tests.robots.panda_arm import home, panda_model
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalEnd, GoalStatus
-from engine.demonstration import Trajectory
 from engine.errors import SkillFailed, StoreError
 from engine.messages import Pose
+from engine.messages.demonstrations import Trajectory
 from engine.skill import Action
 from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnedCartDmp, LearnedJointDmp, LearnJointDmp
 from engine.skills.motion import CartMotionFeedback, JointMotionFeedback
 from engine.store import SqliteStore, register_store
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.motion.min_jerk import min_jerk
 from tests.robots.arm.served import Served, served
 from tests.robots.panda_arm import BASE, home, panda_kinematics, panda_model
@@ -76,8 +76,8 @@ async def test_a_cartesian_primitive_is_learned_from_joints_and_carried_out() ->
     assert learned.dmp == same.dmp
     assert end.result is not None
     wanted = panda_kinematics().tool_pose(home() + WAY)
-    assert Rigid.from_pose(end.result.pose).distance_m(wanted) < 1e-3
-    assert Rigid.from_pose(end.result.pose).angle_rad(wanted) < 2e-3
+    assert RigidTransform.from_pose(end.result.pose).distance_m(wanted) < 1e-3
+    assert RigidTransform.from_pose(end.result.pose).angle_rad(wanted) < 2e-3
     assert told[-1].progress == pytest.approx(1.0)
 
 
@@ -93,11 +93,11 @@ async def test_other_goals_are_reached() -> None:
     async with served() as cell:
         cart = await cell.bus.call(LearnCartDmp(trajectory=led()), to="left")
         there = panda_kinematics().tool_pose(home() + WAY)
-        raised = Rigid(xyz=there.xyz + np.array([0.0, 0.0, 0.05]), xyzw=there.xyzw)
+        raised = RigidTransform(xyz=there.xyz + np.array([0.0, 0.0, 0.05]), xyzw=there.xyzw)
         pose = BASE.inverse().then(raised).to_pose("left/panda_link0")
         second = await cell.bus.send_goal(CartDMP(dmp=cart.dmp, goal=pose), to="left").result()
     assert second.result is not None
-    assert Rigid.from_pose(second.result.pose).distance_m(raised) < 1e-5
+    assert RigidTransform.from_pose(second.result.pose).distance_m(raised) < 1e-5
 
 
 @pytest.mark.virtual

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from engine.bus import GoalStatus
-from engine.primitive import ForceReference
+from engine.messages.primitives import ForceReference
 from engine.skill import Action
 from engine.skills.dmp import CartAdmitDMP, CartAdmitResult, JointDMP
 from engine.skills.jogging import StepTool

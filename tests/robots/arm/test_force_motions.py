@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.primitive import CartDmp, ForceReference
+from engine.messages.primitives import CartDmp, ForceReference
 from engine.skills.dmp import CartAdmitDMP, CartAdmitFeedback, Compliance, LearnCartDmp
 from robots.motion.dmp import offsets_at, phase_at
 from robots.port import Array, ForceRecord

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from robots.planning.worker import PlanningWorker
-from robots.workspace.planners import Planners
+from robots.planning.worker.planning_worker import PlanningWorker
+from robots.workspace.planning_services import PlanningServices
 from tests.robots.workspace.free_cell import ACROSS, POST, REST_RAD_S, THERE, free, free_cell
 
 
@@ -27,7 +27,7 @@ async def test_killed_planning_processes_stop_the_arm_and_new_ones_take_it_to_it
         return workers[-1]
 
     async with free_cell(tmp_path) as opened:
-        opened.workspace.planners = Planners(opened.bus.clock, make)
+        opened.workspace.planners = PlanningServices(opened.bus.clock, make)
         await opened.go(THERE)
         assert (len(workers), all(worker.pid for worker in workers)) == (2, True)
         # So slow that it is still far from there when the post comes into its way, however late that is.

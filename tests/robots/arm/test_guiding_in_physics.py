@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.demonstration import Trajectory
+from engine.messages.demonstrations import Trajectory
 from engine.skills.entries import ReadEntry
 from engine.skills.guiding import FinishGuiding, GuideArm
-from engine.skills.world import PushBody
+from engine.skills.simulated_world import PushBody
 from engine.store import SqliteStore, register_store
-from engine.store.kinds import read_as
+from engine.store.entry_kinds import decode_entry
 from tests.robots.arm.simulated import HOME, Simulated, simulated
 
 PUSH = PushBody(body="left/panda_hand", force_n=(0.0, 15.0, 0.0), duration_s=0.6)
@@ -93,7 +93,7 @@ async def test_what_a_hand_shows_is_recorded_and_the_arm_can_repeat_its_end() ->
         record = await cell.bus.call(ReadEntry(kind="trajectory", name="shown"), to="store")
         back = await cell.perform(HOME)
     assert end.result is not None
-    shown = read_as(record, Trajectory)
+    shown = decode_entry(record, Trajectory)
     assert len(shown.times_s) == end.result.samples > 150
     assert np.allclose(np.diff(shown.times_s), 0.01, atol=2e-3)
     assert np.abs(np.array(shown.joints[-1]) - np.array(end.result.joints)).max() < 0.01

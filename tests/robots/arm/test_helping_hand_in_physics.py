@@ -11,9 +11,10 @@ import pytest
 
 from engine.errors import FlexcellError
 from engine.messages import Pose
-from engine.primitive import JointDmp
+from engine.messages.primitives import JointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.motion import ForwardKinematics, JointTrapVel
+from engine.skills.simulated_world import PushBody
 from engine.skills.teaching import (
     ButtonState,
     Callback,
@@ -25,9 +26,8 @@ from engine.skills.teaching import (
     Trigger,
     TriggerType,
 )
-from engine.skills.world import PushBody
 from engine.store import SqliteStore, register_store
-from engine.store.kinds import Joints, read_as
+from engine.store.entry_kinds import Joints, decode_entry
 from engine.teaching import HelpingHand
 from tests.robots.arm.simulated import HOME, Simulated, simulated
 
@@ -98,9 +98,9 @@ async def test_buttons_teach_two_poses_and_a_motion(tmp_path: Path) -> None:
         assert motion.summary.length_rad > 0.1
         for number, name in ((1, "above"), (2, "sweep"), (3, "left_there")):
             await cell.bus.call(SaveCapture(id=number, name=name), to="teach")
-        above = read_as(await cell.bus.call(ReadEntry(kind="joints", name="above"), to="store"), Joints)
-        sweep = read_as(await cell.bus.call(ReadEntry(kind="dmp", name="sweep"), to="store"), JointDmp)
-        there = read_as(await cell.bus.call(ReadEntry(kind="pose", name="left_there"), to="store"), Pose)
+        above = decode_entry(await cell.bus.call(ReadEntry(kind="joints", name="above"), to="store"), Joints)
+        sweep = decode_entry(await cell.bus.call(ReadEntry(kind="dmp", name="sweep"), to="store"), JointDmp)
+        there = decode_entry(await cell.bus.call(ReadEntry(kind="pose", name="left_there"), to="store"), Pose)
         tool = await cell.bus.call(ForwardKinematics(), to="left")
         assert np.allclose(above.joints, HOME.joints, atol=0.01)
         assert np.linalg.norm(np.subtract(there.xyz, tool.xyz)) < 1e-3

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from engine.cause import describe
+from engine.cause_chain import describe_cause
 from engine.registry import load_states
-from engine.testing.behavior import run_behavior
+from engine.testing.behavior_run import run_behavior
 
 ROOT = Path(__file__).parents[3]
 PAGE = ROOT / "docs" / "how-to" / "move-an-arm.md"
@@ -23,4 +23,4 @@ def test_the_behavior_of_the_page_finds_the_table_and_is_shown_a_way(tmp_path: P
     file = tmp_path / "find_and_show.yaml"
     file.write_text(text.replace("..", str(ROOT / "behaviors")), encoding="utf-8")
     ran = run_behavior(file, catalogue=load_states(), store=tmp_path / "store.db")
-    assert ran.outcome == "shown", describe(ran.result.cause) if ran.result.cause else ran.result
+    assert ran.outcome == "shown", describe_cause(ran.result.cause) if ran.result.cause else ran.result

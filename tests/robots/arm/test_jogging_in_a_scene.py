@@ -11,12 +11,12 @@ import pytest
 
 from engine.bus import GoalStatus
 from engine.messages import Pose, Vector3
-from engine.shapes import Box, Obstacle
+from engine.messages.shapes import Box, Obstacle
 from engine.skill import Action
 from engine.skills.jogging import (
+    JogCollisionOptions,
     JogCommand,
     JogJoints,
-    JogScene,
     JogTool,
     StepJoints,
     StepTool,
@@ -29,7 +29,7 @@ from tests.tiers import nightly
 
 DOWN = (0.0, 0.0, -0.25, 0.0, 0.0, 0.0)
 ROUND = (1.2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-MARGIN_M = JogScene().margin_m
+MARGIN_M = JogCollisionOptions().margin_m
 
 
 def put(name: str, size_m: Vector3, xyz: Vector3) -> PutObstacle:
@@ -112,7 +112,7 @@ async def test_what_comes_into_the_way_of_a_jog_stops_it_and_what_goes_lets_it_g
 async def test_what_may_be_touched_and_what_is_not_minded_stops_nothing() -> None:
     """The same way three times: held back, by its name let through, and not looked at."""
     reached: list[float] = []
-    for rule in (JogScene(), JogScene(may_touch=("post",)), JogScene(minded=False)):
+    for rule in (JogCollisionOptions(), JogCollisionOptions(may_touch=("post",)), JogCollisionOptions(minded=False)):
         async with simulated() as cell:
             await cell.bus.call(put("post", (0.08, 0.08, 1.0), (-0.33, 0.27, 0.5)), to="cell")
             await cell.perform(JogJoints(velocity_rad_s=ROUND, duration_s=1.2, scene=rule))
@@ -125,7 +125,7 @@ async def test_what_may_be_touched_and_what_is_not_minded_stops_nothing() -> Non
 async def test_a_released_key_stops_the_arm_as_soon_as_without_a_scene() -> None:
     """What is passed on anew after a look is no sign of life."""
     rests: list[float] = []
-    for rule in (JogScene(), JogScene(minded=False)):
+    for rule in (JogCollisionOptions(), JogCollisionOptions(minded=False)):
         async with simulated() as cell:
             await cell.begun(JogTool(idle_s=3.0, watchdog_s=0.2, scene=rule))
             jog = cell.bus.topic("left/jog", JogCommand)

@@ -17,7 +17,7 @@ from engine.skills.motion import (
     PoseMatch,
 )
 from robots.model.registry import robot_model
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from tests.robots.arm.served import Served, served
 
 SERVO_ARM = robot_model("servo_arm")
@@ -79,9 +79,9 @@ async def test_what_does_not_count_comes_as_it_comes(match: PoseMatch, x_m: floa
         end = await moved(cell, goal, match)
         assert (await moved(cell, goal, "pose")).status is whole
     assert end.result is not None, end.cause
-    reached = Rigid.from_pose(end.result.pose)
+    reached = RigidTransform.from_pose(end.result.pose)
     assert np.allclose(reached.xyz, goal.xyz, atol=1e-4)
-    assert reached.angle_rad(Rigid.from_pose(goal)) > 0.1
+    assert reached.angle_rad(RigidTransform.from_pose(goal)) > 0.1
     assert (float(reached.rotation[2, 2]) == pytest.approx(-1.0, abs=1e-4)) is (match == "axis")
 
 

@@ -10,18 +10,18 @@ import pytest
 
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
-from engine.demonstration import Trajectory
 from engine.messages import Pose
-from engine.primitive import CartDmp, CartOffsets, ForceReference
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, CartOffsets, ForceReference
 from engine.skills.contact import ContactResult, MoveUntilContact
 from engine.skills.dmp import CartAdmitDMP, CartAdmitResult
 from engine.skills.motion import JointTrapVel
 from robots.arm import ArmServer
-from robots.model.rigid import Rigid, quaternion_of
+from robots.model.transform import RigidTransform, quaternion_of
 from robots.motion.dmp import learn_cart_dmp
 from robots.motion.min_jerk import min_jerk
-from robots.sim.scene import ArmPlacement, FixtureBody, Scene
-from robots.sim.world import SimRobot, SimWorld, new_world
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, SimScene
+from robots.sim.world.sim_world import SimRobot, SimWorld, new_world
 from tests.robots.arm.simulated import Simulated
 from tests.robots.panda_arm import BASE, panda_kinematics
 
@@ -36,8 +36,8 @@ def pad() -> FixtureBody:
     turn = quaternion_of(np.array([np.arctan(SLOPE), 0.0, 0.0]))
     tool = panda_kinematics().tool_pose(np.array(ABOVE))
     top = tool.xyz + np.array([0.0, WAY_M / 2.0, -0.008 + SLOPE * WAY_M / 2.0])
-    down = Rigid(xyz=top, xyzw=turn).then(
-        Rigid(xyz=np.array([0.0, 0.0, -thick / 2.0]), xyzw=quaternion_of(np.zeros(3)))
+    down = RigidTransform(xyz=top, xyzw=turn).then(
+        RigidTransform(xyz=np.array([0.0, 0.0, -thick / 2.0]), xyzw=quaternion_of(np.zeros(3)))
     )
     return FixtureBody(name="pad", shape="box", size_m=(0.4, 0.5, thick), pose=down.to_pose("world"), spring_n_m=5000.0)
 
@@ -46,7 +46,7 @@ def pad() -> FixtureBody:
 async def above_the_pad() -> AsyncGenerator[Simulated]:
     """The arm at `ABOVE`, in lockstep with virtual time."""
     placement = ArmPlacement(name="left", model="panda", base=BASE.to_pose("world"), gripper="panda_hand")
-    scene = Scene(step_s=0.002, arms=(placement,), fixtures=(pad(),))
+    scene = SimScene(step_s=0.002, arms=(placement,), fixtures=(pad(),))
     async with AsyncExitStack() as stack:
         bus = await stack.enter_async_context(SkillBus(new_clock()))
 

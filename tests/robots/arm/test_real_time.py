@@ -10,11 +10,11 @@ from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
 from engine.document.cell import load_cell
 from engine.skills.arm_control import ArmStatus, RecoverFromError, SetCollisionBehavior, SetSpeedOverride
-from engine.skills.direct import JointCommand, SwitchDirectControl
+from engine.skills.direct_control import JointCommand, SwitchDirectControl
 from engine.skills.guiding import FinishGuiding, GuideArm
 from engine.skills.jogging import JogJoints
-from engine.skills.world import PushBody
-from robots.sim.simulated_cell import new_world
+from engine.skills.simulated_world import PushBody
+from robots.simulated_cell import new_world
 from tests.robots.arm.simulated import CELL, Simulated
 from tests.robots.panda_arm import home
 

@@ -16,12 +16,13 @@ from hypothesis import strategies as st
 
 from engine.bus import GoalEnd, GoalStatus, SkillBus
 from engine.clock import run_virtual
-from engine.demonstration import Trajectory
 from engine.errors import FlexcellError
 from engine.messages import Pose
-from engine.primitive import CartDmp, CartOffsets, ForceReference, JointDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp, CartOffsets, ForceReference, JointDmp
 from engine.skill import Action, Service, Skill
-from engine.skills import arm_control, contact, direct, dmp, guiding, jogging, motion
+from engine.skills import arm_control, contact, dmp, guiding, jogging, motion
+from engine.skills import direct_control as direct
 from robots.motion.dmp import no_offsets
 from robots.motion.min_jerk import min_jerk
 from tests.robots.arm.every_skill import cart_dmp, joint_dmp

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.demonstration import Trajectory
+from engine.messages.demonstrations import Trajectory
 from engine.skills.dmp import CartDMP, JointDMP, LearnCartDmp, LearnJointDmp
 from engine.skills.entries import ReadEntry
 from engine.skills.guiding import FinishGuiding, GuideArm
 from engine.skills.motion import JointTrapVel
-from engine.skills.world import PushBody
+from engine.skills.simulated_world import PushBody
 from engine.store import SqliteStore, register_store
-from engine.store.kinds import read_as
+from engine.store.entry_kinds import decode_entry
 from robots.port import Array
 from tests.robots.arm.simulated import HOME, Simulated, simulated
 
@@ -33,7 +33,7 @@ async def teach(cell: Simulated) -> Trajectory:
     await cell.bus.call(FinishGuiding(), to="left")
     end = await handle.result()
     assert end.status is GoalStatus.SUCCEEDED, end.cause
-    return read_as(await cell.bus.call(ReadEntry(kind="trajectory", name="led"), to="store"), Trajectory)
+    return decode_entry(await cell.bus.call(ReadEntry(kind="trajectory", name="led"), to="store"), Trajectory)
 
 
 async def carried_out(cell: Simulated, goal: JointDMP | CartDMP) -> tuple[Array, Array]:

@@ -10,9 +10,9 @@ import pytest
 from engine.errors import RobotError
 from engine.messages import Pose
 from robots.arm import ToolFrames
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 
-TURNED = Rigid.of((0.55, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
+TURNED = RigidTransform.of((0.55, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
 FRAMES = ToolFrames(arm="right", base_link="panda_link0", base=TURNED)
 
 

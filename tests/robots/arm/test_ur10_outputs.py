@@ -12,9 +12,9 @@ from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.document.cell import load_cell
 from engine.errors import CellError
-from engine.skills.outputs import DigitalOutputs, SetLinearAxis, SetOutput, SetToolExchange
-from robots.sim.simulated_cell import new_world
-from robots.sim.world import SimWorld
+from engine.skills.digital_outputs import DigitalOutputs, SetLinearAxis, SetOutput, SetToolExchange
+from robots.sim.world.sim_world import SimWorld
+from robots.simulated_cell import new_world
 
 CELL = """
 flexcell: 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.model.rigid import Rigid, quaternion_of
+from robots.model.transform import RigidTransform, quaternion_of
 from robots.port import Array
 
 LINK_M = 0.5
@@ -16,11 +16,11 @@ class PlaneKinematics:
 
     dof = 2
 
-    def tool_pose(self, joints: Array) -> Rigid:
+    def tool_pose(self, joints: Array) -> RigidTransform:
         """Pose of the tip."""
         return self.tool_pose_and_jacobian(joints)[0]
 
-    def tool_pose_and_jacobian(self, joints: Array) -> tuple[Rigid, Array]:
+    def tool_pose_and_jacobian(self, joints: Array) -> tuple[RigidTransform, Array]:
         """Pose of the tip and the Jacobian, (6, 2)."""
         shoulder, both = float(joints[0]), float(joints[0] + joints[1])
         elbow = LINK_M * np.array([np.cos(shoulder), np.sin(shoulder), 0.0])
@@ -29,7 +29,7 @@ class PlaneKinematics:
         jacobian[:3, 0] = (-tip[1], tip[0], 0.0)
         jacobian[:3, 1] = (elbow[1] - tip[1], tip[0] - elbow[0], 0.0)
         jacobian[5] = 1.0
-        return Rigid(xyz=tip, xyzw=quaternion_of(np.array([0.0, 0.0, both]))), jacobian
+        return RigidTransform(xyz=tip, xyzw=quaternion_of(np.array([0.0, 0.0, both]))), jacobian
 
 
 def plane_state(position: Array | None = None, velocity: Array | None = None) -> ArmState:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from robots.control.arm_state import ArmState
-from robots.control.generator import Generator
+from robots.control.motion_generator import MotionGenerator
 from robots.port import Array
 from tests.robots.control.plane_arm import plane_state
 
@@ -35,7 +35,7 @@ class Wall:
 class Bench:
     """An arm that follows its set point perfectly, `delay` periods later, against a wall."""
 
-    generator: Generator
+    generator: MotionGenerator
     wall: Wall
     delay: int = 0
     noise_n: float = 0.0

@@ -7,11 +7,11 @@ import pytest
 
 from robots.control.admittance import AdmittanceLoop
 from robots.port import Admittance, Array
-from robots.port.settings import Six
+from robots.port.settings import Vector6
 
 STEP_S = 0.001
 NONE = np.zeros(6)
-ONLY_Y: Six = (0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+ONLY_Y: Vector6 = (0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def along_y(value: float) -> Array:

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robots.control.cholesky import solved
-from robots.control.kernels import hang_tool, pass_along, pose_error, solve_in_place
-from robots.model.rigid import Rigid, conjugate, product, quaternion_of, rotation_vector
+from robots.control.cholesky import solve_positive_definite
+from robots.control.kernels import impedance_torque, interpolate_setpoint, pose_error, solve_in_place
+from robots.model.transform import RigidTransform, conjugate, product, quaternion_of, rotation_vector
 from robots.port import Array
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -31,7 +31,7 @@ def test_the_set_point_has_the_very_bits_that_the_spline_written_in_numpy_has(se
     index, u, h = int(random.integers(4)), float(random.uniform()), 0.001
     pace, change = float(random.uniform()), float(random.normal())
     position, velocity, acceleration = np.zeros(7), np.zeros(7), np.zeros(7)
-    pass_along(points, slopes, index, u, h, pace, pace**2, change, position, velocity, acceleration)
+    interpolate_setpoint(points, slopes, index, u, h, pace, pace**2, change, position, velocity, acceleration)
 
     p0, p1, v0, v1 = points[index], points[index + 1], slopes[index], slopes[index + 1]
     u2, u3 = u * u, u * u * u
@@ -49,15 +49,15 @@ def test_the_set_point_has_the_very_bits_that_the_spline_written_in_numpy_has(se
 def test_a_positive_definite_system_is_solved(seed: int, n: int, columns: int) -> None:
     random = np.random.default_rng(seed)
     matrix, right = positive_definite(random, n), random.normal(size=(n, columns))
-    assert solved(matrix, right) == pytest.approx(np.linalg.solve(matrix, right), abs=1e-9)
-    assert solved(matrix, right[:, 0]) == pytest.approx(np.linalg.solve(matrix, right[:, 0]), abs=1e-9)
+    assert solve_positive_definite(matrix, right) == pytest.approx(np.linalg.solve(matrix, right), abs=1e-9)
+    assert solve_positive_definite(matrix, right[:, 0]) == pytest.approx(np.linalg.solve(matrix, right[:, 0]), abs=1e-9)
 
 
 def test_a_matrix_that_is_not_positive_definite_is_refused() -> None:
     flat = np.diag([1.0, 0.0])
     assert not solve_in_place(flat.copy(), np.ones((2, 1)))
     with pytest.raises(ArithmeticError, match="not positive definite"):
-        solved(flat, np.ones(2))
+        solve_positive_definite(flat, np.ones(2))
 
 
 @settings(deadline=None, max_examples=50)
@@ -68,8 +68,8 @@ def test_a_pose_error_is_that_of_the_rigid_transforms(seed: int, angle_rad: floa
     axis = random.normal(size=3)
     turn = quaternion_of(axis / np.linalg.norm(axis) * angle_rad)
     there = quaternion_of(random.normal(size=3))
-    measured = Rigid.of(random.normal(size=3), there)
-    wanted = Rigid.of(random.normal(size=3), product(turn, there) * (-1.0 if other_sign else 1.0))
+    measured = RigidTransform.of(random.normal(size=3), there)
+    wanted = RigidTransform.of(random.normal(size=3), product(turn, there) * (-1.0 if other_sign else 1.0))
     error = np.zeros(6)
     pose_error(wanted.xyz, wanted.xyzw, measured.xyz, measured.xyzw, error)
     plain = rotation_vector(product(wanted.xyzw, conjugate(measured.xyzw)))
@@ -85,7 +85,7 @@ def test_a_tool_on_springs_and_dampers_is_pulled_as_the_law_says(seed: int, n: i
     error, behind, slower = random.normal(size=6), random.normal(size=n), random.normal(size=n)
     stiffness, root = random.uniform(1.0, 9.0, 6), random.uniform(0.1, 3.0, 6)
     torque = np.zeros(n)
-    assert hang_tool(world, turn, mass, error, behind, slower, stiffness, root, 2.0, 0.7, LIGHTEST, torque)
+    assert impedance_torque(world, turn, mass, error, behind, slower, stiffness, root, 2.0, 0.7, LIGHTEST, torque)
 
     to_base = np.kron(np.eye(2), turn.T)
     jacobian = to_base @ world
@@ -100,7 +100,7 @@ def test_a_tool_on_springs_and_dampers_is_pulled_as_the_law_says(seed: int, n: i
 
 def test_a_tool_on_an_arm_without_inertia_gets_no_torque() -> None:
     ones, torque = np.ones(6), np.full(2, 5.0)
-    done = hang_tool(
+    done = impedance_torque(
         np.ones((6, 2)), np.eye(3), np.zeros((2, 2)), ones, torque, torque, ones, ones, 1.0, 1.0, LIGHTEST, torque
     )
     assert (done, torque.tolist()) == (False, [5.0, 5.0])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robots.control.arm_state import ArmState
 from robots.control.damped_inverse import joint_velocity
-from robots.control.tool_jogging import ToolJogging
+from robots.control.tool_jogging import ToolJogGenerator
 from robots.port import Array
 from tests.robots.control.limit_watch import STEP_S, LimitWatch, limits
 from tests.robots.control.plane_arm import PlaneKinematics, plane_state
@@ -23,7 +23,7 @@ class Jog:
 
     def __init__(self, start: Array, *, watchdog_s: float = 0.1) -> None:
         self.state = plane_state()
-        self.jogging = ToolJogging(limits=limits(), start=start, watchdog_s=watchdog_s)
+        self.jogging = ToolJogGenerator(limits=limits(), start=start, watchdog_s=watchdog_s)
         self.watch = LimitWatch(limits(), self.jogging)
 
     def tip(self) -> Array:
@@ -53,7 +53,7 @@ def test_the_tool_goes_straight_as_fast_as_it_is_told() -> None:
 def test_a_panda_keeps_its_orientation_and_line_while_it_is_jogged() -> None:
     kinematics = panda_kinematics()
     state = ArmState(kinematics)
-    jogging = ToolJogging(limits=kinematics.limits, start=home(), watchdog_s=0.1)
+    jogging = ToolJogGenerator(limits=kinematics.limits, start=home(), watchdog_s=0.1)
     start = kinematics.tool_pose(jogging.position)
     for _ in range(800):
         jogging.receive(np.array([0.05, -0.1, -0.1, 0.0, 0.0, 0.0]))
@@ -131,7 +131,7 @@ def test_whatever_is_sent_from_wherever_the_joints_keep_their_limits(
 def test_a_twist_beyond_all_sense_is_taken_as_a_fast_one_in_its_direction(size: float) -> None:
     kinematics = panda_kinematics()
     state = ArmState(kinematics)
-    jogging = ToolJogging(limits=kinematics.limits, start=home(), watchdog_s=0.1)
+    jogging = ToolJogGenerator(limits=kinematics.limits, start=home(), watchdog_s=0.1)
     watch = LimitWatch(kinematics.limits, jogging)
     start = kinematics.tool_pose(home()).xyz
     for _ in range(100):

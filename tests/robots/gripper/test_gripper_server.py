@@ -9,7 +9,7 @@ import pytest
 
 from engine.bus import GoalStatus, SkillBus
 from engine.clock import new_clock
-from engine.skills.gripper import GripperAction, GripperGrasp, GripperMove, GripperOpen, ReadGripper
+from engine.skills.gripper import GripperGrasp, GripperMove, GripperOpen, GripperSetting, ReadGripper
 from robots.gripper import GripperServer
 from tests.robots.fake_port import FakeGripperPort
 
@@ -175,5 +175,5 @@ async def test_every_goal_tells_how_the_gripper_was_before() -> None:
         opened = (await bus.send_goal(GripperOpen(), to=HAND).result()).result
     assert grasped is not None
     assert opened is not None
-    assert grasped.start == GripperAction(width_m=0.08, held=False)
-    assert opened.start == GripperAction(width_m=0.031, held=True, force_n=20.0)
+    assert grasped.start == GripperSetting(width_m=0.08, held=False)
+    assert opened.start == GripperSetting(width_m=0.031, held=True, force_n=20.0)

@@ -14,10 +14,10 @@ from engine.errors import CellError, DocumentError
 from robots.model.calibration import load_calibration, roll_pitch_yaw, transform
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import ARMS_DIR, robot_model
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 
-ORIGIN = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 PRINTED = ARMS_DIR / "ur10" / "ur10_calibration.yaml"
 SEGMENTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 KEYS = ("x", "y", "z", "roll", "pitch", "yaw")

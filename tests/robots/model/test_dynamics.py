@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robots.model.dynamics import GRAVITY_M_S2, ArmDynamics, Load
+from robots.model.dynamics import GRAVITY_M_S2, ArmDynamics, Payload
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model, robot_names
-from robots.model.rigid import Rigid
-from robots.sim.arm_spec import arm_spec
-from robots.sim.physics import mujoco
+from robots.model.transform import RigidTransform
+from robots.sim.physics.arm_spec import arm_spec
+from robots.sim.physics.physics import mujoco
 
-ORIGIN = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 @pytest.mark.parametrize("arm", robot_names())
@@ -61,7 +61,7 @@ def test_a_load_at_the_tool_adds_its_weight_times_the_way_the_tool_sinks() -> No
     """The joint torques of a weight are Jᵀ times its force, at its centre of mass."""
     model = robot_model("panda")
     kinematics = ArmKinematics(model, base=ORIGIN)
-    load = Load(mass_kg=2.0, com_m=(0.01, -0.02, 0.05), inertia_kg_m2=(0.01, 0.01, 0.01))
+    load = Payload(mass_kg=2.0, com_m=(0.01, -0.02, 0.05), inertia_kg_m2=(0.01, 0.01, 0.01))
     empty, loaded = ArmDynamics(model), ArmDynamics(model, load=load)
     for q in np.random.default_rng(2).uniform(-1.0, 1.0, (10, 7)):
         pose, jacobian = kinematics.tool_pose_and_jacobian(q)
@@ -75,7 +75,7 @@ def test_a_load_at_the_tool_adds_its_weight_times_the_way_the_tool_sinks() -> No
 def test_an_arm_on_a_wall_feels_gravity_from_the_side() -> None:
     """Base turned about x by a quarter: the first axis lies level and must hold the arm."""
     model = robot_model("ur10", gripper=None)
-    wall = Rigid.of((0.0, 0.0, 0.0), (np.sin(np.pi / 4), 0.0, 0.0, np.cos(np.pi / 4)))
+    wall = RigidTransform.of((0.0, 0.0, 0.0), (np.sin(np.pi / 4), 0.0, 0.0, np.cos(np.pi / 4)))
     q = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     assert abs(ArmDynamics(model).gravity(q)[0]) < 1e-6
     assert abs(ArmDynamics(model, base=wall).gravity(q)[0]) > 50.0

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 
 IRB = robot_model("irb4600", gripper=None)
-KINEMATICS = ArmKinematics(IRB, base=Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
+KINEMATICS = ArmKinematics(IRB, base=RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
 
 # Position, quaternion x y z w, joints as observed; the last digits that tell nothing are left out.
 TABLE_4 = [
@@ -49,7 +49,7 @@ def test_the_flange_is_where_the_table_says(
     xyz: tuple[float, ...], xyzw: tuple[float, ...], joints: tuple[float, ...]
 ) -> None:
     """Within 0.2 mm and 1 mrad, of the plain flange."""
-    pose, expected = KINEMATICS.tool_pose(np.array(joints)), Rigid.of(xyz, xyzw)
+    pose, expected = KINEMATICS.tool_pose(np.array(joints)), RigidTransform.of(xyz, xyzw)
     assert pose.distance_m(expected) < 2e-4
     assert pose.angle_rad(expected) < 1e-3
 

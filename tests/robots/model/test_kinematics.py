@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from engine.errors import CellError
 from robots.model.inverse_kinematics import pose_error
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array
 from tests.robots.panda_arm import BASE, configurations, home, panda_kinematics, panda_model
 
@@ -28,7 +28,7 @@ def test_the_tool_at_home_is_where_the_data_sheet_puts_it() -> None:
 @given(configurations())
 def test_a_turned_base_turns_the_tool_with_it(joints: Array) -> None:
     """The base pose is applied in the world."""
-    base = Rigid.of((0.55, 0.1, 0.2), (0.0, 0.0, math.sin(1.2), math.cos(1.2)))
+    base = RigidTransform.of((0.55, 0.1, 0.2), (0.0, 0.0, math.sin(1.2), math.cos(1.2)))
     turned = ArmKinematics(panda_model(), base=base).tool_pose(joints)
     expected = base.then(BASE.inverse().then(panda_kinematics().tool_pose(joints)))
     assert turned.distance_m(expected) < 1e-9
@@ -39,7 +39,7 @@ def test_a_turned_base_turns_the_tool_with_it(joints: Array) -> None:
 @given(configurations())
 def test_the_jacobian_predicts_small_motions_in_world_axes(joints: Array) -> None:
     """By differences, under a turned base."""
-    base = Rigid.of((0.55, 0.1, 0.2), (0.0, 0.0, math.sin(1.2), math.cos(1.2)))
+    base = RigidTransform.of((0.55, 0.1, 0.2), (0.0, 0.0, math.sin(1.2), math.cos(1.2)))
     kinematics = ArmKinematics(panda_model(), base=base)
     pose, jacobian = kinematics.tool_pose_and_jacobian(joints)
     for joint in range(7):

@@ -14,10 +14,10 @@ from engine.errors import CellError
 from robots.model.kinematics import ArmKinematics
 from robots.model.pinocchio_model import arm_model
 from robots.model.registry import ARMS_DIR, OWN_TOOL, model_by_name, robot_model, robot_names, tool_names
-from robots.model.rigid import Rigid
-from robots.sim.arm_spec import arm_spec
+from robots.model.transform import RigidTransform
+from robots.sim.physics.arm_spec import arm_spec
 
-ORIGIN = Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+ORIGIN = RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 
 def test_the_arms_and_tools_of_the_documents_are_there() -> None:
@@ -63,7 +63,7 @@ def test_without_a_tool_the_tool_centre_point_is_the_flange() -> None:
     bare, held = (ArmKinematics(robot_model("ur10", gripper=g), base=ORIGIN) for g in (None, "robotiq_2f85"))
     home = np.array(bare.model.home_rad)
     flange = bare.tool_pose(home)
-    expected = flange.then(Rigid.of((0.0, 0.0, 0.171), (0.0, 0.0, np.sin(np.pi / 4), np.cos(np.pi / 4))))
+    expected = flange.then(RigidTransform.of((0.0, 0.0, 0.171), (0.0, 0.0, np.sin(np.pi / 4), np.cos(np.pi / 4))))
     assert held.tool_pose(home).distance_m(expected) < 1e-9
     assert held.tool_pose(home).angle_rad(expected) < 1e-6
 

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from robots.model.kinematics import ArmKinematics
 from robots.model.registry import robot_model
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 
 ARM = robot_model("servo_arm")
-KINEMATICS = ArmKinematics(ARM, base=Rigid.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
+KINEMATICS = ArmKinematics(ARM, base=RigidTransform.of((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)))
 A1_M, A2_M = 0.275, 0.225
 
 

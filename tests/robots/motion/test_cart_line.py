@@ -13,9 +13,9 @@ from hypothesis.extra.numpy import arrays
 from scipy.interpolate import CubicSpline
 
 from engine.errors import RobotError
-from robots.model.rigid import Rigid, product, quaternion_of
+from robots.model.transform import RigidTransform, product, quaternion_of
 from robots.motion import plan_line
-from robots.motion.cart_line import splined
+from robots.motion.cart_line import spline_trajectory
 from robots.motion.min_jerk import min_jerk
 from robots.motion.slerp import slerp
 from robots.port import Array, JointTrajectory
@@ -26,10 +26,10 @@ vectors = st.tuples(st.floats(-0.35, 0.35), st.floats(-0.35, 0.35), st.floats(-0
 turns = st.tuples(st.floats(-0.8, 0.8), st.floats(-0.8, 0.8), st.floats(-0.8, 0.8)).map(np.array)
 
 
-def shifted(start: Array, move: Array, turn: Array) -> Rigid:
+def shifted(start: Array, move: Array, turn: Array) -> RigidTransform:
     """The tool pose at `start`, moved and turned."""
     pose = panda_kinematics().tool_pose(start)
-    return Rigid(xyz=pose.xyz + move, xyzw=product(quaternion_of(turn), pose.xyzw))
+    return RigidTransform(xyz=pose.xyz + move, xyzw=product(quaternion_of(turn), pose.xyzw))
 
 
 def plan(move: Array, turn: Array, *, duration_s: float) -> JointTrajectory:
@@ -58,7 +58,9 @@ def test_an_accepted_line_is_straight_in_time_and_within_every_limit(
     passed = (np.arange(intervals)[:, None] + np.linspace(0.0, 1.0, 3)).reshape(-1) / intervals
     for joints, share in zip(position[::5], min_jerk(passed)[::5], strict=True):
         pose = panda_kinematics().tool_pose(joints)
-        wanted = Rigid(xyz=start.xyz + share * (end.xyz - start.xyz), xyzw=slerp(start.xyzw, end.xyzw, float(share)))
+        wanted = RigidTransform(
+            xyz=start.xyz + share * (end.xyz - start.xyz), xyzw=slerp(start.xyzw, end.xyzw, float(share))
+        )
         assert pose.distance_m(wanted) < 0.0005
         assert pose.angle_rad(wanted) < 0.002
 
@@ -119,7 +121,9 @@ def test_half_a_turn_of_the_hand_is_followed() -> None:
 
 @pytest.mark.parametrize("duration_s", [0.0, -1.0, 1e308, math.nan, math.inf])
 def test_a_duration_that_is_no_time_is_refused(duration_s: float) -> None:
-    end = Rigid(xyz=panda_kinematics().tool_pose(home()).xyz + 0.01, xyzw=panda_kinematics().tool_pose(home()).xyzw)
+    end = RigidTransform(
+        xyz=panda_kinematics().tool_pose(home()).xyz + 0.01, xyzw=panda_kinematics().tool_pose(home()).xyzw
+    )
     with pytest.raises(RobotError, match="a line cannot take"):
         plan_line(panda_kinematics(), home(), end, duration_s=duration_s)
 
@@ -128,7 +132,7 @@ def test_a_duration_that_is_no_time_is_refused(duration_s: float) -> None:
 def test_the_velocity_at_the_knots_is_that_of_the_spline_which_is_flat_at_both_ends(
     knots: Array, duration_s: float
 ) -> None:
-    way = splined(knots, duration_s=duration_s)
+    way = spline_trajectory(knots, duration_s=duration_s)
     times = np.linspace(0.0, duration_s, len(knots))
     wanted = CubicSpline(times, knots, bc_type="clamped")(times, 1)
     np.testing.assert_allclose(way.velocity_rad_s, wanted, rtol=0, atol=1e-12 * len(knots) / duration_s)

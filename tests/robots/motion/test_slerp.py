@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.motion.slerp import slerp
 from robots.port import Array
 
@@ -23,7 +23,7 @@ quaternions = (
 
 def angle_rad(one: Array, other: Array) -> float:
     """Angle between two orientations."""
-    return Rigid(xyz=ORIGIN, xyzw=one).angle_rad(Rigid(xyz=ORIGIN, xyzw=other))
+    return RigidTransform(xyz=ORIGIN, xyzw=one).angle_rad(RigidTransform(xyz=ORIGIN, xyzw=other))
 
 
 @given(quaternions, quaternions, st.floats(0.0, 1.0))

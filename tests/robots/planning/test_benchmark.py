@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from benchmarks.planning import measure, peers, random_lines, table
-from benchmarks.planning_costs import other_costs, words
+from benchmarks.planning_costs import costs_table, other_costs
 from benchmarks.planning_scenes import cases
 
 
@@ -19,4 +19,4 @@ def test_a_small_run_has_a_line_for_every_planner_and_confirms_what_was_found() 
     assert [line.found for line in random_lines(2, ("fast",))] == [2]
     costs = other_costs(2)
     assert all(0.0 < p50 <= p95 for p50, p95 in costs.values())
-    assert all(f"| {what} |" in words(costs) for what in costs)
+    assert all(f"| {what} |" in costs_table(costs) for what in costs)

@@ -12,7 +12,7 @@ import pytest
 
 from benchmarks.planning import problem_lines
 from benchmarks.planning_problems import problem_sets
-from engine.shapes import Box, Cylinder, Sphere
+from engine.messages.shapes import Box, Cylinder, Sphere
 
 JOINTS = 7
 LINK = '<link name="{0}"><collision><geometry><box size="0.05 0.05 0.08"/></geometry></collision></link>'

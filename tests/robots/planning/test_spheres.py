@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
-from robots.model.rigid import Rigid
-from robots.planning.solids import convex_solid, to_frame
-from robots.planning.sphere_fit import LinkSolid, covering_spheres
+from engine.messages.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
+from robots.model.transform import RigidTransform
+from robots.planning.scene.convex_shapes import convex_solid, to_frame
+from robots.planning.search.sphere_fit import LinkSolid, covering_spheres
 
 sizes = st.floats(0.01, 0.4)
 
@@ -34,10 +34,10 @@ def shapes(draw: st.DrawFn) -> Shape:
 
 
 @st.composite
-def places(draw: st.DrawFn) -> Rigid:
+def places(draw: st.DrawFn) -> RigidTransform:
     """Return a pose nearby."""
     xyz = [draw(st.floats(-0.2, 0.2)) for _ in range(3)]
-    return Rigid.of(xyz, [draw(st.floats(0.1, 1.0)) for _ in range(4)])
+    return RigidTransform.of(xyz, [draw(st.floats(0.1, 1.0)) for _ in range(4)])
 
 
 @pytest.fixture(autouse=True)
@@ -49,7 +49,9 @@ def cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPa
 
 @settings(deadline=None, max_examples=12)
 @given(shape=shapes(), pose=places())
-def test_every_point_of_a_solid_is_in_a_sphere_and_no_sphere_reaches_far_beyond(shape: Shape, pose: Rigid) -> None:
+def test_every_point_of_a_solid_is_in_a_sphere_and_no_sphere_reaches_far_beyond(
+    shape: Shape, pose: RigidTransform
+) -> None:
     spheres = covering_spheres([LinkSolid(shape=shape, pose=pose)])
     solid = convex_solid(shape)
     points = to_frame(pose, solid.surface(0.01))
@@ -73,7 +75,7 @@ def test_the_surface_is_where_the_depth_is_zero(shape: Shape) -> None:
 
 
 def test_spheres_are_kept_and_a_damaged_file_is_made_again(cache: Path) -> None:
-    solids = [LinkSolid(shape=Box(size_m=(0.1, 0.2, 0.3)), pose=Rigid.of((0, 0, 0), (0, 0, 0, 1)))]
+    solids = [LinkSolid(shape=Box(size_m=(0.1, 0.2, 0.3)), pose=RigidTransform.of((0, 0, 0), (0, 0, 0, 1)))]
     first = covering_spheres(solids)
     (file,) = (cache / "flexcell" / "spheres").iterdir()
     changed = file.stat().st_mtime_ns

@@ -65,7 +65,7 @@ def test_the_heartbeat_of_a_process_is_read_by_another_that_knows_its_number_onl
     written = Heartbeat(descriptor)
     written.beat_engine()
     written.beat_control()
-    written.tell_rest(7)
+    written.report_at_rest(7)
     # This very process stands for the other one: what is opened is found through the system, not passed on.
     read = Heartbeat.of_process(os.getpid())
     assert (read.engine_count, read.control_count, read.at_rest_since_ns) == (1, 1, 7)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from engine.stop import StopLine, StopNotice
-from engine.stop.messages import StopRelease, encoded
+from engine.stop.relay_messages import StopRelease, encode_message
 from robots.port.stop_monitor import StopMonitor
 
 
@@ -36,10 +36,10 @@ def test_it_brakes_in_every_period_until_it_is_released(wire: tuple[socket.socke
     devices = _Devices()
     monitor = StopMonitor(StopLine(ours), devices)
     monitor.look()
-    theirs.send(encoded(StopNotice(stop=1, reason="the door is open", source="http")))
+    theirs.send(encode_message(StopNotice(stop=1, reason="the door is open", source="http")))
     monitor.look()
     monitor.look()
-    theirs.send(encoded(StopRelease(stop=1)))
+    theirs.send(encode_message(StopRelease(stop=1)))
     monitor.look()
     assert devices.causes == ["STOP: the door is open"] * 2
 
@@ -48,7 +48,7 @@ def test_rest_is_told_when_it_is_measured(wire: tuple[socket.socket, socket.sock
     ours, theirs = wire
     devices = _Devices()
     monitor = StopMonitor(StopLine(ours), devices)
-    theirs.send(encoded(StopNotice(stop=1, reason="test", source="http")))
+    theirs.send(encode_message(StopNotice(stop=1, reason="test", source="http")))
     monitor.look()
     assert b'"at_rest":true' not in theirs.recv(4096)
     devices.at_rest = True

@@ -8,7 +8,7 @@ from pathlib import Path
 from shutil import copy
 
 from engine.bus import GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.messages import JointState, PartPoses, Pose
 from engine.skills.gripper import GripperGrasp

@@ -14,8 +14,8 @@ from engine.clock import VirtualLoop
 from engine.messages import Pose, Vector3
 from robots.model.registry import model_by_name
 from robots.port import ArmPort, Array, JointTrajectory, MotionEnd, MotionReport, Tolerance
-from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
-from robots.sim.world import SimWorld, new_world
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.sim.world.sim_world import SimWorld, new_world
 from tests.tiers import nightly
 
 _LOCKSTEP = pytest.param("lockstep", marks=pytest.mark.virtual)
@@ -46,23 +46,23 @@ def box(name: str, xyz: Vector3 = PART_XYZ, *, mass_kg: float = 0.12) -> PartBod
 PATIENT_S = 20.0
 
 
-def one_arm(*parts: PartBody) -> Scene:
+def one_arm(*parts: PartBody) -> SimScene:
     """Return the left arm at a table with these parts."""
     return _patient(LEFT, parts=parts)
 
 
-def two_arms(*parts: PartBody) -> Scene:
+def two_arms(*parts: PartBody) -> SimScene:
     """Return both arms at a table with these parts."""
     return _patient(LEFT, RIGHT, parts=parts)
 
 
-def watched(scene: Scene, *, silence_s: float = 1.0) -> Scene:
+def watched(scene: SimScene, *, silence_s: float = 1.0) -> SimScene:
     """Return a scene in which engine and world act on each other's silence that soon."""
     return msgspec.structs.replace(scene, engine_silence_s=silence_s, world_silence_s=silence_s)
 
 
-def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> Scene:
-    return Scene(arms=arms, fixtures=(TABLE,), parts=parts, engine_silence_s=PATIENT_S, world_silence_s=PATIENT_S)
+def _patient(*arms: ArmPlacement, parts: tuple[PartBody, ...]) -> SimScene:
+    return SimScene(arms=arms, fixtures=(TABLE,), parts=parts, engine_silence_s=PATIENT_S, world_silence_s=PATIENT_S)
 
 
 def smooth(start: Array, goal: Array, duration_s: float) -> JointTrajectory:
@@ -107,7 +107,7 @@ async def until(condition: Callable[[], bool], *, within_s: float = 30.0) -> Non
 
 
 @asynccontextmanager
-async def opened(scene: Scene) -> AsyncGenerator[SimWorld]:
+async def opened(scene: SimScene) -> AsyncGenerator[SimWorld]:
     """Open a world in lockstep on a virtual loop, in its own process on a real one."""
     virtual = isinstance(asyncio.get_running_loop(), VirtualLoop)
     async with new_world(scene, virtual=virtual) as world:

@@ -9,11 +9,11 @@ import numpy as np
 from engine.messages import Vector3
 from robots.control.motion_event import AnyMotionEvent, MotionFinished
 from robots.port import ArmSample, ArmSettings, Array, Tolerance
-from robots.sim.arm_commands import Configure, Follow
-from robots.sim.cell_model import CellModel
-from robots.sim.commands import AnyCommand, Push
-from robots.sim.simulation import Simulation
-from robots.sim.snapshot import Snapshot
+from robots.sim.commands.arm_commands import ConfigureArm, FollowTrajectory
+from robots.sim.commands.world_commands import AnyCommand, PushSimBody
+from robots.sim.loop.simulation import Simulation
+from robots.sim.loop.snapshot import SimSnapshot
+from robots.sim.physics.cell_model import CellModel
 from tests.robots.sim.sim_cell import smooth
 
 TOOL = "left/panda_hand_tcp"
@@ -31,7 +31,7 @@ class SteppedArm:
 
     def configure(self, settings: ArmSettings) -> None:
         """Put these settings into force."""
-        self.apply(Configure(arm="left", settings=settings))
+        self.apply(ConfigureArm(arm="left", settings=settings))
 
     def apply(self, command: AnyCommand) -> None:
         """Give a command."""
@@ -39,19 +39,19 @@ class SteppedArm:
 
     def push(self, force_n: Vector3, duration_s: float, *, body: str = TOOL, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Push at a body."""
-        self.apply(Push(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+        self.apply(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
 
     def follow(self, goal: Array, duration_s: float, *, motion: int = 1) -> None:
         """Start a minimum-jerk motion from the set point."""
         way = smooth(self.sample.desired_rad.copy(), goal, duration_s)
-        self.apply(Follow.of("left", motion, way, Tolerance()))
+        self.apply(FollowTrajectory.of("left", motion, way, Tolerance()))
 
     @property
     def sample(self) -> ArmSample:
         """What is measured now."""
         values = self.simulation.layout.new_array()
         self.simulation.write_snapshot(values)
-        return Snapshot(self.simulation.layout, values).arm("left")
+        return SimSnapshot(self.simulation.layout, values).arm("left")
 
     @property
     def tool_xyz(self) -> Array:

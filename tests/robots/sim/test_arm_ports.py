@@ -9,8 +9,8 @@ import pytest
 from msgspec.structs import replace
 
 from engine.errors import RobotError
-from robots.port import ArmSettings, Contact, ForceRecord, ForceTask, MotionEnd, Tolerance
-from robots.sim.world import SimWorld
+from robots.port import ArmSettings, ContactCondition, ForceRecord, ForceTask, MotionEnd, Tolerance
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, both_hosts_nightly, move, one_arm, opened, smooth, until
 
 TOOL = "left/panda_hand_tcp"
@@ -27,7 +27,7 @@ async def test_a_guarded_motion_ends_at_the_table(host: str) -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
         await move(arm, ABOVE_PART, 1.2)
-        until_ = Contact(force_n=10.0, direction=(0.0, 0.0, 1.0))
+        until_ = ContactCondition(force_n=10.0, direction=(0.0, 0.0, 1.0))
         motion = arm.follow(smooth(ABOVE_PART, DOWN_TO_THE_TABLE, 4.0), tolerance=Tolerance(), until=until_)
         report = await motion.report()
         assert (report.end, report.contact) == (MotionEnd.REACHED, True)
@@ -39,7 +39,7 @@ async def test_a_guarded_motion_ends_at_the_table(host: str) -> None:
 async def test_a_guarded_motion_that_meets_nothing_ends_at_its_goal() -> None:
     async with opened(one_arm()) as world:
         arm = world.arm("left")
-        motion = arm.follow(smooth(HOME, ABOVE_PART, 1.0), tolerance=Tolerance(), until=Contact(force_n=5.0))
+        motion = arm.follow(smooth(HOME, ABOVE_PART, 1.0), tolerance=Tolerance(), until=ContactCondition(force_n=5.0))
         report = await motion.report()
         assert (report.end, report.contact) == (MotionEnd.REACHED, False)
         assert off_rad(world, ABOVE_PART) < 0.005
@@ -235,9 +235,9 @@ async def test_senseless_requests_are_refused_in_words() -> None:
         arm = world.arm("left")
         way = smooth(HOME, HOME + 0.1, 0.3)
         with pytest.raises(RobotError, match="a contact cannot be 0"):
-            arm.follow(way, tolerance=Tolerance(), until=Contact(force_n=0.0))
+            arm.follow(way, tolerance=Tolerance(), until=ContactCondition(force_n=0.0))
         with pytest.raises(RobotError, match="is no direction"):
-            arm.follow(way, tolerance=Tolerance(), until=Contact(force_n=1.0, direction=(0.0, 0.0, 5.0)))
+            arm.follow(way, tolerance=Tolerance(), until=ContactCondition(force_n=1.0, direction=(0.0, 0.0, 5.0)))
         with pytest.raises(RobotError, match="watchdog_s cannot be 0"):
             arm.stream("joint_position", watchdog_s=0.0)
         with pytest.raises(RobotError, match=r"damping cannot be 1\.5"):

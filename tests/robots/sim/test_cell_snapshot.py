@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from engine.bus import GoalStatus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.errors import CellError, RobotError
 from engine.skills.gripper import GripperOpen, ReadGripper
 from tests.robots.sim.demo_cell import LIFT, joint_state, opened_cell, part_height_m, pick, speed_rad_s

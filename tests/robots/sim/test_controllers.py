@@ -7,12 +7,12 @@ import pytest
 from msgspec.structs import replace
 
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.motion import plan_line
 from robots.port import ArmSettings, Tolerance
-from robots.sim.arm_commands import Finish, Float, Follow
-from robots.sim.cell_model import CellModel, build_cell
-from robots.sim.scene import Scene
+from robots.sim.commands.arm_commands import FinishStream, FollowTrajectory, StartGuiding
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim.sim_cell import ABOVE_PART, HOME, LEFT, LIFTED, PANDA, one_arm
 from tests.robots.sim.stepped import BumpWatch, SteppedArm
 from tests.tiers import nightly
@@ -96,12 +96,12 @@ def test_a_nudged_elbow_comes_back_and_the_tool_stays(cell: CellModel) -> None:
 @BOTH
 def test_a_line_is_followed_within_half_a_millimetre(cell: CellModel, settings: ArmSettings) -> None:
     """With nominal gains, 0.3 m in 1.5 s: what is measured lies on the line."""
-    kinematics = ArmKinematics(PANDA, base=Rigid.from_pose(LEFT.base))
+    kinematics = ArmKinematics(PANDA, base=RigidTransform.from_pose(LEFT.base))
     start = kinematics.tool_pose(HOME)
-    goal = Rigid(xyz=start.xyz + np.array([0.1, 0.25, -0.13]), xyzw=start.xyzw)
+    goal = RigidTransform(xyz=start.xyz + np.array([0.1, 0.25, -0.13]), xyzw=start.xyzw)
     arm = SteppedArm(cell, settings)
     line = plan_line(kinematics.twin(), HOME, goal, duration_s=1.5)
-    arm.apply(Follow.of("left", 1, line, Tolerance()))
+    arm.apply(FollowTrajectory.of("left", 1, line, Tolerance()))
     along = (goal.xyz - start.xyz) / np.linalg.norm(goal.xyz - start.xyz)
     worst = 0.0
 
@@ -177,12 +177,12 @@ def test_a_switch_in_motion_is_no_bump_and_the_goal_is_reached(cell: CellModel, 
 def test_a_guided_arm_holds_where_it_is_left_without_a_bump(cell: CellModel) -> None:
     arm = SteppedArm(cell)
     arm.run(0.05)
-    arm.apply(Float(arm="left", motion=1, damping=0.1))
+    arm.apply(StartGuiding(arm="left", motion=1, damping=0.1))
     assert BumpWatch(arm, 0.2).torque_step_nm < 0.01
     arm.push((0.0, 10.0, 0.0), 0.5)
     arm.run(3.0)
     led = arm.tool_xyz
-    arm.apply(Finish(arm="left", motion=1))
+    arm.apply(FinishStream(arm="left", motion=1))
     watch = BumpWatch(arm, 0.5)
     assert (arm.until_finished().end, watch.torque_step_nm < 1.0, watch.moved_m < 0.003) == ("reached", True, True)
     assert np.linalg.norm(led - arm.control.state.kinematics.tool_pose(HOME).xyz) > 0.05
@@ -194,7 +194,7 @@ def test_a_guided_arm_holds_where_it_is_left_without_a_bump(cell: CellModel) -> 
 @BOTH
 def test_every_arm_holds_still_and_comes_back_from_a_push(model: str, settings: ArmSettings) -> None:
     """At a step of 2 ms as well."""
-    cell = build_cell(Scene(arms=(replace(LEFT, model=model),), step_s=0.002))
+    cell = build_cell(SimScene(arms=(replace(LEFT, model=model),), step_s=0.002))
     arm = SteppedArm(cell, settings)
     before = arm.sample.position_rad.copy()
     arm.run(0.2)

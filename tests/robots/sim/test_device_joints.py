@@ -11,16 +11,16 @@ from engine.bus import SkillBus
 from engine.clock import new_clock
 from engine.messages import JointState, Pose
 from robots.port import Tolerance
-from robots.sim.scene import ArmPlacement, Scene
+from robots.sim.scene.sim_scene import ArmPlacement, SimScene
 from tests.robots.sim.sim_cell import opened, smooth
 
 
-def one(model: str, *, coupled_joints: bool = False) -> Scene:
+def one(model: str, *, coupled_joints: bool = False) -> SimScene:
     """A cell with one arm."""
     placement = ArmPlacement(
         name="arm", model=model, gripper=None, base=Pose(xyz=(0.0, 0.0, 0.0)), coupled_joints=coupled_joints
     )
-    return Scene(arms=(placement,))
+    return SimScene(arms=(placement,))
 
 
 @pytest.mark.virtual

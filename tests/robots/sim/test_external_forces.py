@@ -7,7 +7,7 @@ import pytest
 
 from engine.messages import Vector3
 from robots.port import ArmSettings
-from robots.sim.cell_model import CellModel, build_cell
+from robots.sim.physics.cell_model import CellModel, build_cell
 from tests.robots.sim.sim_cell import ABOVE_PART, one_arm
 from tests.robots.sim.stepped import SteppedArm
 

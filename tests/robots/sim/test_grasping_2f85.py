@@ -7,9 +7,9 @@ import asyncio
 import pytest
 
 from engine.messages import Pose, Quaternion, Vector3
-from robots.gripper import Grip, judge
+from robots.gripper import GraspCommand, check_grasp
 from robots.port import GripperSample, MotionEnd, MotionReport
-from robots.sim.scene import PartBody, Scene
+from robots.sim.scene.sim_scene import PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 TABLE = block("table", (0.8, 0.0, 0.1), (0.8, 0.8))
@@ -18,7 +18,7 @@ PART: Vector3 = (0.7, 0.1, 0.13)
 GRASP: Quaternion = (0.70710678, -0.70710678, 0.0, 0.0)
 
 
-def cell(size_m: Vector3 = (0.06, 0.05, 0.06), *, mass_kg: float = 0.5) -> Scene:
+def cell(size_m: Vector3 = (0.06, 0.05, 0.06), *, mass_kg: float = 0.5) -> SimScene:
     """A box on a table."""
     pose = Pose(xyz=(PART[0], PART[1], 0.1 + size_m[2] / 2))
     return scene(
@@ -96,7 +96,7 @@ async def test_without_a_part_the_fingers_close_on_nothing_and_the_judgement_say
     async with reaching(scene("ur10", "robotiq_2f85", fixtures=(TABLE,))) as reach:
         await reach_for(reach)
         assert (await close(reach, force_n=60.0)).end is MotionEnd.REACHED
-        reason = judge(gripped(reach), Grip(least_m=0.05, most_m=0.07, force_n=60.0))
+        reason = check_grasp(gripped(reach), GraspCommand(least_m=0.05, most_m=0.07, force_n=60.0))
         assert reason == "fingers closed to 0.0 mm and touch nothing"
 
 
@@ -106,12 +106,12 @@ async def test_a_heavy_part_held_too_weakly_slips_out_and_is_noticed() -> None:
         start, _ = reach.part("part")
         await reach_for(reach)
         await close(reach, force_n=20.0)
-        grip = Grip(least_m=0.05, most_m=0.07, force_n=20.0)
-        assert judge(gripped(reach), grip) == ""
+        grip = GraspCommand(least_m=0.05, most_m=0.07, force_n=20.0)
+        assert check_grasp(gripped(reach), grip) == ""
         await lift(reach)
         await asyncio.sleep(1.0)
         assert reach.part("part")[0][2] < start[2] + 0.02
-        assert judge(gripped(reach), grip) != ""
+        assert check_grasp(gripped(reach), grip) != ""
 
 
 @pytest.mark.virtual

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from engine.messages import Pose
-from robots.gripper import Grip, judge
+from robots.gripper import GraspCommand, check_grasp
 from robots.port import GripperSample, MotionEnd, MotionReport
-from robots.sim.scene import FixtureBody, PartBody
+from robots.sim.scene.sim_scene import FixtureBody, PartBody
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 # The elbow swings the claw down over what stands in front of the arm, where the base joint points.
@@ -90,7 +90,7 @@ async def test_the_test_cylinder_is_pulled_out_of_its_rack_and_held() -> None:
         start, _ = reach.part("tube")
         await reach_for(reach)
         await close(reach)
-        assert judge(gripped(reach), Grip(least_m=0.008, most_m=0.012, force_n=3.0)) == ""
+        assert check_grasp(gripped(reach), GraspCommand(least_m=0.008, most_m=0.012, force_n=3.0)) == ""
         await swing(reach, AT_RAD + 0.46)
         await asyncio.sleep(2.0)
         assert reach.part("tube")[0][2] > start[2] + 0.09
@@ -102,7 +102,7 @@ async def test_without_a_tube_the_claw_closes_on_nothing_and_the_judgement_says_
     async with reaching(scene("servo_arm", "servo_claw")) as reach:
         await swing(reach, AT_RAD)
         await close(reach)
-        reason = judge(gripped(reach), Grip(least_m=0.008, most_m=0.012, force_n=3.0))
+        reason = check_grasp(gripped(reach), GraspCommand(least_m=0.008, most_m=0.012, force_n=3.0))
         assert "touch nothing" in reason
 
 

@@ -7,16 +7,16 @@ import asyncio
 import pytest
 
 from engine.messages import Pose, Vector3
-from robots.gripper import judge_magnet
+from robots.gripper import check_magnet_grasp
 from robots.port import MagnetSample, MotionEnd
-from robots.sim.scene import PartBody, Scene
+from robots.sim.scene.sim_scene import PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 
 PEDESTAL = block("pedestal", (1.4, 0.2, 0.5), (0.4, 0.4))
 TOP_M = 0.51
 
 
-def cell(*, mass_kg: float = 5.0, magnetic: bool = True, size_m: Vector3 = (0.3, 0.2, 0.01)) -> Scene:
+def cell(*, mass_kg: float = 5.0, magnetic: bool = True, size_m: Vector3 = (0.3, 0.2, 0.01)) -> SimScene:
     """A plate on a pedestal, its top at `TOP_M`."""
     pose = Pose(xyz=(1.4, 0.2, 0.5 + size_m[2] / 2))
     plate = PartBody(name="plate", shape="box", size_m=size_m, mass_kg=mass_kg, magnetic=magnetic, pose=pose)
@@ -39,7 +39,7 @@ def measured(reach: Reach) -> MagnetSample:
 
 def why_not(reach: Reach) -> str:
     magnet = reach.world.magnet(ARM)
-    return judge_magnet(magnet.sample(), max_force_n=magnet.max_force_n)
+    return check_magnet_grasp(magnet.sample(), max_force_n=magnet.max_force_n)
 
 
 @pytest.mark.virtual

@@ -9,9 +9,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine.messages import Pose, Quaternion
-from robots.gripper import Holding, judge_hand
+from robots.gripper import HandGrasp, check_hand_grasp
 from robots.port import Array, HandSample, MotionEnd, MotionReport
-from robots.sim.scene import FixtureBody, PartBody, Scene
+from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
 from tests.robots.sim.tool_cell import ARM, Reach, block, reaching, scene, slip_while_held
 from tests.tiers import nightly
 
@@ -36,7 +36,7 @@ CUP = FixtureBody(
 )
 
 
-def cell(part: PartBody) -> Scene:
+def cell(part: PartBody) -> SimScene:
     """A part on a narrow pedestal, the ball in a cup."""
     if part.shape == "sphere":
         return scene("panda", "softhand", parts=(part,), fixtures=(CUP,))
@@ -70,9 +70,9 @@ def measured(reach: Reach) -> HandSample:
     return reach.world.hand(ARM).sample()
 
 
-def held(reach: Reach) -> Holding:
+def held(reach: Reach) -> HandGrasp:
     hand = reach.world.hand(ARM)
-    return judge_hand(hand.sample(), max_force_n=hand.max_force_n)
+    return check_hand_grasp(hand.sample(), max_force_n=hand.max_force_n)
 
 
 @pytest.mark.virtual
@@ -82,13 +82,13 @@ async def test_a_part_is_lifted_and_held_at_seventy_percent(shape: str) -> None:
     async with reaching(cell(part)) as reach:
         await reach_for(reach, part)
         assert (await close(reach, 0.7)).end is MotionEnd.REACHED
-        assert held(reach) == Holding(part="part")
+        assert held(reach) == HandGrasp(part="part")
         low, _ = reach.part("part")
         await go(reach, around(part) + np.array([0.0, 0.0, 0.11]))
         slip_m, _ = await slip_while_held(reach, "part")
         assert slip_m < 0.003
         assert reach.part("part")[0][2] > low[2] + 0.09
-        assert held(reach) == Holding(part="part")
+        assert held(reach) == HandGrasp(part="part")
 
 
 @pytest.mark.virtual
@@ -119,7 +119,7 @@ async def test_a_cylinder_is_placed_upright_within_ten_millimetres() -> None:
         xyz, turn = reach.part("part")
         assert float(np.linalg.norm(xyz - start)) < 0.01
         assert turn.as_matrix()[2, 2] > 0.999
-        assert held(reach) == Holding(reason="the hand is open")
+        assert held(reach) == HandGrasp(reason="the hand is open")
 
 
 @pytest.mark.virtual
@@ -129,7 +129,7 @@ async def test_a_hand_that_closes_on_nothing_says_so_and_takes_the_time_it_was_g
         assert (await close(reach, 0.7, time_s=2.0)).end is MotionEnd.REACHED
         assert reach.world.measured().time_s - start_s == pytest.approx(2.0, abs=0.3)
         assert measured(reach).closed_share == pytest.approx(0.7)
-        assert held(reach) == Holding(reason="the hand closed to 70 % and touches nothing")
+        assert held(reach) == HandGrasp(reason="the hand closed to 70 % and touches nothing")
 
 
 @pytest.mark.virtual
@@ -169,5 +169,5 @@ async def test_a_restored_hand_holds_on_to_its_part() -> None:
     async with reaching(cell(CYLINDER)) as reach:
         await reach.world.restore(snapshot)
         await asyncio.sleep(1.0)
-        assert held(reach) == Holding(part="part")
+        assert held(reach) == HandGrasp(part="part")
         assert reach.strayed_m("part", before) < 0.003

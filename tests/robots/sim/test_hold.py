@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from robots.port import MotionEnd, Tolerance
-from robots.sim.motion_board import SimMotion
-from robots.sim.world import SimWorld
+from robots.sim.ports.motion_registry import SimMotion
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, both_hosts_nightly, one_arm, opened, smooth, unhurried, until
 from tests.tiers import nightly
 

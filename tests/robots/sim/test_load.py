@@ -9,14 +9,14 @@ import pytest
 
 from engine.messages import Vector3
 from robots.port import ArmSettings, ControllerName, MotionEnd, Tolerance
-from robots.sim.cell_model import CellModel, build_cell
-from robots.sim.scene import Scene
-from robots.sim.world import SimWorld
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.scene.sim_scene import SimScene
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import LIFTED, box, grasp, move, one_arm, opened, smooth
 from tests.robots.sim.stepped import SteppedArm
 
 WEIGHT_N = (0.0, 0.0, -2.0 * 9.81)
-HEAVY: Scene = one_arm(box("part", mass_kg=2.0))
+HEAVY: SimScene = one_arm(box("part", mass_kg=2.0))
 
 
 @pytest.fixture(scope="module", name="cell")

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import msgspec
 import pytest
 
-from engine.child_process import start_child
+from engine.host.child_process import start_child
+from robots.io.framing import FrameReader, frame_message
 from robots.port import Tolerance
 from robots.port.heartbeat import Heartbeat, new_heartbeat_file
 from robots.port.shared_file import new_shared_file
-from robots.sim.arm_commands import Follow
-from robots.sim.framing import FrameReader, framed
-from robots.sim.world_report import AnyReport, WorldReady
+from robots.sim.commands.arm_commands import FollowTrajectory
+from robots.sim.host.world_report import AnyReport, WorldReady
 from tests.robots.sim.sim_cell import HOME, one_arm, smooth
 
 _PATIENCE_S = 60.0
@@ -35,8 +35,8 @@ class World:
 
     def move(self) -> None:
         """Begin a long motion and return when the arm moves."""
-        follow = Follow.of("left", 1, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
-        self.connection.sendall(framed(msgspec.msgpack.encode(follow)))
+        follow = FollowTrajectory.of("left", 1, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
+        self.connection.sendall(frame_message(msgspec.msgpack.encode(follow)))
         self.until(moves=True)
 
     def until(self, *, moves: bool) -> None:
@@ -52,12 +52,12 @@ def moving_world() -> Generator[World]:
     """Start the process as its parent does, and a motion."""
     ours, theirs = socket.socketpair()
     files = (new_shared_file("state"), new_shared_file("timing"), new_heartbeat_file())
-    code = "from robots.sim.process_main import main; main()"
+    code = "from robots.sim.host.process_main import main; main()"
     process = start_child(code, (theirs.fileno(), *files), what="the world's process")
     theirs.close()
     try:
         world = World(process, ours, Heartbeat(files[-1]))
-        ours.sendall(framed(msgspec.msgpack.encode(one_arm())))
+        ours.sendall(frame_message(msgspec.msgpack.encode(one_arm())))
         [ready] = FrameReader().feed(ours.recv(1 << 16))
         assert isinstance(msgspec.msgpack.decode(ready, type=AnyReport), WorldReady)
         world.move()
@@ -74,8 +74,8 @@ def test_a_parent_that_dies_with_messages_unread_leaves_nothing_moving() -> None
     """The system then resets the connection, which is no ordinary end."""
     with moving_world() as world:
         # The refusal of a second motion stays unread.
-        follow = Follow.of("left", 2, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
-        world.connection.sendall(framed(msgspec.msgpack.encode(follow)))
+        follow = FollowTrajectory.of("left", 2, smooth(HOME, HOME + 1.0, 10.0), Tolerance(), None)
+        world.connection.sendall(frame_message(msgspec.msgpack.encode(follow)))
         while not world.connection.recv(1, socket.MSG_PEEK):
             os.sched_yield()
         world.connection.close()
@@ -87,9 +87,9 @@ def test_a_parent_that_dies_with_messages_unread_leaves_nothing_moving() -> None
     "nonsense",
     [
         pytest.param(b"\xff" * 64, id="length"),
-        pytest.param(framed(msgspec.msgpack.encode({"command": "fly"})), id="unknown"),
-        pytest.param(framed(b"\xc1"), id="no message", marks=pytest.mark.nightly),
-        pytest.param(framed(b""), id="empty", marks=pytest.mark.nightly),
+        pytest.param(frame_message(msgspec.msgpack.encode({"command": "fly"})), id="unknown"),
+        pytest.param(frame_message(b"\xc1"), id="no message", marks=pytest.mark.nightly),
+        pytest.param(frame_message(b""), id="empty", marks=pytest.mark.nightly),
         pytest.param(b"\x00" * 4096, id="zeros", marks=pytest.mark.nightly),
     ],
 )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document.cell import load_cell
 from engine.errors import CellError, FlexcellError

@@ -11,15 +11,24 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from robots.control.arm_control import ArmControl
+from robots.control.arm_control_loop import ArmControlLoop
 from robots.control.motion_event import MotionFinished, MotionHeld
 from robots.motion import plan_joints
-from robots.port import Admittance, ArmSettings, Array, Contact, ForceTask, JointTrajectory, Tolerance
-from robots.sim.arm_commands import Configure, Finish, Float, Follow, Listen, Recover, Tell, TrackForce
-from robots.sim.cell_model import CellModel, build_cell
-from robots.sim.commands import Cancel, Hold, Push
-from robots.sim.scene import Scene
-from robots.sim.simulation import Simulation
+from robots.port import Admittance, ArmSettings, Array, ContactCondition, ForceTask, JointTrajectory, Tolerance
+from robots.sim.commands.arm_commands import (
+    ConfigureArm,
+    FinishStream,
+    FollowTrajectory,
+    RecoverArm,
+    Setpoint,
+    StartGuiding,
+    StartStream,
+    TrackForce,
+)
+from robots.sim.commands.world_commands import CancelMotion, HoldMotion, PushSimBody
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import CellModel, build_cell
+from robots.sim.scene.sim_scene import SimScene
 from tests.robots.sim.sim_cell import HOME, LEFT, PANDA
 
 TRIALS = 30
@@ -33,7 +42,7 @@ JERK = np.array(LIMITS.jerk_rad_s3)
 
 @pytest.fixture(scope="module", name="cell")
 def _cell() -> CellModel:
-    return build_cell(Scene(arms=(LEFT,)))
+    return build_cell(SimScene(arms=(LEFT,)))
 
 
 class WatchedArm:
@@ -41,7 +50,7 @@ class WatchedArm:
 
     def __init__(self, cell: CellModel, *, jerk: bool) -> None:
         self.simulation = Simulation(cell)
-        self.control: ArmControl = self.simulation.control("left")
+        self.control: ArmControlLoop = self.simulation.control("left")
         self.number = 0
         self.ends: list[MotionFinished] = []
         self.held = False
@@ -90,15 +99,15 @@ def way(arm: WatchedArm, random_: random.Random, *, speed: float = 1.0) -> Joint
 
 
 def follow(arm: WatchedArm, random_: random.Random) -> None:
-    arm.simulation.apply(Follow.of("left", arm.next_number(), way(arm, random_), Tolerance()))
+    arm.simulation.apply(FollowTrajectory.of("left", arm.next_number(), way(arm, random_), Tolerance()))
 
 
 def guarded(arm: WatchedArm, random_: random.Random) -> None:
     """Every other one meets something."""
-    contact = Contact(force_n=5.0)
-    arm.simulation.apply(Follow.of("left", arm.next_number(), way(arm, random_), Tolerance(), contact))
+    contact = ContactCondition(force_n=5.0)
+    arm.simulation.apply(FollowTrajectory.of("left", arm.next_number(), way(arm, random_), Tolerance(), contact))
     if random_.random() < 0.5:
-        arm.simulation.apply(Push(body="left/panda_hand", force_n=(0.0, 8.0, 0.0), duration_s=0.05))
+        arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=(0.0, 8.0, 0.0), duration_s=0.05))
 
 
 def track_force(arm: WatchedArm, random_: random.Random) -> None:
@@ -109,38 +118,40 @@ def track_force(arm: WatchedArm, random_: random.Random) -> None:
         trajectory=trajectory, offset=np.zeros((samples, 6)), wrench=np.zeros((samples, 6)), admittance=Admittance()
     )
     arm.simulation.apply(TrackForce.of("left", arm.next_number(), task, Tolerance()))
-    arm.simulation.apply(Push(body="left/panda_hand", force_n=(0.0, 0.0, random_.uniform(-10, 10)), duration_s=0.2))
+    arm.simulation.apply(
+        PushSimBody(body="left/panda_hand", force_n=(0.0, 0.0, random_.uniform(-10, 10)), duration_s=0.2)
+    )
 
 
 def stream(arm: WatchedArm, random_: random.Random) -> None:
     """One far target."""
     number = arm.next_number()
     goal = HOME + np.array([random_.uniform(-0.6, 0.6) for _ in range(7)])
-    arm.simulation.apply(Listen(arm="left", motion=number, kind="joint_position", watchdog_s=0.5))
-    arm.simulation.apply(Tell(arm="left", motion=number, values=tuple(goal.tolist())))
+    arm.simulation.apply(StartStream(arm="left", motion=number, kind="joint_position", watchdog_s=0.5))
+    arm.simulation.apply(Setpoint(arm="left", motion=number, values=tuple(goal.tolist())))
 
 
 def jog(arm: WatchedArm, random_: random.Random) -> None:
     """All joints, as fast as they may at most."""
     number = arm.next_number()
     speed = tuple(float(random_.uniform(-1.0, 1.0) * limit) for limit in VELOCITY)
-    arm.simulation.apply(Listen(arm="left", motion=number, kind="joint_velocity", watchdog_s=0.5))
-    arm.simulation.apply(Tell(arm="left", motion=number, values=speed))
+    arm.simulation.apply(StartStream(arm="left", motion=number, kind="joint_velocity", watchdog_s=0.5))
+    arm.simulation.apply(Setpoint(arm="left", motion=number, values=speed))
 
 
 def twist(arm: WatchedArm, random_: random.Random) -> None:
     """The tool in any direction."""
     number = arm.next_number()
     values = tuple(random_.uniform(-0.3, 0.3) for _ in range(6))
-    arm.simulation.apply(Listen(arm="left", motion=number, kind="tool_twist", watchdog_s=0.5))
-    arm.simulation.apply(Tell(arm="left", motion=number, values=values))
+    arm.simulation.apply(StartStream(arm="left", motion=number, kind="tool_twist", watchdog_s=0.5))
+    arm.simulation.apply(Setpoint(arm="left", motion=number, values=values))
 
 
 def guide(arm: WatchedArm, random_: random.Random) -> None:
     """Pushed by a hand."""
     force = (random_.uniform(-8, 8), random_.uniform(-8, 8), random_.uniform(-4, 4))
-    arm.simulation.apply(Float(arm="left", motion=arm.next_number(), damping=0.1))
-    arm.simulation.apply(Push(body="left/panda_hand", force_n=force, duration_s=0.15))
+    arm.simulation.apply(StartGuiding(arm="left", motion=arm.next_number(), damping=0.1))
+    arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=force, duration_s=0.15))
 
 
 Start = Callable[[WatchedArm, random.Random], None]
@@ -150,15 +161,15 @@ def stop(arm: WatchedArm, random_: random.Random) -> None:
     """Cancel, hold and then cancel, or finish what can be finished."""
     match random_.randrange(3):
         case 0:
-            arm.simulation.apply(Hold(motion=arm.number, request=1))
+            arm.simulation.apply(HoldMotion(motion=arm.number, request=1))
             for _ in range(random_.randrange(60)):
                 arm.step()
-            arm.simulation.apply(Cancel(motion=arm.number))
+            arm.simulation.apply(CancelMotion(motion=arm.number))
         case 1:
-            arm.simulation.apply(Finish(arm="left", motion=arm.number))
-            arm.simulation.apply(Cancel(motion=arm.number))
+            arm.simulation.apply(FinishStream(arm="left", motion=arm.number))
+            arm.simulation.apply(CancelMotion(motion=arm.number))
         case _:
-            arm.simulation.apply(Cancel(motion=arm.number))
+            arm.simulation.apply(CancelMotion(motion=arm.number))
 
 
 @pytest.mark.parametrize(
@@ -196,12 +207,12 @@ def test_a_reflex_at_any_instant_keeps_the_limits_and_ends_at_rest(cell: CellMod
     """A knock on the way stops the arm; once it has recovered, the next motion trips again."""
     random_ = random.Random(5)
     arm = WatchedArm(cell, jerk=False)
-    arm.simulation.apply(Configure(arm="left", settings=ArmSettings(collision_force_n=20.0)))
+    arm.simulation.apply(ConfigureArm(arm="left", settings=ArmSettings(collision_force_n=20.0)))
     for _ in range(10):
         follow(arm, random_)
         for _ in range(random_.randrange(20, 250)):
             arm.step()
-        arm.simulation.apply(Push(body="left/panda_hand", force_n=(0.0, 60.0, 0.0), duration_s=0.02))
+        arm.simulation.apply(PushSimBody(body="left/panda_hand", force_n=(0.0, 60.0, 0.0), duration_s=0.02))
         for _ in range(3000):
             if arm.ends and arm.ends[-1].motion == arm.number:
                 break
@@ -209,6 +220,6 @@ def test_a_reflex_at_any_instant_keeps_the_limits_and_ends_at_rest(cell: CellMod
         assert (arm.ends[-1].end, arm.control.reflex) == ("failed", True)
         assert arm.ends[-1].reason.startswith("the tool feels")
         assert np.abs(arm.control.state.velocity).max() < REST_RAD_S
-        arm.simulation.apply(Recover(arm="left"))
+        arm.simulation.apply(RecoverArm(arm="left"))
         arm.step()
         assert not arm.control.reflex

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from engine.bus import GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import new_clock
 from engine.document.cell import load_cell
 from engine.errors import RobotError
@@ -20,10 +20,10 @@ from engine.robot import DeviceStatus
 from engine.skills.arm_control import ArmStatus, SetSpeedOverride
 from engine.skills.motion import JointTrapVel
 from robots.port import Array, MotionEnd, Tolerance
-from robots.sim.host import HostListener
-from robots.sim.lockstep_host import LockstepHost
-from robots.sim.process_host import ProcessHost
-from robots.sim.world import SimWorld
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.host.world_host import WorldListener
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import HOME, box, grasp, move, one_arm, part_xyz, smooth, until
 
 WHY = "the world's process was ended by SIGKILL"
@@ -37,9 +37,9 @@ class MortalHost(LockstepHost):
         super().__init__(one_arm(box("part")))
         self.opened = 0
         self.is_damaged = False
-        self._heard_by: HostListener | None = None
+        self._heard_by: WorldListener | None = None
 
-    async def open(self, listener: HostListener) -> None:
+    async def open(self, listener: WorldListener) -> None:
         await super().open(listener)
         self.opened += 1
         self._heard_by = listener

@@ -10,7 +10,7 @@ import pytest
 
 from engine.errors import RobotError
 from robots.port import ArmPort, ArmSettings, MotionEnd, Tolerance
-from robots.sim.world import SimWorld
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import (
     ABOVE_PART,
     HOME,

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from engine.bus import Holder, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import new_clock, run_virtual
 from engine.document import load_cell
 from engine.errors import SkillFailed
 from engine.skills.motion import JointTrapVel
-from engine.skills.world import ResetParts
+from engine.skills.simulated_world import ResetParts
 from tests.robots.sim.sim_cell import box, opened, part_xyz, two_arms
 
 CELL = Path(__file__).resolve().parents[3] / "behaviors" / "cells" / "dual_panda.yaml"

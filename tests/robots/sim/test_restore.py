@@ -17,9 +17,9 @@ from engine.clock import run_virtual
 from engine.errors import RobotError
 from engine.messages import Vector3
 from robots.port import ArmSample, Array, MotionEnd, Tolerance
-from robots.sim.lockstep_host import LockstepHost
-from robots.sim.scene import Scene
-from robots.sim.world import SimWorld
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.scene.sim_scene import SimScene
+from robots.sim.world.sim_world import SimWorld
 from tests.robots.sim.sim_cell import (
     ABOVE_PART,
     HOME,
@@ -263,7 +263,7 @@ async def test_no_motion_starts_while_a_world_is_being_restored(carried: Carried
 @pytest.mark.parametrize(
     "scene", [one_arm(), one_arm(box("part", mass_kg=0.13)), one_arm(box("part", (-0.09, 0.281, 0.02)))]
 )
-async def test_another_world_refuses_the_snapshot_and_stays_as_it_is(scene: Scene, carried: Carried) -> None:
+async def test_another_world_refuses_the_snapshot_and_stays_as_it_is(scene: SimScene, carried: Carried) -> None:
     """Another part, another mass, another place."""
     async with opened(scene) as world:
         before = world.snapshot()

@@ -9,12 +9,12 @@ import numpy as np
 
 from engine.clock import run_virtual
 from engine.document import parse_behavior
-from engine.event import Entered, Event, Exited, PauseConfirmed, SteppedBack
+from engine.event import Event, NodeEntered, NodeExited, PauseConfirmed, RunSteppedBack
 from engine.journal import Journal
-from engine.launch import new_run
-from engine.plan import new_plan
+from engine.project.run_factory import new_run
 from engine.registry import load_states
-from engine.run import Run, RunResult
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run, RunResult
 from robots.port import Array
 from tests.robots.sim.demo_cell import joint_state, opened_cell, part_height_m
 
@@ -61,7 +61,7 @@ def test_a_pick_is_taken_back_from_the_middle_of_the_lift_and_done_again(tmp_pat
 
         def note(event: Event) -> None:
             events.append(event)
-            if isinstance(event, Entered) and event.path == "root/lift":
+            if isinstance(event, NodeEntered) and event.path == "root/lift":
                 lifting.set()
             if isinstance(event, PauseConfirmed):
                 rests.set()
@@ -96,7 +96,7 @@ def test_a_pick_is_taken_back_from_the_middle_of_the_lift_and_done_again(tmp_pat
     for place, part_m, _ in stood[2:]:
         assert abs(part_m - lying_m) < 0.003, place
     assert np.abs(stood[-1][2] - home).max() < 0.005
-    assert all(event.cause is None for event in events if isinstance(event, SteppedBack))
+    assert all(event.cause is None for event in events if isinstance(event, RunSteppedBack))
     assert (result.outcome, result.success) == ("lifted", True)
     assert height_m > lying_m + 0.1
-    assert sum(isinstance(event, Exited) and event.path == "root/grasp" for event in events) == 2
+    assert sum(isinstance(event, NodeExited) and event.path == "root/grasp" for event in events) == 2

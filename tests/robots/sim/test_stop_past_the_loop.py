@@ -9,8 +9,8 @@ from typing import Any
 
 from engine.stop import StopNotice, StopRelay
 from robots.port import MotionEnd, Tolerance
-from robots.sim.process_host import ProcessHost
-from robots.sim.world import SimWorld
+from robots.sim.host.process_host import ProcessHost
+from robots.sim.world.sim_world import SimWorld
 from tests.engine.stop.device import endpoint_of, post, posted
 from tests.robots.sim.sim_cell import HOME, move, one_arm, smooth, until
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from engine.bus import GoalStatus, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import load_cell
 from engine.errors import CellError, NoSuchSkill
 from engine.messages import GripperState, HandState, MagnetState, Pose, SceneDescription
@@ -19,8 +19,8 @@ from engine.skills.hand import HandClose, HandOpen, ReadHand
 from engine.skills.magnet import MagnetSwitch, ReadMagnet
 from engine.skills.motion import CartTrapVel
 from robots.port import MotionEnd
-from robots.sim.scene import ArmPlacement, Scene
-from robots.sim.world import new_world
+from robots.sim.scene.sim_scene import ArmPlacement, SimScene
+from robots.sim.world.sim_world import new_world
 
 CELL = """
 flexcell: 1
@@ -136,7 +136,7 @@ async def test_a_ball_is_drawn_with_its_radius(tmp_path: Path) -> None:
 
 
 async def test_tools_take_their_commands_in_a_process_of_their_own_too() -> None:
-    both = Scene(
+    both = SimScene(
         arms=(
             ArmPlacement(name="abb", model="irb4600", gripper="magnet", base=Pose(xyz=(0.0, 0.0, 0.0))),
             ArmPlacement(name="panda", model="panda", gripper="softhand", base=Pose(xyz=(0.0, 3.0, 0.0))),

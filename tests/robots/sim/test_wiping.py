@@ -1,11 +1,11 @@
-"""Simulated arms wipe a surface that gives way, with the bench of `benchmarks/wiping.py`."""
+"""Simulated arms wipe a surface that gives way, with the bench of `benchmarks/force_controlled_wiping.py`."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from benchmarks.wiping import FORCE_N, PANDA, UR10, Subject, Wiping, rms, three_passes
+from benchmarks.force_controlled_wiping import FORCE_N, PANDA, UR10, Subject, Wiping, rms, three_passes
 from engine.skills.arm_control import ControllerName
 from robots.port import ArmSettings, MotionEnd
 from tests.tiers import nightly

@@ -10,12 +10,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from engine.messages import Pose, Quaternion, Vector3
-from robots.model.inverse_kinematics import InverseKinematics
+from robots.model.inverse_kinematics import InverseKinematicsSolver
 from robots.model.kinematics import ArmKinematics
-from robots.model.rigid import Rigid
+from robots.model.transform import RigidTransform
 from robots.port import Array, MotionReport
-from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
-from robots.sim.world import SimWorld, new_world
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+from robots.sim.world.sim_world import SimWorld, new_world
 from tests.robots.sim.sim_cell import move
 
 DOWN: Quaternion = (1.0, 0.0, 0.0, 0.0)
@@ -24,10 +24,10 @@ ARM = "arm"
 
 def scene(
     arm: str, tool: str | None, *, parts: tuple[PartBody, ...] = (), fixtures: tuple[FixtureBody, ...] = ()
-) -> Scene:
+) -> SimScene:
     """Return a cell with one arm at the origin."""
     placement = ArmPlacement(name=ARM, model=arm, gripper=tool, base=Pose(xyz=(0.0, 0.0, 0.0)))
-    return Scene(arms=(placement,), parts=parts, fixtures=fixtures)
+    return SimScene(arms=(placement,), parts=parts, fixtures=fixtures)
 
 
 def block(name: str, top_xyz: Vector3, size_m: tuple[float, float]) -> FixtureBody:
@@ -39,18 +39,18 @@ def block(name: str, top_xyz: Vector3, size_m: tuple[float, float]) -> FixtureBo
 class Reach:
     """One arm of an open world, told where its tool shall be."""
 
-    def __init__(self, world: SimWorld, scene: Scene) -> None:
+    def __init__(self, world: SimWorld, scene: SimScene) -> None:
         (placement,) = scene.arms
         self.world = world
         self.port = world.arm(ARM)
-        self._kinematics = ArmKinematics(placement.robot(), base=Rigid.from_pose(placement.base))
-        self._inverse = InverseKinematics(self._kinematics)
+        self._kinematics = ArmKinematics(placement.robot(), base=RigidTransform.from_pose(placement.base))
+        self._inverse = InverseKinematicsSolver(self._kinematics)
 
     async def to(
         self, xyz: Vector3, xyzw: Quaternion = DOWN, *, duration_s: float = 1.0, like: Array | None = None
     ) -> MotionReport:
         """Move the joints so that the tool is at a pose in the world, the arm standing `like` this or as at present."""
-        target = Rigid(xyz=np.array(xyz), xyzw=np.array(xyzw))
+        target = RigidTransform(xyz=np.array(xyz), xyzw=np.array(xyzw))
         goal = self._inverse.nearest(target, seed=np.asarray(self.port.sample().desired_rad) if like is None else like)
         return await self.joints(goal, duration_s=duration_s)
 
@@ -77,7 +77,7 @@ class Reach:
 
 
 @asynccontextmanager
-async def reaching(cell: Scene) -> AsyncGenerator[Reach]:
+async def reaching(cell: SimScene) -> AsyncGenerator[Reach]:
     """Open a world in lockstep on the running virtual loop."""
     async with new_world(cell, virtual=True) as world:
         yield Reach(world, cell)

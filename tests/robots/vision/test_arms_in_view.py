@@ -5,22 +5,22 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.document.cell_senses import DepthCamera, OccupancyMap
+from engine.document.cell_perception import DepthCamera, OccupancyMap
 from engine.errors import CellError
 from engine.messages import Pose
-from engine.shapes import Box, Solid
-from robots.model.rigid import Rigid
-from robots.planning.cell_scene import known_obstacles
-from robots.planning.scene import AttachedPart
+from engine.messages.shapes import Box, Solid
+from robots.model.transform import RigidTransform
+from robots.planning.scene.cell_planning_scene import known_obstacles
+from robots.planning.scene.planning_scene import AttachedPart
 from robots.port import Array
-from robots.sim.cell_model import build_cell
-from robots.sim.scene import ArmPlacement, PartBody, Scene
-from robots.sim.simulation import Simulation
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.sim_scene import ArmPlacement, PartBody, SimScene
 from robots.vision.arm_body import ArmBody
-from robots.vision.eye import Eye
-from robots.vision.known import Known, Moment, Posture
-from robots.vision.mapper import Mapper
-from robots.vision.sight import Look, state_bytes
+from robots.vision.camera_rig import CameraRig
+from robots.vision.known_geometry import ArmConfiguration, KnownGeometry, MeasuredState
+from robots.vision.occupancy_mapper import OccupancyMapper
+from robots.vision.perception_messages import PerceptionRequest, state_bytes
 from robots.vision.voxel_box import voxel_box
 from tests.robots.vision.watched_cell import PANDA, block, cameras, look, scene, sight, voxels
 
@@ -40,12 +40,12 @@ ARMS = {
 class Stage:
     """A simulated cell whose arm and parts are put where the test wants them, and an eye on it."""
 
-    def __init__(self, what: Scene, *, names: tuple[str, ...] = ("front", "side")) -> None:
+    def __init__(self, what: SimScene, *, names: tuple[str, ...] = ("front", "side")) -> None:
         self.cell = build_cell(what)
         self._names = names
         self._simulation = Simulation(self.cell)
         self._q: Array = self._simulation._physics.positions  # pyright: ignore[reportPrivateUsage]
-        self.eye = Eye(sight(what, *AROUND, box=ROOM), repeatable=True)
+        self.eye = CameraRig(sight(what, *AROUND, box=ROOM), repeatable=True)
 
     def see(self, joints: Array, *, part: Pose | None = None) -> Array:
         """Return the voxels after a look with the arm at these joints."""
@@ -55,7 +55,7 @@ class Stage:
             self._q[self.cell.part_qpos] = [*part.xyz, w, x, y, z]
         image = np.zeros(self._simulation.image_layout.size)
         self._simulation.write_image(image)
-        return voxels(self.eye.look(Look(time_s=0.0, state=state_bytes(image), cameras=self._names)).grid)
+        return voxels(self.eye.look(PerceptionRequest(time_s=0.0, state=state_bytes(image), cameras=self._names)).grid)
 
 
 def postures(arm: ArmPlacement, count: int) -> Array:
@@ -76,7 +76,7 @@ def test_a_moving_arm_leaves_no_trail_and_does_not_wipe_away_what_it_passes() ->
     pillar = block((0.6, 0.6, 0.5), (0.1, 0.1, 1.0), name="pillar")
     stage = Stage(scene(pillar, arms=(PANDA,)))
     # The map knows the floor alone.
-    stage.eye.know(Known(obstacles=known_obstacles(scene())))
+    stage.eye.know(KnownGeometry(obstacles=known_obstacles(scene())))
     home = np.array(PANDA.robot().home_rad)
     for _ in range(5):
         stage.see(home)
@@ -92,12 +92,12 @@ def test_what_was_seen_before_an_arm_came_beside_it_is_not_taken_for_the_arm() -
     """A rod 2 cm from the hand: within the margin, where nothing new would be seen."""
     home = np.array(PANDA.robot().home_rad)
     away = home + np.array([1.2, *(0.0,) * 6])
-    balls = ArmBody(PANDA).balls(Posture(joints=tuple(home.tolist())))
+    balls = ArmBody(PANDA).balls(ArmConfiguration(joints=tuple(home.tolist())))
     outermost = balls[np.argmax(balls[:, 0] + balls[:, 3])]
     x = float(outermost[0] + outermost[3]) + 0.04
     rod = block((x, float(outermost[1]), float(outermost[2])), (0.04, 0.1, 0.2), name="rod")
     stage = Stage(scene(rod, arms=(PANDA,)))
-    stage.eye.know(Known(obstacles=known_obstacles(scene())))
+    stage.eye.know(KnownGeometry(obstacles=known_obstacles(scene())))
     before = [stage.see(away) for _ in range(3)][-1]
     assert len(before) > 30
     beside = [stage.see(home) for _ in range(5)][-1]
@@ -112,12 +112,12 @@ def test_a_part_in_a_hand_leaves_no_voxel_while_it_moves_along() -> None:
 
     def left(*held: AttachedPart) -> int:
         stage = Stage(scene(arms=(PANDA,), parts=(part,)))
-        stage.eye.know(Known(obstacles=known_obstacles(scene()), held=held))
+        stage.eye.know(KnownGeometry(obstacles=known_obstacles(scene()), held=held))
         found = 0
         for turn in np.linspace(0.0, 1.0, 8):
             joints = home + np.array([turn, *(0.0,) * 6])
-            hand = body.link_pose(Posture(joints=tuple(joints.tolist())), body.tool_link)
-            carried = Rigid(xyz=hand.xyz + hand.rotation @ offset, xyzw=hand.xyzw).to_pose("world")
+            hand = body.link_pose(ArmConfiguration(joints=tuple(joints.tolist())), body.tool_link)
+            carried = RigidTransform(xyz=hand.xyz + hand.rotation @ offset, xyzw=hand.xyzw).to_pose("world")
             found += len(stage.see(joints, part=carried))
         return found
 
@@ -128,21 +128,21 @@ def test_a_part_in_a_hand_leaves_no_voxel_while_it_moves_along() -> None:
 
 
 def test_a_held_part_that_is_not_measured_is_where_the_arm_has_it() -> None:
-    mapper = Mapper(ROOM, (PANDA,))
+    mapper = OccupancyMapper(ROOM, (PANDA,))
     size = (0.3, 0.3, 0.3)
     held = AttachedPart(
         name="plate", arm="arm", solids=(Solid(shape=Box(size_m=size)),), pose=Pose(xyz=(0.0, 0.0, 0.3))
     )
-    home = Posture(joints=PANDA.robot().home_rad)
+    home = ArmConfiguration(joints=PANDA.robot().home_rad)
     at = ArmBody(PANDA).link_pose(home, PANDA.robot().tool_link)
     x, y, z = (at.xyz + at.rotation @ np.array([0.0, 0.0, 0.3])).tolist()
     what = scene(block((x, y, z), (0.2, 0.2, 0.2)))
-    stage = Eye(sight(what, *AROUND, box=ROOM), repeatable=True)
+    stage = CameraRig(sight(what, *AROUND, box=ROOM), repeatable=True)
     images = stage.look(look(what, ("front", "side"))).images
-    moment = Moment(time_s=0.0, arms={"arm": home})
-    mapper.know(Known(obstacles=known_obstacles(scene())))
+    moment = MeasuredState(time_s=0.0, arms={"arm": home})
+    mapper.know(KnownGeometry(obstacles=known_obstacles(scene())))
     assert len(voxels(mapper.update(images, moment))) > 50
-    mapper.know(Known(obstacles=known_obstacles(scene()), held=(held,)))
+    mapper.know(KnownGeometry(obstacles=known_obstacles(scene()), held=(held,)))
     assert len(voxels(mapper.update(images, moment))) == 0
 
 
@@ -155,10 +155,10 @@ def test_a_part_that_was_pushed_is_known_where_it_lies_now() -> None:
 
 
 def test_a_posture_of_another_arm_is_refused() -> None:
-    mapper = Mapper(ROOM, (PANDA,))
-    for arms in ({"arm": Posture(joints=(0.0,))}, {"other": Posture(joints=PANDA.robot().home_rad)}):
+    mapper = OccupancyMapper(ROOM, (PANDA,))
+    for arms in ({"arm": ArmConfiguration(joints=(0.0,))}, {"other": ArmConfiguration(joints=PANDA.robot().home_rad)}):
         with pytest.raises(CellError):
-            mapper.update([], Moment(time_s=0.0, arms=arms))
-    strange = Posture(joints=PANDA.robot().home_rad, tool_joints={"nose": 0.0})
+            mapper.update([], MeasuredState(time_s=0.0, arms=arms))
+    strange = ArmConfiguration(joints=PANDA.robot().home_rad, tool_joints={"nose": 0.0})
     with pytest.raises(CellError, match="no joint nose"):
-        mapper.update([], Moment(time_s=0.0, arms={"arm": strange}))
+        mapper.update([], MeasuredState(time_s=0.0, arms={"arm": strange}))

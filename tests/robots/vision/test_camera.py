@@ -9,12 +9,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.document.cell_senses import DepthCamera
+from engine.document.cell_perception import DepthCamera
 from engine.errors import CellError
 from engine.messages import Vector3
-from engine.sensing import CameraIntrinsics, DepthImage
-from robots.model.rigid import Rigid
-from robots.vision.camera import camera_of, depths, directions, looking_at, pinhole, pixels, points_seen, reduced
+from engine.messages.sensing import CameraIntrinsics, DepthImage
+from robots.model.transform import RigidTransform
+from robots.vision.camera import (
+    camera_of,
+    depths,
+    directions,
+    optical_frame_pose,
+    pinhole,
+    pixels,
+    points_seen,
+    reduced,
+)
 
 SIZES = st.tuples(st.integers(16, 200), st.integers(16, 200))
 FIELDS = st.floats(0.1, 2.5)
@@ -45,7 +54,7 @@ def test_the_height_of_an_image_spans_the_field_of_view(size: tuple[int, int], f
 def test_a_camera_looks_at_what_it_is_told_to_with_up_being_up(at: Vector3, target: Vector3) -> None:
     if not apart(at, target):
         return
-    pose = Rigid.from_pose(looking_at(at, target))
+    pose = RigidTransform.from_pose(optical_frame_pose(at, target))
     rotation = pose.rotation
     assert rotation.T @ rotation == pytest.approx(np.eye(3), abs=1e-9)
     assert np.linalg.det(rotation) == pytest.approx(1.0)
@@ -58,7 +67,7 @@ def test_a_camera_looks_at_what_it_is_told_to_with_up_being_up(at: Vector3, targ
 
 
 def test_a_camera_that_looks_straight_down_has_y_up_in_its_image() -> None:
-    rotation = Rigid.from_pose(looking_at((0.0, 0.0, 2.0), (0.0, 0.0, 0.0))).rotation
+    rotation = RigidTransform.from_pose(optical_frame_pose((0.0, 0.0, 2.0), (0.0, 0.0, 0.0))).rotation
     assert rotation == pytest.approx(np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]))
 
 
@@ -69,10 +78,10 @@ def test_the_points_of_an_image_are_measured_where_they_are_seen(
 ) -> None:
     if not apart(at, target):
         return
-    lens, pose = pinhole(size, field), looking_at(at, target)
+    lens, pose = pinhole(size, field), optical_frame_pose(at, target)
     depth = np.random.default_rng(seed).uniform(0.1, 5.0, size=(size[1], size[0])).astype(np.float32)
     image = DepthImage(time_s=0.0, camera="one", intrinsics=lens, pose=pose, depth_m=depth.tobytes())
-    rigid = Rigid.from_pose(pose)
+    rigid = RigidTransform.from_pose(pose)
     seen = (points_seen(image) - rigid.xyz) @ rigid.rotation
     assert seen[:, 2] == pytest.approx(depth.ravel(), abs=1e-5)
     v, u = np.divmod(np.arange(depth.size), size[0])
@@ -95,7 +104,7 @@ def test_a_camera_cannot_look_at_itself_nor_have_an_empty_range() -> None:
 
 def test_an_image_with_too_few_bytes_is_none() -> None:
     lens = CameraIntrinsics(width_px=4, height_px=2, fx_px=1.0, fy_px=1.0, cx_px=0.0, cy_px=0.0)
-    pose = looking_at((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    pose = optical_frame_pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
     image = DepthImage(time_s=0.0, camera="top", intrinsics=lens, pose=pose, depth_m=b"1234")
     with pytest.raises(CellError, match="4 bytes are no image of 4 x 2 pixels"):
         depths(image)

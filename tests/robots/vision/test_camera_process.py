@@ -12,18 +12,18 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.cell import OpenCell
-from engine.document.cell_senses import ObjectDetector
+from engine.cell.open_cell import OpenCell
+from engine.document.cell_perception import ObjectDetector
 from engine.errors import CellError, RobotError
 from engine.messages import Pose
-from engine.sensing import OccupancyGrid
-from robots.sim.framing import framed
-from robots.sim.scene import ArmPlacement, PartBody
-from robots.sim.world import SimWorld
-from robots.vision.known import Known
-from robots.vision.real_time_watch import RealTimeWatch
-from robots.vision.sight import Seen, Sight
-from robots.vision.worker import CameraProcess, Wire
+from engine.messages.sensing import OccupancyGrid
+from robots.io.framing import frame_message
+from robots.sim.scene.sim_scene import ArmPlacement, PartBody
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.camera_process import CameraConnection, CameraProcess
+from robots.vision.known_geometry import KnownGeometry
+from robots.vision.perception_messages import PerceptionResult, PerceptionSetup
+from robots.vision.real_time_perception import RealTimePerception
 from tests.robots.vision.cell_document import watched
 from tests.robots.vision.watched_cell import FRONT, block, cameras, look, scene, sight, voxels
 
@@ -46,9 +46,9 @@ def test_the_process_finds_the_parts_that_it_is_asked_to_look_for() -> None:
     what = scene(parts=(part,))
     seen_by = cameras(front=msgspec.structs.replace(FRONT, detect=ObjectDetector()))
 
-    async def main() -> Seen:
+    async def main() -> PerceptionResult:
         process = CameraProcess()
-        await process.start(Sight(scene=what, cameras=seen_by, box=None))
+        await process.start(PerceptionSetup(scene=what, cameras=seen_by, box=None))
         try:
             return await process.ask(msgspec.structs.replace(look(what, ()), detecting=("front",)))
         finally:
@@ -71,7 +71,7 @@ def test_what_the_process_sees_is_what_is_there() -> None:
             process = CameraProcess()
             await process.start(sight(WHAT))
             # The block is a fixture, hence known, until told otherwise.
-            process.know(Known())
+            process.know(KnownGeometry())
             full = await process.ask(look(WHAT))
             return process.words, len(voxels(empty.grid)), len(voxels(full.grid))
         finally:
@@ -136,13 +136,19 @@ def test_an_order_that_makes_no_sense_is_refused_and_the_next_one_is_carried_out
 
 
 @pytest.mark.parametrize(
-    "garbage", [b"\xff" * 64, framed(b"\xc1garbage"), framed(b""), framed(msgspec.msgpack.encode({"type": "nobody"}))]
+    "garbage",
+    [
+        b"\xff" * 64,
+        frame_message(b"\xc1garbage"),
+        frame_message(b""),
+        frame_message(msgspec.msgpack.encode({"type": "nobody"})),
+    ],
 )
 def test_garbage_from_the_process_loses_it_in_words(garbage: bytes) -> None:
     async def main() -> None:
         ours, theirs = socket.socketpair()
         loop = asyncio.get_running_loop()
-        _, wire = await loop.create_connection(lambda: Wire(lambda: "it is gone"), sock=ours)
+        _, wire = await loop.create_connection(lambda: CameraConnection(lambda: "it is gone"), sock=ours)
         theirs.sendall(garbage)
         with pytest.raises(RobotError, match="cannot be read"):
             await wire.opened
@@ -155,7 +161,7 @@ def test_a_watched_cell_survives_the_death_of_its_camera_process(tmp_path: Path)
     async def main() -> None:
         async with OpenCell(watched(tmp_path)) as cell:
             assert isinstance(cell.world, SimWorld)
-            (cameras,) = (device for device in cell.world.devices() if isinstance(device, RealTimeWatch))
+            (cameras,) = (device for device in cell.world.devices() if isinstance(device, RealTimePerception))
             changed = asyncio.Event()
             cameras.subscribe(changed.set)
             cameras.require()

@@ -9,15 +9,15 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document.cell import Cell, load_cell
 from engine.errors import BusError, CellError, DocumentError, SkillFailed
-from engine.sensing import DepthImage
+from engine.messages.sensing import DepthImage
 from engine.skills.vision import Detections, DetectObjects
-from robots.sim.world import SimWorld
-from robots.vision.lockstep_watch import LockstepWatch
-from robots.vision.watch import PROCESSING_S
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.lockstep_perception import LockstepPerception
+from robots.vision.perception_device import PROCESSING_S
 
 _TEXT = """
 flexcell: 1
@@ -152,7 +152,7 @@ def test_who_waits_when_the_cell_closes_or_the_camera_fails_is_told(tmp_path: Pa
     async def main() -> tuple[str, str]:
         async with OpenCell(cell_with(tmp_path)) as cell:
             assert isinstance(cell.world, SimWorld)
-            (cameras,) = (each for each in cell.world.devices() if isinstance(each, LockstepWatch))
+            (cameras,) = (each for each in cell.world.devices() if isinstance(each, LockstepPerception))
             asked = asyncio.create_task(cell.bus.call(DetectObjects(), to="top"))
             await asyncio.sleep(0.0)
             cameras.fail("its lens is covered")
@@ -192,7 +192,7 @@ def test_with_a_map_detections_come_beside_it(tmp_path: Path) -> None:
     async def main() -> tuple[Detections, int]:
         async with OpenCell(cell_with(tmp_path, more=more)) as cell:
             assert isinstance(cell.world, SimWorld)
-            (cameras,) = (each for each in cell.world.devices() if isinstance(each, LockstepWatch))
+            (cameras,) = (each for each in cell.world.devices() if isinstance(each, LockstepPerception))
             cameras.require()
             found = await cell.bus.call(DetectObjects(), to="top")
             await asyncio.sleep(0.5)

@@ -6,15 +6,15 @@ import msgspec
 import numpy as np
 import pytest
 
-from engine.document.cell_senses import DepthCamera, ObjectDetector
+from engine.document.cell_perception import DepthCamera, ObjectDetector
 from engine.document.placement import Placement
 from engine.errors import CellError
 from engine.messages import Pose, Vector3
-from engine.pose_algebra import turn_between_rad
+from engine.messages.pose_algebra import angle_between_rad
 from engine.skills.vision import Detections
-from robots.sim.scene import FixtureBody, PartBody, Scene
-from robots.vision.eye import Eye
-from robots.vision.sight import Look, Sight
+from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
+from robots.vision.camera_rig import CameraRig
+from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup
 from tests.robots.vision.watched_cell import block, cameras, look, scene
 
 TURN = (0.0, 0.0, 0.3826834323650898, 0.9238795325112867)
@@ -33,11 +33,14 @@ def camera(detect: ObjectDetector | None = _IDEAL, **changes: object) -> DepthCa
 
 
 def found(
-    what: Scene, seen_by: DepthCamera | None = None, *, seed: int = 0, time_s: float = 0.0, name: str = "top"
+    what: SimScene, seen_by: DepthCamera | None = None, *, seed: int = 0, time_s: float = 0.0, name: str = "top"
 ) -> Detections:
     """Return what a camera finds in a scene as it begins."""
-    eye = Eye(Sight(scene=what, cameras=cameras(**{name: seen_by or camera()}), box=None, seed=seed), repeatable=True)
-    seen = eye.look(Look(time_s=time_s, state=look(what).state, cameras=(), detecting=(name,)))
+    eye = CameraRig(
+        PerceptionSetup(scene=what, cameras=cameras(**{name: seen_by or camera()}), box=None, seed=seed),
+        repeatable=True,
+    )
+    seen = eye.look(PerceptionRequest(time_s=time_s, state=look(what).state, cameras=(), detecting=(name,)))
     (detections,) = seen.detections
     return detections
 
@@ -52,7 +55,7 @@ def test_parts_in_view_are_found_where_they_are_with_their_boxes() -> None:
     assert {each.label for each in detections.detections} == {"device", "battery"}
     device = next(each for each in detections.detections if each.label == "device")
     assert device.pose.xyz == pytest.approx(TURNED.pose.xyz, abs=1e-3)
-    assert turn_between_rad(device.pose.xyzw, TURN) < 1e-3
+    assert angle_between_rad(device.pose.xyzw, TURN) < 1e-3
     assert device.size_m == (0.12, 0.04, 0.03)
     battery = next(each for each in detections.detections if each.label == "battery")
     assert battery.size_m == (0.017, 0.017, 0.0335)
@@ -110,7 +113,7 @@ def test_labels_are_those_of_the_cell_and_boxes_are_in_its_frame() -> None:
     world = detections.in_world(device)
     assert world.frame == "world"
     assert world.xyz == pytest.approx(TURNED.pose.xyz, abs=1e-9)
-    assert turn_between_rad(world.xyzw, TURN) < 1e-6
+    assert angle_between_rad(world.xyzw, TURN) < 1e-6
 
 
 def test_noise_has_its_size_and_depends_on_camera_part_frame_and_seed_alone() -> None:
@@ -125,7 +128,7 @@ def test_noise_has_its_size_and_depends_on_camera_part_frame_and_seed_alone() ->
     assert len({each.xyz for each in others}) == 4
     off = [np.subtract(pose(frame=frame).xyz, TURNED.pose.xyz) for frame in range(40)]
     assert float(np.std(off)) == pytest.approx(0.002, rel=0.3)
-    turns = [turn_between_rad(pose(frame=frame).xyzw, TURN) for frame in range(10)]
+    turns = [angle_between_rad(pose(frame=frame).xyzw, TURN) for frame in range(10)]
     assert 0.02 < float(np.mean(turns)) < 0.2
 
 

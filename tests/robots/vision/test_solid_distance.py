@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
-from robots.planning.solids import convex_solid
+from engine.messages.shapes import Box, Capsule, Cylinder, Hull, Shape, Sphere
+from robots.planning.scene.convex_shapes import convex_solid
 from robots.vision.solid_distance import solid_distance
 
 CORNERS = tuple((float(x), float(y), float(z)) for x in (0, 1) for y in (0, 1) for z in (0, 1))

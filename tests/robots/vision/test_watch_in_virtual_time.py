@@ -8,27 +8,27 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.errors import CellError
 from engine.messages import Pose
-from engine.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
-from engine.shapes import Box, Obstacle
+from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.messages.shapes import Box, Obstacle
 from engine.skills.people import Reach
-from robots.planning.scene import AttachedPart, PlanningScene
-from robots.sim.host import HostListener
-from robots.sim.lockstep_host import LockstepHost
-from robots.sim.world import SimWorld
-from robots.vision.lockstep_watch import LockstepWatch
-from robots.vision.watch import PROCESSING_S
+from robots.planning.scene.planning_scene import AttachedPart, PlanningScene
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.host.world_host import WorldListener
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.lockstep_perception import LockstepPerception
+from robots.vision.perception_device import PROCESSING_S
 from tests.robots.vision.cell_document import watched
 from tests.robots.vision.watched_cell import voxels
 
 
-def cameras_of(cell: OpenCell) -> LockstepWatch:
+def cameras_of(cell: OpenCell) -> LockstepPerception:
     """Return the cameras of an open cell."""
     assert isinstance(cell.world, SimWorld)
-    (found,) = (device for device in cell.world.devices() if isinstance(device, LockstepWatch))
+    (found,) = (device for device in cell.world.devices() if isinstance(device, LockstepPerception))
     return found
 
 
@@ -103,10 +103,10 @@ def test_the_map_of_a_lost_world_is_not_trusted_until_the_world_is_back(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Images of a world that does not step any more would look like a cell at rest."""
-    listeners: list[HostListener] = []
+    listeners: list[WorldListener] = []
     original = LockstepHost.open
 
-    async def heard(self: LockstepHost, listener: HostListener) -> None:
+    async def heard(self: LockstepHost, listener: WorldListener) -> None:
         listeners.append(listener)
         await original(self, listener)
 

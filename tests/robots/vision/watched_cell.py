@@ -5,15 +5,15 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
-from engine.document.cell_senses import DepthCamera, OccupancyMap
+from engine.document.cell_perception import DepthCamera, OccupancyMap
 from engine.messages import Pose, Vector3
-from engine.sensing import OccupancyGrid
+from engine.messages.sensing import OccupancyGrid
 from robots.port import Array
-from robots.sim.cell_model import build_cell
-from robots.sim.scene import ArmPlacement, FixtureBody, PartBody, Scene
-from robots.sim.simulation import Simulation
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
 from robots.vision.camera import CameraSpec, camera_of
-from robots.vision.sight import Look, Sight, state_bytes
+from robots.vision.perception_messages import PerceptionRequest, PerceptionSetup, state_bytes
 from robots.vision.voxel_box import VoxelBox, occupied_centres, voxel_box
 
 FLOOR = FixtureBody(name="floor", shape="box", size_m=(4.0, 4.0, 0.04), pose=Pose(xyz=(0.0, 0.0, -0.02)))
@@ -33,17 +33,17 @@ def block(centre: Vector3, size_m: Vector3 = (0.1, 0.1, 0.1), *, name: str = "bl
     return FixtureBody(name=name, shape="box", size_m=size_m, pose=Pose(xyz=centre))
 
 
-def scene(*unknown: FixtureBody, arms: tuple[ArmPlacement, ...] = (), parts: tuple[PartBody, ...] = ()) -> Scene:
+def scene(*unknown: FixtureBody, arms: tuple[ArmPlacement, ...] = (), parts: tuple[PartBody, ...] = ()) -> SimScene:
     """Return a floor, arms, parts and blocks, without weight."""
-    return Scene(step_s=0.002, gravity=False, arms=arms, fixtures=(FLOOR, *unknown), parts=parts)
+    return SimScene(step_s=0.002, gravity=False, arms=arms, fixtures=(FLOOR, *unknown), parts=parts)
 
 
-def sight(what: Scene, *seen_by: CameraSpec, box: VoxelBox = BOX) -> Sight:
+def sight(what: SimScene, *seen_by: CameraSpec, box: VoxelBox = BOX) -> PerceptionSetup:
     """Return what is looked at."""
-    return Sight(scene=what, cameras=seen_by or cameras(front=FRONT), box=box)
+    return PerceptionSetup(scene=what, cameras=seen_by or cameras(front=FRONT), box=box)
 
 
-def look(what: Scene, names: tuple[str, ...] = ("front",), *, joints: Array | None = None) -> Look:
+def look(what: SimScene, names: tuple[str, ...] = ("front",), *, joints: Array | None = None) -> PerceptionRequest:
     """Return the order to look at a scene as it begins, the first arm's joints changed."""
     cell = build_cell(what)
     simulation = Simulation(cell)
@@ -51,7 +51,7 @@ def look(what: Scene, names: tuple[str, ...] = ("front",), *, joints: Array | No
         simulation._qpos[cell.arms[0].qpos] = joints  # pyright: ignore[reportPrivateUsage]
     image = np.zeros(simulation.image_layout.size)
     simulation.write_image(image)
-    return Look(time_s=0.0, state=state_bytes(image), cameras=names, wanted=names)
+    return PerceptionRequest(time_s=0.0, state=state_bytes(image), cameras=names, wanted=names)
 
 
 def voxels(grid: OccupancyGrid | None) -> Array:
@@ -60,6 +60,6 @@ def voxels(grid: OccupancyGrid | None) -> Array:
     return occupied_centres(grid)
 
 
-def renamed(what: Scene, **changes: object) -> Scene:
+def renamed(what: SimScene, **changes: object) -> SimScene:
     """Return a scene with some fields changed."""
     return msgspec.structs.replace(what, **changes)

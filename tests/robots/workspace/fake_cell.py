@@ -12,19 +12,26 @@ from engine.bus import GoalHandle, SkillBus
 from engine.clock import Clock, new_clock
 from engine.errors import RobotError
 from engine.messages import Pose
-from engine.sensing import OccupancyGrid
-from engine.shapes import Box, Obstacle
+from engine.messages.sensing import OccupancyGrid
+from engine.messages.shapes import Box, Obstacle
 from engine.skills.planning import FreeMotionFeedback, FreeMotionResult, MoveFree
 from engine.skills.planning_scene import CollisionReport
 from robots.arm import ArmServer
-from robots.model.rigid import Rigid
-from robots.planning.inline_planner import InlinePlanner
-from robots.planning.request import CarryRequest, LookRequest, PlanAnswer, PlanRequest, WayCheck, WayRequest
-from robots.planning.scene import PlanningScene, SceneArm
-from robots.sim.scene import ArmPlacement
+from robots.model.transform import RigidTransform
+from robots.planning.request import (
+    AttachedPartCheckRequest,
+    CollisionRequest,
+    PathCheck,
+    PathCheckRequest,
+    PlanAnswer,
+    PlanRequest,
+)
+from robots.planning.scene.planning_scene import PlanningScene, SceneArm
+from robots.planning.worker.inline_planner import InlinePlanner
+from robots.sim.scene.sim_scene import ArmPlacement
 from robots.workspace.live_scene import LiveScene
-from robots.workspace.planners import Planners
-from robots.workspace.seen import ArmSeen, Seen
+from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
+from robots.workspace.planning_services import PlanningServices
 from robots.workspace.workspace import Workspace
 from tests.robots.fake_port import FakeArmPort
 from tests.robots.panda_arm import BASE, panda_kinematics, panda_model
@@ -63,19 +70,19 @@ class FragilePlanner:
         await self._fail()
         return await self._inner.plan(request)
 
-    async def check_way(self, request: WayRequest) -> WayCheck:
+    async def check_path(self, request: PathCheckRequest) -> PathCheck:
         """Check a way."""
         self.checks += 1
         await self._fail()
-        return await self._inner.check_way(request)
+        return await self._inner.check_path(request)
 
-    async def check_carry(self, request: CarryRequest) -> WayCheck:
+    async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
         """Check what is held on a way."""
         self.checks += 1
         await self._fail()
-        return await self._inner.check_carry(request)
+        return await self._inner.check_attached_parts(request)
 
-    async def look(self, request: LookRequest) -> CollisionReport:
+    async def look(self, request: CollisionRequest) -> CollisionReport:
         """Look."""
         await self._fail()
         return await self._inner.look(request)
@@ -181,18 +188,20 @@ async def fake_cell() -> AsyncGenerator[FakeCell]:
     port = FakeArmPort(model.arm_joints, np.array(model.home_rad))
     planner, cameras = FragilePlanner(clock), FakeCameras()
 
-    def link(_arm: str, _link: str) -> Rigid:
+    def link(_arm: str, _link: str) -> RigidTransform:
         return panda_kinematics().tool_pose(port.sample().position_rad)
 
-    def look() -> Seen:
+    def look() -> MeasuredPoses:
         joints = tuple(port.sample().position_rad.tolist())
-        return Seen(arms={"left": ArmSeen(joints_rad=joints)}, parts={}, link=link)
+        return MeasuredPoses(arms={"left": MeasuredArm(joints_rad=joints)}, parts={}, link=link)
 
     def make_scene() -> LiveScene:
         base = PlanningScene(arms=(SceneArm(placement=LEFT),), obstacles=(TABLE,))
         return LiveScene(base.with_allowed("left/panda_link1", "table"), parts=(), look=look)
 
-    workspace = Workspace(make_scene, planners=Planners(clock, lambda _: planner), clock=clock, occupancy=cameras)
+    workspace = Workspace(
+        make_scene, planners=PlanningServices(clock, lambda _: planner), clock=clock, occupancy=cameras
+    )
     arm = ArmServer(name="left", model=model, base=BASE.to_pose("world"), port=port, clock=clock, workspace=workspace)
     async with SkillBus(clock) as bus, workspace, arm:
         workspace.register(bus)

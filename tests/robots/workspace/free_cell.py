@@ -14,10 +14,10 @@ import numpy as np
 from msgspec.structs import replace
 
 from engine.bus import GoalHandle, SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.document.cell import MujocoWorld, load_cell
 from engine.messages import FramePoses, JointState, Pose, Vector3
-from engine.shapes import Box, Obstacle
+from engine.messages.shapes import Box, Obstacle
 from engine.skills.planning import (
     Adaptation,
     FreeMotionFeedback,
@@ -28,10 +28,10 @@ from engine.skills.planning import (
     PlanOptions,
 )
 from engine.skills.planning_scene import PutObstacle, RemoveObstacle
-from robots.planning.exact_checker import ExactChecker
+from robots.planning.scene.exact_checker import ExactChecker
 from robots.port import Array
-from robots.sim.lockstep_host import LockstepHost
-from robots.sim.world import SimWorld
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.world.sim_world import SimWorld
 from robots.workspace.workspace import Workspace
 from tests.robots.sim.sim_cell import PATIENT_S
 

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from engine.bus import SkillBus
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.errors import SkillFailed
 from engine.messages import PartPoses, Pose
-from engine.shapes import AT_ORIGIN, Hull, Obstacle, Sphere
+from engine.messages.shapes import AT_ORIGIN, Hull, Obstacle, Sphere
 from engine.skill import Service
 from engine.skills.gripper import GripperOpen
 from engine.skills.motion import CartLinTask, JointTrapVel
@@ -27,7 +27,7 @@ from engine.skills.planning_scene import (
     ReadPlanningScene,
     RemoveObstacle,
 )
-from engine.skills.world import PushBody
+from engine.skills.simulated_world import PushBody
 from tests.robots.sim.demo_cell import LIFT, PICK, opened_cell, pick
 from tests.robots.workspace.free_cell import POST, THERE, box, free, free_cell
 

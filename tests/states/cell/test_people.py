@@ -7,14 +7,14 @@ import pytest
 from engine.errors import NoSuchSkill, SkillFailed
 from engine.event import Cause
 from engine.skills import people
-from engine.skills.people import PersonReaching
+from engine.skills.people import ReachResult
 from engine.state import Outcome
 from states.cell.reach import Reach
 from states.cell.withdraw import Withdraw
 from tests.states.fake_context import FakeContext
 
 HAND = (0.4, 0.0, 0.5)
-REACHING = PersonReaching(person="anna", hand_m=HAND, arrives_in_s=1.5)
+REACHING = ReachResult(person="anna", hand_m=HAND, arrives_in_s=1.5)
 ANSWERS = {"cell/reach": REACHING, "cell/withdraw": REACHING}
 
 

@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 
 from engine.skill import Service
-from engine.skills import outputs
-from engine.skills.outputs import SetGripper, SetLinearAxis, SetToolExchange
-from engine.skills.switched import Switched
+from engine.skills import digital_outputs as outputs
+from engine.skills.digital_outputs import SetGripper, SetLinearAxis, SetToolExchange
+from engine.skills.switch_result import SwitchResult
 from engine.state import Outcome
 from states.io.set_output import SetOutput
 from tests.states.fake_context import FakeContext
 
-DONE = Switched(success=True, message="it is on")
+DONE = SwitchResult(success=True, message="it is on")
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ async def test_an_output_is_named_by_its_number_or_by_what_hangs_on_it(
 
 async def test_an_output_that_is_not_switched_is_an_outcome_with_the_robot_s_message() -> None:
     """Such as a number that it has not."""
-    refusal = Switched(success=False, message="there is no output 12")
+    refusal = SwitchResult(success=False, message="there is no output 12")
     outcome = await SetOutput(robot="ur10", value=True, output=12).run(FakeContext({"ur10/set_output": refusal}))
     assert outcome.name == "failed"
     assert outcome.cause is not None

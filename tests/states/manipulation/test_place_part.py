@@ -10,7 +10,7 @@ from engine.messages import GripperState, Pose
 from engine.skills.arm_control import SetLoad
 from engine.state import ActionEnd, Outcome
 from states.manipulation.place_part import PlacePart
-from states.motion.target import ShownPoseTarget
+from states.motion.motion_target import ShownPoseTarget
 from tests.states.fake_context import broken_off
 from tests.states.manipulation.picking_cell import (
     AT_CRATE,

@@ -7,13 +7,13 @@ import math
 import msgspec
 import pytest
 
-from engine.demonstration import Trajectory
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
-from engine.primitive import JointDmp
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import JointDmp
 from engine.skills import planning
-from engine.skills.dmp import Cut, JointDMP, JointFit, LearnedJointDmp, LearnJointDmp
+from engine.skills.dmp import JointDMP, JointFit, LearnedJointDmp, LearnJointDmp, TrimInterval
 from engine.skills.entries import EntryRecord
 from engine.skills.motion import (
     CartLinTask,
@@ -27,10 +27,10 @@ from engine.skills.motion import (
 from engine.skills.planning import FreeMotionResult, MotionTarget
 from engine.state import ActionEnd, Outcome
 from states.motion.follow_recording import FollowRecording
+from states.motion.motion_target import PoseTarget
 from states.motion.move_free import MoveFree
 from states.motion.move_linear import MoveLinear
 from states.motion.primitive import MotionStart, RecordingEntry
-from states.motion.target import PoseTarget
 from tests.states.fake_context import FakeContext, broken_off
 
 HALF = math.sqrt(0.5)
@@ -46,7 +46,7 @@ DMP = JointDmp(
     N=2, y0=(0.0, 0.5), dy0=(0.0, 0.0), goal=(1.0, 0.0), tau=2.0, a_z=48.0, a_x=2.0,
     w=((0.0, 0.0), (0.0, 0.0)), c=(1.0, 0.2), sigma=(0.1, 0.1),
 )  # fmt: skip
-FIT = JointFit(kernels=2, rms_rad=0.0, max_rad=0.0, end_rad=0.0, joint=0, cut=Cut(start_s=0.0, end_s=2.0))
+FIT = JointFit(kernels=2, rms_rad=0.0, max_rad=0.0, end_rad=0.0, joint=0, cut=TrimInterval(start_s=0.0, end_s=2.0))
 LED = Trajectory(times_s=(0.0, 1.0), joints=((0.1, 0.2), (0.3, 0.4)))
 SEEN = Trajectory(times_s=(0.0, 1.0), poses=((*SIDEWAYS.xyz, *SIDEWAYS.xyzw),) * 2)
 

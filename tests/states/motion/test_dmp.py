@@ -10,27 +10,27 @@ import pytest
 from engine.errors import EntryNotFound, SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
-from engine.primitive import CartDmp, CartOffsets, JointDmp
+from engine.messages.primitives import CartDmp, CartOffsets, JointDmp
 from engine.skills.dmp import (
     CartAdmitDMP,
     CartAdmitResult,
     CartDMP,
     CartFit,
-    Cut,
     JointDMP,
     JointFit,
     LearnedCartDmp,
     LearnedJointDmp,
+    TrimInterval,
 )
 from engine.skills.entries import EntryRecord, ReadEntry, WriteEntry
 from engine.skills.motion import CartMotionResult, CartTrapVel, JointMotionResult, JointTrapVel
 from engine.state import ActionEnd, Outcome
-from states.motion.cart_dmp import FollowCartDmp
-from states.motion.joint_dmp import FollowJointDmp
+from states.motion.follow_cart_dmp import FollowCartDmp
+from states.motion.follow_joint_dmp import FollowJointDmp
 from states.motion.learn_dmp import LearnCartDmp, LearnJointDmp
+from states.motion.motion_target import EntryTarget, PoseTarget
 from states.motion.press_along_dmp import PressAlongDmp
 from states.motion.primitive import CartDmpEntry, JointDmpEntry
-from states.motion.target import EntryTarget, PoseTarget
 from tests.states.fake_context import FakeContext, broken_off
 
 HERE = Pose(xyz=(0.1, 0.2, 0.3))
@@ -48,7 +48,7 @@ OFFSETS = CartOffsets(
     c_o=(0.5,), sigma_o=(1.0,), w1o=(0.0,), w2o=(0.0,), w3o=(-0.002,), w4o=(0.0,), w5o=(0.0,), w6o=(0.0,)
 )
 BELOW = Cause(message="joint 2 was held back", where="left")
-CUT = Cut(start_s=0.1, end_s=2.1)
+CUT = TrimInterval(start_s=0.1, end_s=2.1)
 
 
 def entry(kind: str, name: str, value: msgspec.Struct) -> EntryRecord:

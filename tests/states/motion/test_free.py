@@ -19,9 +19,9 @@ from engine.skills.planning import (
 )
 from engine.state import ActionEnd, Outcome, State
 from states.motion.execute_plan import ExecutePlan
+from states.motion.motion_target import EntryTarget, PoseTarget
 from states.motion.move_free import MoveFree
 from states.motion.plan_motion import PlanMotion
-from states.motion.target import EntryTarget, PoseTarget
 from tests.states.fake_context import FakeContext, broken_off
 
 WAY = PlannedMotion(

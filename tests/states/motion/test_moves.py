@@ -20,11 +20,11 @@ from engine.skills.motion import (
     JointTrapVel,
 )
 from engine.state import ActionEnd, Outcome
-from states.motion.line_time import SHORTEST_S, line_duration_s
+from states.motion.line_duration import SHORTEST_S, line_duration_s
+from states.motion.motion_target import EntryTarget, PoseTarget
 from states.motion.move_joints import MoveJoints
 from states.motion.move_linear import MoveLinear
 from states.motion.move_pose import MovePose
-from states.motion.target import EntryTarget, PoseTarget
 from tests.states.fake_context import FakeContext, broken_off
 
 HERE = Pose(xyz=(0.1, 0.2, 0.3))

@@ -9,12 +9,12 @@ from engine.document.placement import Placement
 from engine.errors import SkillFailed
 from engine.event import Cause
 from engine.messages import Pose
-from engine.shapes import Box, Capsule, Cylinder, Obstacle, Shape, Sphere
+from engine.messages.shapes import Box, Capsule, Cylinder, Obstacle, Shape, Sphere
 from engine.skills import planning_scene
 from engine.skills.entries import EntryRecord
 from engine.skills.planning_scene import FARTHEST_M, CheckCollision, CollisionReport, PlanningSceneState, TouchingPair
 from engine.state import Outcome, State
-from states.motion.target import EntryTarget
+from states.motion.motion_target import EntryTarget
 from states.scene.allow_contact import AllowContact
 from states.scene.attach import Attach
 from states.scene.check import Check
@@ -22,7 +22,7 @@ from states.scene.detach import Detach
 from states.scene.forget_occupancy import ForgetOccupancy
 from states.scene.put_obstacle import PutObstacle
 from states.scene.remove_obstacle import RemoveObstacle
-from states.scene.solid import shape_of
+from states.scene.shape_parameter_types import shape_of
 from tests.states.fake_context import FakeContext
 
 SCENE = PlanningSceneState(revision=1, obstacles=(), held=(), allowed=())

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from engine.cell import OpenCell
+from engine.cell.open_cell import OpenCell
 from engine.clock import run_virtual
 from engine.document import load_behavior, load_cell
-from engine.event import Event, Exited, Logged
+from engine.event import Event, MessageLogged, NodeExited
 from engine.journal import NullJournal
-from engine.plan import new_plan
 from engine.registry import load_states
-from engine.run import Run
+from engine.runtime.plan import new_plan
+from engine.runtime.run import Run
 
 _CELL = """
 flexcell: 1
@@ -66,9 +66,9 @@ def test_what_it_finds_is_there_for_the_states_after_it(tmp_path: Path) -> None:
             return (await run.execute()).outcome
 
     assert run_virtual(main()) == "done"
-    left = [f"{event.path} {event.outcome}" for event in log if isinstance(event, Exited)]
+    left = [f"{event.path} {event.outcome}" for event in log if isinstance(event, NodeExited)]
     assert left[:3] == ["root/look found", "root/tell done", "root/look_under_the_lid not_found"]
-    (line,) = [event.message for event in log if isinstance(event, Logged)]
+    (line,) = [event.message for event in log if isinstance(event, MessageLogged)]
     assert line.startswith("device at ")
     assert line.endswith(", one of 1")
     assert float(line.removeprefix("device at ").partition(",")[0]) == pytest.approx(0.4, abs=1e-3)

@@ -4,7 +4,7 @@ import { completed, matches, toggled } from '../document/breakpoints'
 import { api } from './client'
 import { useLive } from './live'
 import { useControl } from './liveParts'
-import { refuse, send } from './refusal'
+import { showRefusal, send } from './refusal'
 import type { BreakpointLive } from './types'
 
 interface Kept {
@@ -12,19 +12,19 @@ interface Kept {
   readonly kept: readonly BreakpointLive[]
 }
 
-export const useKept = create<Kept>(() => ({ behavior: '', kept: [] }))
+export const useSavedBreakpoints = create<Kept>(() => ({ behavior: '', kept: [] }))
 
 /** Show the breakpoints of this behavior from now on. */
-export async function loadKept(behavior: string): Promise<void> {
-  if (useKept.getState().behavior !== behavior) useKept.setState({ behavior, kept: [] })
+export async function loadSavedBreakpoints(behavior: string): Promise<void> {
+  if (useSavedBreakpoints.getState().behavior !== behavior) useSavedBreakpoints.setState({ behavior, kept: [] })
   const answer = await send('Read the breakpoints', () => api.keptBreakpoints(behavior))
-  if (answer && useKept.getState().behavior === behavior) useKept.setState({ kept: answer.breakpoints.map(completed) })
+  if (answer && useSavedBreakpoints.getState().behavior === behavior) useSavedBreakpoints.setState({ kept: answer.breakpoints.map(completed) })
 }
 
 /** Those that hold now: of the run while one is under way, else those for the next one. */
 export function useBreakpoints(): readonly BreakpointLive[] {
   const ofRun = useControl((control) => control?.breakpoints)
-  const kept = useKept((s) => s.kept)
+  const kept = useSavedBreakpoints((s) => s.kept)
   return ofRun ?? kept
 }
 
@@ -40,9 +40,9 @@ type Edit = (list: readonly BreakpointLive[]) => readonly BreakpointLive[]
 /** Edit the breakpoints of the run and those beside the file alike; false when the server refused. */
 export async function editBreakpoints(edit: Edit): Promise<boolean> {
   const { run, control, role } = useLive.getState()
-  const { behavior, kept } = useKept.getState()
+  const { behavior, kept } = useSavedBreakpoints.getState()
   if (role !== 'operator') {
-    refuse('Breakpoint', 'You may look only', 'log in with the operator token')
+    showRefusal('Breakpoint', 'You may look only', 'log in with the operator token')
     return false
   }
   const done = await send('Breakpoint', async () => {
@@ -52,14 +52,14 @@ export async function editBreakpoints(edit: Edit): Promise<boolean> {
     ])
     return answer
   })
-  if (done && useKept.getState().behavior === behavior) useKept.setState({ kept: done.breakpoints.map(completed) })
+  if (done && useSavedBreakpoints.getState().behavior === behavior) useSavedBreakpoints.setState({ kept: done.breakpoints.map(completed) })
   return done !== undefined
 }
 
 /** Set or take away the plain breakpoint of a node. */
 export function toggleBreakpoint(path: string, when: BreakpointLive['when'] = 'before'): Promise<boolean> {
   const { control } = useLive.getState()
-  const shown = control?.breakpoints ?? useKept.getState().kept
+  const shown = control?.breakpoints ?? useSavedBreakpoints.getState().kept
   const isSet = shown.some((each) => each.path === path && each.when === when)
   return editBreakpoints((list) => toggled(list, { path, when }, !isSet))
 }

@@ -25,7 +25,7 @@ export interface ParameterFacts {
   readonly schema: Dict<unknown>
 }
 
-export interface BusBoard {
+export interface BusListing {
   readonly shape: string
   readonly topics: readonly TopicFacts[]
   readonly skills: readonly SkillFacts[]
@@ -55,7 +55,7 @@ export type GoalStreamLine =
   | { readonly k: 'end'; readonly status: string; readonly result: unknown; readonly cause: { readonly message: string } | null }
 
 export const bus = {
-  board: () => call<BusBoard>('/bus/board'),
+  board: () => call<BusListing>('/bus/board'),
   fields: () => call<{ readonly topics: readonly TopicFields[] }>('/bus/fields'),
   requestForm: (address: string) => call<BusForm>(`/bus/form?address=${encodeURIComponent(address)}`),
   messageForm: (topic: string) => call<BusForm>(`/bus/form?topic=${encodeURIComponent(topic)}`),

@@ -13,7 +13,7 @@ const CONNECTED: CellConnection = { connected: true, reason: '' }
 export const useCellConnection = create<CellConnection>(() => CONNECTED)
 
 /** Ask the server; one that is not asked about its cell, or does not answer now, changes nothing. */
-export async function lookAtCell(): Promise<void> {
+export async function loadCellConnection(): Promise<void> {
   try {
     useCellConnection.setState(await call<CellConnection>('/cell/connection'))
   } catch (error) {
@@ -25,5 +25,5 @@ export async function lookAtCell(): Promise<void> {
 /** Connect what was lost; a refusal is a ServerError. */
 export async function connectCell(): Promise<void> {
   await post<unknown>('/cell/connect', {})
-  await lookAtCell()
+  await loadCellConnection()
 }

@@ -4,16 +4,16 @@ import type {
   BehaviorBody,
   BehaviorSummaryBody,
   BreakpointsBody,
-  ChangeBody,
+  HotChangeResultBody,
   ControlBody,
   ErrorBody,
-  InterruptedBody,
+  InterruptedRunBody,
   QuestionBody,
   ResumeBody,
   StartBody,
-  StartedBody,
+  StartResultBody,
   StepBody,
-  TakeFileBody,
+  HotChangeBody,
 } from './types'
 
 /** The server refused; `where` names the parameter or place it is about. */
@@ -104,7 +104,7 @@ export const api = {
   behaviors: () => call<readonly BehaviorSummaryBody[]>('/behaviors'),
   behavior: (id: string) => call<BehaviorBody>(`/behaviors/${idPath(id)}`),
   /** `key` makes a repeated request (double click, lost answer) start one run only. */
-  start: (body: StartBody, key: string) => post<StartedBody>('/runs', body, { 'idempotency-key': key }),
+  start: (body: StartBody, key: string) => post<StartResultBody>('/runs', body, { 'idempotency-key': key }),
   resetParts: () => post<unknown>('/bus/call', { address: 'cell/reset_parts', request: {} }),
   pause: (run: string) => command(run, 'pause'),
   resume: (run: string) => command(run, 'resume'),
@@ -117,13 +117,13 @@ export const api = {
   answer: (run: string, path: string) => command(run, 'answer', { path }),
   autonomy: (run: string, level: string) => command(run, 'autonomy', { level }),
   breakpoints: (run: string, body: BreakpointsBody) => command(run, 'breakpoints', body),
-  change: (run: string, body: TakeFileBody) => post<ChangeBody>(`/runs/${encodeURIComponent(run)}/control/change`, body),
+  change: (run: string, body: HotChangeBody) => post<HotChangeResultBody>(`/runs/${encodeURIComponent(run)}/control/change`, body),
   keptBreakpoints: (behavior: string) => call<BreakpointsBody>(`/breakpoints/${idPath(behavior)}`),
   keepBreakpoints: (behavior: string, body: BreakpointsBody) =>
     sent<BreakpointsBody>('PUT', `/breakpoints/${idPath(behavior)}`, body),
-  interrupted: () => call<readonly InterruptedBody[]>('/interrupted'),
+  interrupted: () => call<readonly InterruptedRunBody[]>('/interrupted'),
   resumeInterrupted: (run: string, body: ResumeBody) =>
-    post<StartedBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
+    post<StartResultBody>(`/interrupted/${encodeURIComponent(run)}/resume`, body),
   stopCell: (reason: string) => post<void>('/cell/stop', { reason }),
   setSpeed: (arm: string, share: number) =>
     post<unknown>('/bus/call', { address: `${arm}/set_speed_override`, request: { share } }),

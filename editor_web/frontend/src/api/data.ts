@@ -3,7 +3,7 @@ import type { Dict } from '../document/dict'
 import { useEffect, useRef } from 'react'
 import { openSocket } from './socket'
 
-export interface Look {
+export interface DataSubscription {
   /** Comes back with the samples of these `fields`. */
   readonly number?: number
   readonly traffic?: boolean
@@ -16,14 +16,14 @@ export interface Look {
   readonly goals?: string
 }
 
-export interface TopicLine {
+export interface TopicMetrics {
   readonly rate_hz: number
   readonly age_s: number | null
   readonly on_demand: boolean
   readonly subscribers: number
 }
 
-export interface LeaseLine {
+export interface LeaseMetrics {
   readonly resource: string
   readonly run: string
   readonly node: string
@@ -31,7 +31,7 @@ export interface LeaseLine {
   readonly held_s: number
 }
 
-export interface GoalLine {
+export interface GoalMetrics {
   readonly id: string
   readonly address: string
   readonly run: string
@@ -39,12 +39,12 @@ export interface GoalLine {
   readonly status: string
 }
 
-export interface TrafficFrame {
+export interface BusMetricsFrame {
   readonly k: 'traffic'
   readonly shape: string
-  readonly topics: Dict<TopicLine>
-  readonly leases: readonly LeaseLine[]
-  readonly goals: readonly GoalLine[]
+  readonly topics: Dict<TopicMetrics>
+  readonly leases: readonly LeaseMetrics[]
+  readonly goals: readonly GoalMetrics[]
 }
 
 export interface MessageFrame {
@@ -63,7 +63,7 @@ export interface SamplesFrame {
   readonly dropped: number
 }
 
-export interface DataLine {
+export interface UserdataValue {
   readonly value: unknown
   /** Path of the node that wrote it last; empty for what it began with. */
   readonly by: string
@@ -71,17 +71,17 @@ export interface DataLine {
   readonly writes: number
 }
 
-export interface ScopeLine {
+export interface UserdataScope {
   readonly is_open: boolean
   readonly since_s: number
-  readonly values: Dict<DataLine>
+  readonly values: Dict<UserdataValue>
 }
 
 export interface UserdataFrame {
   readonly k: 'userdata'
   readonly run: string
   readonly first: boolean
-  readonly scopes: Dict<ScopeLine | null>
+  readonly scopes: Dict<UserdataScope | null>
   readonly problem: string
 }
 
@@ -98,12 +98,12 @@ export interface GoalsFrame {
   readonly goals: Dict<GoalProgress>
 }
 
-export type DataFrame = TrafficFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | { readonly k: 'ping' }
+export type DataFrame = BusMetricsFrame | MessageFrame | SamplesFrame | UserdataFrame | GoalsFrame | { readonly k: 'ping' }
 
 const RETRY_MS = 1500
 
 /** Look at something for as long as it is given; nothing is sent while it is undefined. `look` is compared by what it says. */
-export function useData(look: Look | undefined, onFrame: (frame: DataFrame) => void): void {
+export function useData(look: DataSubscription | undefined, onFrame: (frame: DataFrame) => void): void {
   const told = useRef(onFrame)
   useEffect(() => {
     told.current = onFrame

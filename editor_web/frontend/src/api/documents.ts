@@ -3,14 +3,14 @@ import { call, idPath, post, sent, ServerError } from './client'
 import type {
   CatalogueBody,
   ConflictBody,
-  CopiedBody,
+  CopyResultBody,
   DocumentBody,
-  DraftedBody,
+  DraftResultBody,
   Edit,
-  EditedBody,
+  EditResultBody,
   FindingBody,
   NewDocumentBody,
-  SavedBody,
+  SaveResultBody,
   TargetFindingsBody,
 } from './types'
 
@@ -23,13 +23,13 @@ export const documents = {
   open: (id: string) => call<DocumentBody>(at(id, '?check=false')),
   openChecked: (id: string) => call<DocumentBody>(at(id)),
   make: (body: NewDocumentBody) => post<DocumentBody>('/documents', body),
-  draft: (id: string, text: string) => post<DraftedBody>(at(id, '/draft'), { text, check: false }),
+  draft: (id: string, text: string) => post<DraftResultBody>(at(id, '/draft'), { text, check: false }),
   findings: (id: string, text: string) => post<readonly FindingBody[]>(at(id, '/findings'), { text }),
   targets: (id: string, text: string, page: string) => post<TargetFindingsBody>(at(id, '/targets'), { text, page }),
   names: (id: string, text: string) => post<CatalogueBody['names']>(at(id, '/names'), { text }),
-  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditedBody>(at(id, '/edits'), { text, edits, check: false }),
-  copy: (id: string, text: string, paths: readonly string[]) => post<CopiedBody>(at(id, '/copy'), { text, paths }),
-  save: (id: string, text: string, baseHash: string) => sent<SavedBody>('PUT', at(id), { text, base_hash: baseHash }),
+  edit: (id: string, text: string, edits: readonly Edit[]) => post<EditResultBody>(at(id, '/edits'), { text, edits, check: false }),
+  copy: (id: string, text: string, paths: readonly string[]) => post<CopyResultBody>(at(id, '/copy'), { text, paths }),
+  save: (id: string, text: string, baseHash: string) => sent<SaveResultBody>('PUT', at(id), { text, base_hash: baseHash }),
   catalogue: () => call<CatalogueBody>('/catalogue'),
 }
 

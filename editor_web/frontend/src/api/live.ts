@@ -6,7 +6,7 @@ import { api } from './client'
 import { keepConnected, type LiveConnection } from './connection'
 import { OPERATED, useLive } from './liveStore'
 import { useSession } from './session'
-import { PAGE, useShown } from './shown'
+import { PAGE, useShownLayers } from './layerGroups'
 import { afterStop } from './stopStore'
 import type { Frame } from './types'
 
@@ -88,7 +88,7 @@ export function connect(): () => void {
     onDenied: () => useLive.setState({ connection: 'denied' }),
   })
   connection = opened
-  const unsubscribe = useShown.subscribe(sendShow)
+  const unsubscribe = useShownLayers.subscribe(sendShow)
   const forgetSession = useSession.subscribe((now, before) => {
     // What was asked for meanwhile was refused.
     if (before.isLoggedOut && !now.isLoggedOut) useLive.setState((live) => ({ generation: live.generation + 1 }))
@@ -124,7 +124,7 @@ function sendOperate(): void {
 }
 
 function sendShow(): void {
-  connection?.send({ k: 'show', page: PAGE, groups: useShown.getState().groups })
+  connection?.send({ k: 'show', page: PAGE, groups: useShownLayers.getState().groups })
 }
 
 function sendWatch(): void {

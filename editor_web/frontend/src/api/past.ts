@@ -1,10 +1,10 @@
 /** Past moments in the 3D view of this page: asked for over a connection of their own, which ends with the past. */
 import { create } from 'zustand'
-import { PAGE } from './shown'
+import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
 
 /** What the 3D view shows: a run at a time of it, recorded from and until; or `problem`, and so the present. */
-export interface PastState {
+export interface PastViewState {
   readonly run: string
   readonly time_s: number
   readonly from_s: number
@@ -16,7 +16,7 @@ interface PastStore {
   /** What was asked for; null for the present. */
   readonly wanted: { readonly run: string; readonly time_s: number } | null
   /** What the server has drawn last of it. */
-  readonly shown: PastState | null
+  readonly shown: PastViewState | null
 }
 
 export const usePast = create<PastStore>(() => ({ wanted: null, shown: null }))
@@ -53,7 +53,7 @@ function open(): void {
   socket = opened
   opened.onopen = send
   opened.onmessage = (message: MessageEvent<string>) => {
-    const state = JSON.parse(message.data) as PastState
+    const state = JSON.parse(message.data) as PastViewState
     if (socket === opened && usePast.getState().wanted?.run === state.run) usePast.setState({ shown: state })
   }
   opened.onclose = () => {

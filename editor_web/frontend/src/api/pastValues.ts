@@ -2,13 +2,13 @@
 import { useEffect, useState } from 'react'
 import { wordsOf } from './client'
 import { useLive } from './live'
-import { pastApi, runSubject, useTimeline, type PastValues } from './timeline'
+import { pastApi, runSubject, useTimeline, type PastUserdata } from './timeline'
 
 /** Undefined while the present is shown; kept up with the cursor, one request at a time. */
-export function usePastValues(run: string | undefined, isShown: boolean): PastValues | undefined {
+export function usePastValues(run: string | undefined, isShown: boolean): PastUserdata | undefined {
   const seq = useLive((s) => s.past?.seq)
   const opened = useTimeline((s) => s.opened)
-  const [told, setTold] = useState<PastValues>()
+  const [told, setTold] = useState<PastUserdata>()
   const [isAsking, setAsking] = useState(false)
   useEffect(() => setTold(undefined), [run, opened])
   useEffect(() => {

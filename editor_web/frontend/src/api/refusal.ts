@@ -12,12 +12,12 @@ export interface Refusal {
 export const useRefusal = create<{ readonly refusal: Refusal | undefined }>(() => ({ refusal: undefined }))
 
 /** Say why a command was not even sent. */
-export function refuse(what: string, message: string, hint = ''): void {
+export function showRefusal(what: string, message: string, hint = ''): void {
   useRefusal.setState({ refusal: { what, message, hint } })
 }
 
 /** Take the words away. */
-export function forgive(): void {
+export function clearRefusal(): void {
   useRefusal.setState({ refusal: undefined })
 }
 
@@ -27,11 +27,11 @@ export async function send<T>(what: string, request: () => Promise<T>): Promise<
   try {
     const answer = await request()
     // Another command may have been refused meanwhile; those words stay.
-    if (useRefusal.getState().refusal === before) forgive()
+    if (useRefusal.getState().refusal === before) clearRefusal()
     return answer
   } catch (error) {
-    if (error instanceof ServerError) refuse(what, error.body.message, error.body.hint)
-    else refuse(what, error instanceof Error ? error.message : String(error))
+    if (error instanceof ServerError) showRefusal(what, error.body.message, error.body.hint)
+    else showRefusal(what, error instanceof Error ? error.message : String(error))
     return undefined
   }
 }

@@ -1,13 +1,13 @@
 /** Around a document: data flow, fixes of findings, versions, who refers to it, moving, deleting and restoring. */
 import { call, idPath, post } from './client'
 import type {
-  DeletedBody,
+  DeletedDocumentBody,
   DifferenceBody,
   DocumentBody,
-  DraftedBody,
+  DraftResultBody,
   FixesBody,
   KeyFlowBody,
-  MovedBody,
+  MoveResultBody,
   ReferrerBody,
   VersionBody,
   VersionTextBody,
@@ -22,13 +22,13 @@ export const relations = {
   fixes: (id: string, text: string) => post<readonly FixesBody[]>(at(id, '/fixes'), { text }),
   versions: (id: string) => call<readonly VersionBody[]>(at(id, '/versions')),
   version: (id: string, hash: string) => call<VersionTextBody>(at(id, `/versions/${hash}`)),
-  drawn: (id: string, hash: string) => call<DraftedBody>(at(id, `/versions/${hash}/drawn`)),
+  drawn: (id: string, hash: string) => call<DraftResultBody>(at(id, `/versions/${hash}/drawn`)),
   difference: (id: string, from: string, to: string) => call<DifferenceBody>(at(id, `/diff?from=${from}&to=${to}`)),
   compare: (id: string, before: string, after: string) => post<DifferenceBody>(at(id, '/compare'), { before, after }),
   referrers: (id: string) => call<readonly ReferrerBody[]>(at(id, '/referrers')),
-  move: (id: string, to: string, follow: boolean) => post<MovedBody>(at(id, '/move'), { id: to, follow }),
+  move: (id: string, to: string, follow: boolean) => post<MoveResultBody>(at(id, '/move'), { id: to, follow }),
   duplicate: (id: string, to: string) => post<DocumentBody>(at(id, '/duplicate'), { id: to }),
   remove: (id: string) => call<void>(at(id), { method: 'DELETE' }),
-  deleted: () => call<readonly DeletedBody[]>('/deleted_documents'),
+  deleted: () => call<readonly DeletedDocumentBody[]>('/deleted_documents'),
   restore: (id: string) => post<DocumentBody>(at(id, '/restore'), {}),
 }

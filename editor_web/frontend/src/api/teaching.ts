@@ -4,42 +4,42 @@ import { create } from 'zustand'
 import { call, post } from './client'
 import { useLive } from './live'
 import type {
-  ArmCard,
-  ArmCards,
-  ArmNow,
-  ArmsNow,
-  Button,
+  ArmInfo,
+  ArmInfoFrame,
+  ArmLive,
+  ArmsLiveFrame,
+  ButtonInput,
   EntriesChanged,
   EntryPage,
-  Fits,
-  Go,
-  HandNews,
-  Jog,
-  Jogging,
-  LookAt,
+  PrimitiveComparison,
+  JogVelocity,
+  HelpingHandFrame,
+  StartJog,
+  JogStatus,
+  PreviewTaught,
   PlayBody,
-  Played,
-  PushBody,
-  Refused,
-  Rest,
+  PlaybackResult,
+  PushToolBody,
+  RefusedFrame,
+  StopJog,
   TagsBody,
   TeachStatus,
   Trigger,
 } from './types'
-import { PAGE } from './shown'
+import { PAGE } from './layerGroups'
 import { openSocket } from './socket'
 
-type FromServer = ArmCards | ArmsNow | HandNews | EntriesChanged | Jogging | Refused
-type ToServer = Jog | Go | Rest | Button | LookAt
+type FromServer = ArmInfoFrame | ArmsLiveFrame | HelpingHandFrame | EntriesChanged | JogStatus | RefusedFrame
+type ToServer = StartJog | JogVelocity | StopJog | ButtonInput | PreviewTaught
 
 export interface TeachStore {
   readonly isOpen: boolean
   /** Undefined until the server has told. */
-  readonly arms: readonly ArmCard[] | undefined
+  readonly arms: readonly ArmInfo[] | undefined
   readonly canPush: boolean
   /** The names of all frames of the cell. */
   readonly frames: readonly string[]
-  readonly now: Dict<ArmNow>
+  readonly now: Dict<ArmLive>
   /** Null where there is no Helping Hand, undefined until told. */
   readonly hand: TeachStatus | null | undefined
   /** Whether something is shown in the cell. */
@@ -49,7 +49,7 @@ export interface TeachStore {
   /** The arm that this page jogs. */
   readonly jogging: string
   readonly heldBy: string
-  readonly refused: Readonly<Partial<Record<Refused['what'], Refused>>>
+  readonly refused: Readonly<Partial<Record<RefusedFrame['what'], RefusedFrame>>>
 }
 
 const NOTHING: TeachStore = {
@@ -77,7 +77,7 @@ export function tellServer(message: ToServer): void {
 }
 
 /** Take the words of a refusal away. */
-export function forgiveTeach(what: Refused['what']): void {
+export function clearTeachRefusal(what: RefusedFrame['what']): void {
   const { [what]: _, ...others } = useTeach.getState().refused
   useTeach.setState({ refused: others })
 }
@@ -133,7 +133,7 @@ function take(message: FromServer): void {
 }
 
 /** Why nothing can be commanded now; undefined where it can. */
-export function useObstacle(): string | undefined {
+export function useDisabledReason(): string | undefined {
   const isOpen = useTeach((s) => s.isOpen)
   const role = useLive((s) => s.role)
   if (!isOpen) return 'the server does not answer'
@@ -141,7 +141,7 @@ export function useObstacle(): string | undefined {
 }
 
 /** Names an entry, or a capture by its number. */
-export interface Reference {
+export interface TaughtReference {
   readonly kind: string
   readonly name: string
   readonly capture: number
@@ -150,15 +150,15 @@ export interface Reference {
 }
 
 /** Show in the cell where an arm is along something; beside what is shown there already, where the place is not 0. */
-export function lookAt(arm: string, what: Reference, place = 0): void {
-  forgiveTeach('look')
+export function previewTaught(arm: string, what: TaughtReference, place = 0): void {
+  clearTeachRefusal('look')
   useTeach.setState({ isLooking: arm !== '' })
   tellServer({ k: 'look', arm, revision: 0, ...what, place })
 }
 
 /** Show nothing any more. */
-export function lookAway(): void {
-  lookAt('', { kind: '', name: '', capture: 0 })
+export function endPreview(): void {
+  previewTaught('', { kind: '', name: '', capture: 0 })
 }
 
 /** One change of an entry. */
@@ -217,7 +217,7 @@ export interface SaveRequest {
 
 export const teach = {
   entries: (kind: string, text: string) => call<EntryPage>(`/teach/entries?${query({ kind, text })}`),
-  fits: (arm: string, what: Reference) => call<Fits>(`/teach/fits?${query({ arm, ...what })}`),
+  fits: (arm: string, what: TaughtReference) => call<PrimitiveComparison>(`/teach/fits?${query({ arm, ...what })}`),
   now: (robot: string, callback: Trigger['trig_callback'], pressed = true) =>
     ask<TeachStatus>('teach/teach_now', { robot, callback, pressed }),
   frame: (robot: string, source_frame: string, target_frame: string) =>
@@ -234,7 +234,7 @@ export const teach = {
   undo: (kind: string, name: string) => ask<unknown>('store/undo_entry', { kind, name, by: 'the dashboard', reason: 'undone' }),
   remove: (kind: string, name: string) => ask<unknown>('store/delete_entry', { kind, name, by: 'the dashboard', reason: 'deleted' }),
   /** Ends when the arm rests, also when it is aborted. */
-  play: (body: PlayBody, signal: AbortSignal) => aborted<Played>('/teach/play', body, signal),
+  play: (body: PlayBody, signal: AbortSignal) => aborted<PlaybackResult>('/teach/play', body, signal),
   goal: (address: string, request: unknown, signal: AbortSignal) => aborted<GoalEnd>('/bus/goal', { address, request }, signal),
-  push: (body: PushBody) => post<void>('/teach/push', body),
+  push: (body: PushToolBody) => post<void>('/teach/push', body),
 }

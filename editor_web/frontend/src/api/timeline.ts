@@ -2,12 +2,12 @@
 import type { Dict } from '../document/dict'
 import { create } from 'zustand'
 import { nextMoment } from '../document/timelineMoment'
-import { withTimeline, type Course } from '../document/timeline'
+import { withTimeline, type LoadedTimeline } from '../document/timeline'
 import { call, idPath, wordsOf } from './client'
-import type { ScopeLine } from './data'
+import type { UserdataScope } from './data'
 import { showMoment, useLive } from './live'
 import { showCellAt } from './past'
-import type { Failure, Moment, OpenedPastBody, PastRunsBody, RecordingBody, Timeline } from './types'
+import type { RunFailure, PastRunState, OpenRunBody, PastRunsBody, RecordingBody, Timeline } from './types'
 
 /** What is looked at: a run of the server or of its journal, or a recording with the run that it holds. */
 export interface Subject {
@@ -29,9 +29,9 @@ export function recordingSubject(path: string, run: string): Subject {
 }
 
 /** The userdata of a moment. */
-export interface PastValues {
+export interface PastUserdata {
   readonly seq: number
-  readonly scopes: Dict<ScopeLine>
+  readonly scopes: Dict<UserdataScope>
   readonly problem: string
 }
 
@@ -48,12 +48,12 @@ export const pastApi = {
   runs: ({ text, kind, sinceS, untilS, limit }: PastQuery) =>
     call<PastRunsBody>(`/past-runs?${query({ text, kind, since_s: sinceS, until_s: untilS, limit })}`),
   recordings: () => call<readonly RecordingBody[]>('/recordings'),
-  openRun: (run: string) => call<OpenedPastBody>(`/runs/${encodeURIComponent(run)}/past`),
-  openRecording: (path: string) => call<OpenedPastBody>(`/recordings/${idPath(path)}`),
+  openRun: (run: string) => call<OpenRunBody>(`/runs/${encodeURIComponent(run)}/past`),
+  openRecording: (path: string) => call<OpenRunBody>(`/recordings/${idPath(path)}`),
   timeline: (subject: Subject, after: number, fromS?: number, untilS?: number) =>
     call<Timeline>(`${subject.address}/timeline?${query({ after, from_s: fromS, until_s: untilS })}`),
-  userdata: (subject: Subject, seq: number) => call<PastValues>(`${subject.address}/userdata?${query({ seq })}`),
-  failure: (subject: Subject) => call<Failure | null>(`${subject.address}/failure`),
+  userdata: (subject: Subject, seq: number) => call<PastUserdata>(`${subject.address}/userdata?${query({ seq })}`),
+  failure: (subject: Subject) => call<RunFailure | null>(`${subject.address}/failure`),
 }
 
 function query(values: Dict<string | number | undefined>): string {
@@ -65,7 +65,7 @@ function query(values: Dict<string | number | undefined>): string {
 interface TimelineStore {
   /** What is looked at, where it is not simply the run that the page shows. */
   readonly opened: Subject | undefined
-  readonly course: Course | undefined
+  readonly course: LoadedTimeline | undefined
   readonly problem: string
   /** Where the cursor is; undefined at the present. */
   readonly timeS: number | undefined
@@ -182,7 +182,7 @@ async function lookAt(subject: Subject, wish: Wish): Promise<void> {
 async function show(subject: Subject, { timeS, seq }: Wish): Promise<void> {
   const before = useLive.getState().past
   try {
-    const told = await call<Moment | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
+    const told = await call<PastRunState | undefined>(`${subject.address}/at?${query({ time_s: timeS, seq, known: before?.seq })}`)
     // Meanwhile somebody may have gone back to the present, or to another run.
     if (wishedOf?.address !== subject.address) return
     const at = timeS ?? told?.time_s ?? before?.timeS ?? 0

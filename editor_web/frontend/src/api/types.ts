@@ -2,6 +2,18 @@
 
 import type { Dict } from '../document/dict'
 
+/** One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that began and ended it. */
+export interface ActivationInterval {
+  readonly start_s: number
+  readonly end_s: number | null
+  readonly status: string
+  readonly outcome: string
+  readonly visit: number
+  readonly seq: number
+  readonly end_seq: number
+  readonly count: number
+}
+
 /** Put a new node into a container; its name is made up where none is given. `kind` is a key of documents: state, behavior, machine, concurrency, priority, tree, foreach, and inside trees sequence, selector, inverter, and so on. `runs` is what a state, behavior or behaviour runs. With `yaml`, nodes as `copy` gives them, the content is that instead. `after` leads the open good outcomes of a sibling (its path) to the new node; `on_edge` puts it into an arrow. `index` is its place among the children. */
 export interface AddNode {
   readonly edit: "add_node"
@@ -14,11 +26,11 @@ export interface AddNode {
   readonly index?: number | null
   readonly position?: readonly [number, number] | null
   readonly after?: string | null
-  readonly on_edge?: Edge | null
+  readonly on_edge?: TransitionRef | null
 }
 
 /** What an arm is: its joints with their limits (rad, rad/s), its tool, and the names of what it can do. */
-export interface ArmCard {
+export interface ArmInfo {
   readonly name: string
   readonly model: string
   readonly joint_names: readonly string[]
@@ -30,35 +42,27 @@ export interface ArmCard {
 }
 
 /** First frame: the arms and frames of the cell; `can_push` where bodies can be pushed at, as in a simulation. */
-export interface ArmCards {
+export interface ArmInfoFrame {
   readonly k: "arms"
-  readonly arms: readonly ArmCard[]
+  readonly arms: readonly ArmInfo[]
   readonly can_push: boolean
   readonly frames: readonly string[]
 }
 
 /** What an arm does and where it is: joints in radians, `tool_pose` x y z (m), quaternion x y z w, in the world. */
-export interface ArmNow {
+export interface ArmLive {
   readonly mode: string
   readonly activity: string
   readonly error: string
   readonly joints: readonly number[]
   readonly tool_pose: readonly number[]
-  readonly tool: ToolNow | null
+  readonly tool: ToolLive | null
 }
 
 /** The arms that are another than when told last, at most ten times a second. */
-export interface ArmsNow {
+export interface ArmsLiveFrame {
   readonly k: "now"
-  readonly arms: Dict<ArmNow>
-}
-
-/** An interrupted run cannot go on before these questions are answered. */
-export interface AskBody {
-  readonly message: string
-  readonly where: string
-  readonly hint: string
-  readonly questions: readonly QuestionBody[]
+  readonly arms: Dict<ArmLive>
 }
 
 /** Lead the open outcomes of nodes where they obviously go; of all children for a machine. */
@@ -127,7 +131,7 @@ export interface BusParameterBody {
 }
 
 /** From the page: a button of a keyboard or gamepad, to be told on `buttons/<source>/<button>`. */
-export interface Button {
+export interface ButtonInput {
   readonly k: "button"
   readonly source: string
   readonly button: string
@@ -158,14 +162,14 @@ export interface CartFit {
   readonly rms_rad: number
   readonly max_rad: number
   readonly end_rad: number
-  readonly cut: Cut
+  readonly cut: TrimInterval
 }
 
 /** Everything that can be put into a behavior. `names` are those of the open cell by kind, which the JSON Schema of a parameter calls `cell_name`: robots, parts, cameras, frames. Those of a tool, link, output or label begin with the name of what has it: `left/panda_hand`. */
 export interface CatalogueBody {
   readonly states: readonly StateBody[]
   readonly containers: readonly ContainerBody[]
-  readonly behaviors: readonly ReferableBody[]
+  readonly behaviors: readonly ReferableBehaviorBody[]
   readonly entries: readonly EntryBody[]
   readonly names: Dict<readonly string[]>
 }
@@ -175,11 +179,6 @@ export interface CauseLine {
   readonly message: string
   readonly where: string
   readonly kind: string
-}
-
-/** What a hot change did, a line for each difference. */
-export interface ChangeBody {
-  readonly changes: readonly string[]
 }
 
 /** Take the value of a parameter back; its default holds. */
@@ -236,7 +235,7 @@ export interface ControlBody {
   readonly paused: boolean
   readonly confirmed: boolean
   readonly cannot: readonly string[]
-  readonly waiting: readonly WaitingBody[]
+  readonly waiting: readonly WaitingNodeBody[]
   readonly locks: readonly string[]
   readonly breakpoints: readonly BreakpointBody[]
   readonly autonomy: "off" | "low" | "high" | "full"
@@ -254,7 +253,7 @@ export interface ControlLive {
   readonly confirmed: boolean
   readonly stepping: boolean
   readonly cannot: readonly string[]
-  readonly waiting: readonly WaitingLive[]
+  readonly waiting: readonly WaitingNodeLive[]
   readonly locks: readonly LockLive[]
   readonly breakpoints: readonly BreakpointLive[]
   readonly autonomy: "full" | "high" | "low" | "off"
@@ -264,56 +263,26 @@ export interface ControlLive {
   readonly loss_timeout_s: number
 }
 
-/** Nodes as YAML, to be pasted anywhere. */
-export interface CopiedBody {
-  readonly yaml: string
-}
-
 /** A text and the nodes to copy from it. */
 export interface CopyBody {
   readonly text: string
   readonly paths: readonly string[]
 }
 
-/** What was used of a recording: from `start_s` to `end_s`, counted from its first sample. */
-export interface Cut {
-  readonly start_s: number
-  readonly end_s: number
-}
-
-/** A step with its role, and what a grasp takes: a part, or an empty name for one that nobody named. */
-export interface DecidedStepBody {
-  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
-  readonly name: string
-  readonly role: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close"
-  readonly part: string | null
+/** Nodes as YAML, to be pasted anywhere. */
+export interface CopyResultBody {
+  readonly yaml: string
 }
 
 /** A document that has gone and can be restored; `saved_at` is when its last text was first seen. */
-export interface DeletedBody {
+export interface DeletedDocumentBody {
   readonly id: string
   readonly saved_at: number
 }
 
-/** What changed in the watched run since `after`, the runs and arms that changed, and the run's present control. `dropped` log lines are missing. */
-export interface Delta {
-  readonly k: "delta"
-  readonly run: string
-  readonly after: number
-  readonly seq: number
-  readonly now_s: number
-  readonly ticking: boolean
-  readonly runs: readonly RunLine[]
-  readonly nodes: Dict<NodeLive>
-  readonly log: readonly LogLine[]
-  readonly dropped: number
-  readonly control: ControlLive | null
-  readonly robots: Dict<RobotLine>
-}
-
 /** What a behavior is to be proposed from; with `id` it is also written there, as a new document. */
 export interface DemonstrationBody {
-  readonly steps: readonly TaughtStepBody[]
+  readonly steps: readonly DemonstrationStepBody[]
   readonly arm?: string
   readonly tool?: "gripper" | "hand" | "magnet" | null
   readonly speed?: number
@@ -321,6 +290,14 @@ export interface DemonstrationBody {
   readonly approach_m?: number
   readonly width_m?: number | null
   readonly id?: string
+}
+
+/** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
+export interface DemonstrationStepBody {
+  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
+  readonly name: string
+  readonly role?: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close" | null
+  readonly part?: string | null
 }
 
 /** What differs between two versions; `layout_only` when nothing but positions on the canvas does. */
@@ -407,7 +384,7 @@ export interface DraftBody {
 }
 
 /** What a text draws, and what is wrong with it; `graph` and `document` are null where it cannot be read. `checked` is false where it was not asked for findings, which may follow from `findings`. */
-export interface DraftedBody {
+export interface DraftResultBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
   readonly document: DocumentInfoBody | null
@@ -416,19 +393,20 @@ export interface DraftedBody {
 }
 
 /** Put copies of nodes beside them; transitions among them lead to the copies. */
-export interface Duplicate {
+export interface DuplicateNodes {
   readonly edit: "duplicate"
   readonly paths: readonly string[]
 }
 
-/** An arrow of a machine: a child of it (its path), and one of its outcomes. */
-export interface Edge {
-  readonly from: string
-  readonly outcome: string
+/** Why no edit was made: `index` says which of them could not be. */
+export interface EditRefusalBody {
+  readonly message: string
+  readonly hint: string
+  readonly index: number
 }
 
 /** The text after the edits, and the nodes that they made or changed; the text as it was where refused. */
-export interface EditedBody {
+export interface EditResultBody {
   readonly hash: string
   readonly graph: DocumentNodeBody | null
   readonly document: DocumentInfoBody | null
@@ -436,7 +414,7 @@ export interface EditedBody {
   readonly checked: boolean
   readonly text: string
   readonly changed: readonly string[]
-  readonly refused: RefusalBody | null
+  readonly refused: EditRefusalBody | null
 }
 
 /** A text and the edits to make in it, all or none; they are those of `engine.editing.edit`. */
@@ -488,18 +466,6 @@ export interface EventsBody {
   readonly last: number
 }
 
-/** A run that failed: it began at event `seq`, at node `path` (empty where no node did it). `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote. */
-export interface Failure {
-  readonly seq: number
-  readonly time_s: number
-  readonly path: string
-  readonly text: string
-  readonly hint: string
-  readonly links: readonly FailureLink[]
-  readonly steps: readonly FailureStep[]
-  readonly around: readonly LogLine[]
-}
-
 /** One link of the chain of causes, what was measured first; `hint` says what to do about it, may be empty. */
 export interface FailureLink {
   readonly message: string
@@ -534,14 +500,6 @@ export interface FindingBody {
   readonly hint: string
 }
 
-/** A recording and the primitive learned from it, as the arm would carry them out, and how far they are apart. */
-export interface Fits {
-  readonly demonstration: Trace | null
-  readonly primitive: Trace | null
-  readonly joint_fit: JointFit | null
-  readonly cart_fit: CartFit | null
-}
-
 /** What would mend a finding: the edits to send, and what they do in words. */
 export interface FixBody {
   readonly title: string
@@ -563,12 +521,6 @@ export interface ForceBody {
   readonly outcome: string
 }
 
-/** From the page, ten times a second or more while a key is down: go at this velocity, m/s and rad/s. */
-export interface Go {
-  readonly k: "go"
-  readonly velocity: readonly number[]
-}
-
 /** One node of the behavior with everything inside it. */
 export interface GraphNodeBody {
   readonly path: string
@@ -583,17 +535,11 @@ export interface GraphNodeBody {
 }
 
 /** Put siblings into a new container in their place; what leads out of them becomes its outcomes. */
-export interface Group {
+export interface GroupNodes {
   readonly edit: "group"
   readonly paths: readonly string[]
   readonly kind: "concurrency" | "machine" | "parallel" | "priority" | "selector" | "sequence"
   readonly name?: string | null
-}
-
-/** What the Helping Hand does; null where there is none. */
-export interface HandNews {
-  readonly k: "hand"
-  readonly status: TeachStatus | null
 }
 
 /** First frame; another `epoch` than before means that the server was restarted. */
@@ -605,27 +551,41 @@ export interface Hello {
   readonly server_time_s: number
 }
 
+/** What the Helping Hand does; null where there is none. */
+export interface HelpingHandFrame {
+  readonly k: "hand"
+  readonly status: TeachStatus | null
+}
+
+/** A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted. */
+export interface HotChangeBody {
+  readonly preempt: boolean
+}
+
+/** What a hot change did, a line for each difference. */
+export interface HotChangeResultBody {
+  readonly changes: readonly string[]
+}
+
 /** A run of the journal whose engine died; `behavior` is the name of what it executed. */
-export interface InterruptedBody {
+export interface InterruptedRunBody {
   readonly id: string
   readonly behavior: string
   readonly started_at_s: number
   readonly last_seq: number
 }
 
-/** From the page: make ready to jog this arm, until `rest`. */
-export interface Jog {
-  readonly k: "jog"
-  readonly arm: string
-  readonly space: "joints" | "tool"
-  readonly frame: "base" | "tool" | "world"
-}
-
 /** Which arm this page jogs now, empty for none, and what holds it back, in words. */
-export interface Jogging {
+export interface JogStatus {
   readonly k: "jogging"
   readonly arm: string
   readonly held_by: string
+}
+
+/** From the page, ten times a second or more while a key is down: go at this velocity, m/s and rad/s. */
+export interface JogVelocity {
+  readonly k: "go"
+  readonly velocity: readonly number[]
 }
 
 /** How far a learned joint DMP is from its recording: over all samples, the worst one, and the goal at the end. `joint` is the one with the greatest error, counted from 0. `rms_m` and `max_m` are how far that puts the tool centre point off, None where nobody knew the arm. */
@@ -635,7 +595,7 @@ export interface JointFit {
   readonly max_rad: number
   readonly end_rad: number
   readonly joint: number
-  readonly cut: Cut
+  readonly cut: TrimInterval
   readonly rms_m: number | null
   readonly max_m: number | null
 }
@@ -673,6 +633,36 @@ export interface KeyWriterBody {
   readonly name: string
 }
 
+/** What changed in the watched run since `after`, the runs and arms that changed, and the run's present control. `dropped` log lines are missing. */
+export interface LiveDelta {
+  readonly k: "delta"
+  readonly run: string
+  readonly after: number
+  readonly seq: number
+  readonly now_s: number
+  readonly ticking: boolean
+  readonly runs: readonly RunOverview[]
+  readonly nodes: Dict<NodeLive>
+  readonly log: readonly LogLine[]
+  readonly dropped: number
+  readonly control: ControlLive | null
+  readonly robots: Dict<RobotLive>
+}
+
+/** Everything of the watched run (empty when none is), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is there while the run is under way. */
+export interface LiveSnapshot {
+  readonly k: "snapshot"
+  readonly run: string
+  readonly seq: number
+  readonly now_s: number
+  readonly ticking: boolean
+  readonly runs: readonly RunOverview[]
+  readonly nodes: Dict<NodeLive>
+  readonly log: readonly LogLine[]
+  readonly control: ControlLive | null
+  readonly robots: Dict<RobotLive>
+}
+
 /** Hold the outcome of a node; `reason` goes into the event log. */
 export interface LockBody {
   readonly path: string
@@ -707,39 +697,12 @@ export interface LoginLinkRequest {
   readonly role: "operator" | "viewer"
 }
 
-/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of all that is shown; 1 to 4 are beside that, each in its colour. */
-export interface LookAt {
-  readonly k: "look"
-  readonly arm: string
-  readonly kind: string
-  readonly name: string
-  readonly capture: number
-  readonly revision: number
-  readonly place: number
-}
-
 /** Lines that both sides changed differently; `line` is where they stand in the text that was to be saved. */
 export interface MergeConflictBody {
   readonly line: number
   readonly base: string
   readonly ours: string
   readonly theirs: string
-}
-
-/** A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before. */
-export interface Moment {
-  readonly seq: number
-  readonly time_s: number
-  readonly nodes: Dict<NodeLive>
-  readonly log: readonly LogLine[]
-  readonly dropped: number
-}
-
-/** An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise. */
-export interface MomentBody {
-  readonly run: string
-  readonly seq: number
-  readonly path?: string | null
 }
 
 /** Where a document goes; with `follow`, references to it are written anew. */
@@ -757,7 +720,7 @@ export interface MoveNodes {
 }
 
 /** A document at its new place: whose references follow, and whose could not. */
-export interface MovedBody {
+export interface MoveResultBody {
   readonly document: DocumentBody
   readonly followed: readonly string[]
   readonly left: readonly string[]
@@ -775,17 +738,17 @@ export interface NewIdBody {
   readonly id: string
 }
 
-/** The node that a command is about. */
-export interface NodeBody {
-  readonly path: string
-}
-
 /** A node that was added, removed, changed or moved between two versions; the path `document` is the document. */
 export interface NodeChangeBody {
   readonly path: string
   readonly change: string
   readonly before_path: string | null
   readonly fields: readonly FieldChangeBody[]
+}
+
+/** The node that a command is about. */
+export interface NodeCommandBody {
+  readonly path: string
 }
 
 /** One node: idle, active, done, failed or stopped. `visits` counts activations, so a visit shorter than a frame is still seen. Times are on the run's clock; `duration_s` is of the last finished visit. `followed` is the arrow that a machine took last, as `source|outcome`. `plan` is the way that this visit has planned last. */
@@ -801,13 +764,13 @@ export interface NodeLive {
 }
 
 /** A past run or a recording that is opened: what it was, and the behavior as it was when the run began. */
-export interface OpenedPastBody {
+export interface OpenRunBody {
   readonly run: PastRunBody
   readonly behavior: BehaviorBody
 }
 
 /** From the client: I operate this run from now on (empty: none); losing the connection is losing the operator. */
-export interface Operate {
+export interface OperateRun {
   readonly k: "operate"
   readonly run?: string
 }
@@ -835,6 +798,15 @@ export interface PastRunBody {
   readonly here: boolean
 }
 
+/** A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before. */
+export interface PastRunState {
+  readonly seq: number
+  readonly time_s: number
+  readonly nodes: Dict<NodeLive>
+  readonly log: readonly LogLine[]
+  readonly dropped: number
+}
+
 /** A page of past runs, newest first, and how many there are of each kind that match the other filters. */
 export interface PastRunsBody {
   readonly runs: readonly PastRunBody[]
@@ -843,12 +815,20 @@ export interface PastRunsBody {
 }
 
 /** Put nodes as `copy` gives them into a container. */
-export interface Paste {
+export interface PasteNodes {
   readonly edit: "paste"
   readonly parent: string
   readonly yaml: string
   readonly position?: readonly [number, number] | null
   readonly index?: number | null
+}
+
+/** The planned way of an arm: `proposed`, `moving` or `blocked`, by what, and since when (of the server's clock). `length_m` is that of the tool's path. */
+export interface PathLive {
+  readonly state: string
+  readonly reason: string
+  readonly length_m: number
+  readonly since_s: number
 }
 
 /** The connection lives; a page that does not answer with `Pong` for a while counts as gone. */
@@ -877,7 +857,7 @@ export interface PlayBody {
 }
 
 /** How it ended: `succeeded`, `preempted`, `rejected` or `failed`, and why. */
-export interface Played {
+export interface PlaybackResult {
   readonly status: string
   readonly cause: string
 }
@@ -887,10 +867,29 @@ export interface Pong {
   readonly k: "pong"
 }
 
+/** From the page: show where this arm is along an entry (`kind`, `name`) or a capture; nothing without an arm. `revision` means what the entry was after that change, 0 what it is now. With `place` 0 it takes the place of all that is shown; 1 to 4 are beside that, each in its colour. */
+export interface PreviewTaught {
+  readonly k: "look"
+  readonly arm: string
+  readonly kind: string
+  readonly name: string
+  readonly capture: number
+  readonly revision: number
+  readonly place: number
+}
+
+/** A recording and the primitive learned from it, as the arm would carry them out, and how far they are apart. */
+export interface PrimitiveComparison {
+  readonly demonstration: Trace | null
+  readonly primitive: Trace | null
+  readonly joint_fit: JointFit | null
+  readonly cart_fit: CartFit | null
+}
+
 /** The behavior as YAML, what it does in words, and what was decided; `id` is where it was written. */
 export interface ProposalBody {
   readonly text: string
-  readonly steps: readonly DecidedStepBody[]
+  readonly steps: readonly ProposedStepBody[]
   readonly words: readonly string[]
   readonly remarks: readonly string[]
   readonly arm: string
@@ -901,8 +900,16 @@ export interface ProposalBody {
   readonly id: string
 }
 
+/** A step with its role, and what a grasp takes: a part, or an empty name for one that nobody named. */
+export interface ProposedStepBody {
+  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
+  readonly name: string
+  readonly role: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close"
+  readonly part: string | null
+}
+
 /** Push at the tool of a simulated arm, along the axes of the world. */
-export interface PushBody {
+export interface PushToolBody {
   readonly arm: string
   readonly force_n: readonly [number, number, number]
   readonly duration_s: number
@@ -926,7 +933,7 @@ export interface RecordingBody {
 }
 
 /** A behavior that another may refer to. */
-export interface ReferableBody {
+export interface ReferableBehaviorBody {
   readonly id: string
   readonly name: string
   readonly description: string
@@ -942,15 +949,8 @@ export interface ReferrerBody {
   readonly paths: readonly string[]
 }
 
-/** Why no edit was made: `index` says which of them could not be. */
-export interface RefusalBody {
-  readonly message: string
-  readonly hint: string
-  readonly index: number
-}
-
 /** Something that the page sent was not done; `what` is which. */
-export interface Refused {
+export interface RefusedFrame {
   readonly k: "refused"
   readonly what: "button" | "jog" | "look"
   readonly message: string
@@ -970,26 +970,29 @@ export interface RenameNode {
   readonly name: string
 }
 
-/** From the page: the key is up. */
-export interface Rest {
-  readonly k: "rest"
-}
-
 /** A request to go on with an interrupted run: `answers` by path are `rerun` or an outcome. */
 export interface ResumeBody {
   readonly answers?: Dict<string>
   readonly changed?: boolean
 }
 
+/** An interrupted run cannot go on before these questions are answered. */
+export interface ResumeQuestionsBody {
+  readonly message: string
+  readonly where: string
+  readonly hint: string
+  readonly questions: readonly QuestionBody[]
+}
+
 /** One arm: what it does, why it stopped by itself, and the share of their own speed that motions run at. `way` is the way that is planned for it, which the 3D view shows. */
-export interface RobotLine {
+export interface RobotLive {
   readonly name: string
   readonly mode: string
   readonly activity: string
   readonly error: string
   readonly speed_override: number
   readonly controller: string
-  readonly way: WayLine | null
+  readonly way: PathLive | null
 }
 
 /** One condition of a concurrency container: the outcome, and which child must have ended how, all or `at_least`. One that preempts some children has no outcome. */
@@ -1012,8 +1015,20 @@ export interface RunBody {
   readonly duration_s: number
 }
 
+/** A run that failed: it began at event `seq`, at node `path` (empty where no node did it). `steps` are the nodes from the root down to there, `around` what that node asked, was told and wrote. */
+export interface RunFailure {
+  readonly seq: number
+  readonly time_s: number
+  readonly path: string
+  readonly text: string
+  readonly hint: string
+  readonly links: readonly FailureLink[]
+  readonly steps: readonly FailureStep[]
+  readonly around: readonly LogLine[]
+}
+
 /** One run in the list of runs; `waits` is asks, paused or locked while it waits for somebody. */
-export interface RunLine {
+export interface RunOverview {
   readonly id: string
   readonly behavior: string
   readonly status: string
@@ -1025,6 +1040,13 @@ export interface RunLine {
   readonly waits: string
 }
 
+/** An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise. */
+export interface RunPositionBody {
+  readonly run: string
+  readonly seq: number
+  readonly path?: string | null
+}
+
 /** A text to write, and the hash of the one it was made from. */
 export interface SaveBody {
   readonly text: string
@@ -1032,7 +1054,7 @@ export interface SaveBody {
 }
 
 /** What is on disk now. */
-export interface SavedBody {
+export interface SaveResultBody {
   readonly hash: string
   readonly saved_at: number
 }
@@ -1091,36 +1113,10 @@ export interface SetTransition {
 }
 
 /** From the client: the 3D view under `/cell/<page>/` shows these groups from now on, and no others. */
-export interface Show {
+export interface ShowLayers {
   readonly k: "show"
   readonly page: string
   readonly groups: readonly ("cameras" | "detections" | "frames" | "obstacles" | "people" | "voxels" | "ways")[]
-}
-
-/** Everything of the watched run (empty when none is), all runs, newest first, and all arms. `now_s` is the run's clock at sending; it goes on with wall time while `ticking`. `control` is there while the run is under way. */
-export interface Snapshot {
-  readonly k: "snapshot"
-  readonly run: string
-  readonly seq: number
-  readonly now_s: number
-  readonly ticking: boolean
-  readonly runs: readonly RunLine[]
-  readonly nodes: Dict<NodeLive>
-  readonly log: readonly LogLine[]
-  readonly control: ControlLive | null
-  readonly robots: Dict<RobotLine>
-}
-
-/** One activation of a node, or `count` of them that lie close together; `end_s` is null while it is active. `status` is active, done, failed or stopped, the worst one of several; `seq` and `end_seq` are the events that began and ended it. */
-export interface Span {
-  readonly start_s: number
-  readonly end_s: number | null
-  readonly status: string
-  readonly outcome: string
-  readonly visit: number
-  readonly seq: number
-  readonly end_seq: number
-  readonly count: number
 }
 
 /** A request to start a run; without a seed the server draws one. */
@@ -1130,11 +1126,19 @@ export interface StartBody {
   readonly inputs?: Dict<unknown>
   readonly seed?: number | null
   readonly supervision?: SupervisionBody
-  readonly begin?: MomentBody | null
+  readonly begin?: RunPositionBody | null
+}
+
+/** From the page: make ready to jog this arm, until `rest`. */
+export interface StartJog {
+  readonly k: "jog"
+  readonly arm: string
+  readonly space: "joints" | "tool"
+  readonly frame: "base" | "tool" | "world"
 }
 
 /** The run that was started. */
-export interface StartedBody {
+export interface StartResultBody {
   readonly run: string
 }
 
@@ -1173,6 +1177,11 @@ export interface StopEndpointBody {
   readonly token: string
 }
 
+/** From the page: the key is up. */
+export interface StopJog {
+  readonly k: "rest"
+}
+
 /** How a run is watched over; see `flexcell run --help` for the same options. */
 export interface SupervisionBody {
   readonly autonomy?: "off" | "low" | "high" | "full"
@@ -1191,11 +1200,6 @@ export interface TagsBody {
   readonly revision: number
 }
 
-/** A request for a hot change; with `preempt`, what is active and cannot go on as it is is preempted. */
-export interface TakeFileBody {
-  readonly preempt: boolean
-}
-
 /** The targets that an arm of the document's cell cannot be at. `dropped` where the page has sent a newer text; `problem` says why they are not known otherwise. */
 export interface TargetFindingsBody {
   readonly findings: readonly FindingBody[]
@@ -1207,14 +1211,6 @@ export interface TargetFindingsBody {
 export interface TargetsBody {
   readonly text: string
   readonly page: string
-}
-
-/** An entry in its place, or an action `open` or `close` of the tool; without a role it is guessed. */
-export interface TaughtStepBody {
-  readonly kind: "joints" | "pose" | "trajectory" | "dmp" | "cart_dmp" | "gripper" | "action"
-  readonly name: string
-  readonly role?: "via" | "approach" | "grasp" | "release" | "depart" | "follow" | "open" | "close" | null
-  readonly part?: string | null
 }
 
 /** What the Helping Hand does, also the latest value of `teach/status`. `recording` and `guided` are names of robots; `said` is its last word, such as why a capture was refused. */
@@ -1231,16 +1227,7 @@ export interface TextBody {
   readonly text: string
 }
 
-/** One marked event; `kind` is failure, command, gate, goal, change, fault or warning. */
-export interface TimeMark {
-  readonly seq: number
-  readonly time_s: number
-  readonly kind: string
-  readonly path: string
-  readonly text: string
-}
-
-/** A run up to event `seq`, or what of it was begun or ended after the event that was asked for. `merged` says that spans which lie close together became one: ask for a part of the time to see it exactly. `left_out` marks are not in it. */
+/** A run up to event `seq`, or what of it was begun or ended after the event that was asked for. `merge_intervals` says that spans which lie close together became one: ask for a part of the time to see it exactly. `left_out` marks are not in it. */
 export interface Timeline {
   readonly run: string
   readonly seq: number
@@ -1248,18 +1235,27 @@ export interface Timeline {
   readonly ended: boolean
   readonly merged: boolean
   readonly rows: readonly TimelineRow[]
-  readonly marks: readonly TimeMark[]
+  readonly marks: readonly TimelineMarker[]
   readonly left_out: number
+}
+
+/** One marked event; `kind` is failure, command, gate, goal, change, fault or warning. */
+export interface TimelineMarker {
+  readonly seq: number
+  readonly time_s: number
+  readonly kind: string
+  readonly path: string
+  readonly text: string
 }
 
 /** The spans of one node, in order; its depth is in its path. */
 export interface TimelineRow {
   readonly path: string
-  readonly spans: readonly Span[]
+  readonly spans: readonly ActivationInterval[]
 }
 
 /** What the tool measures: opening of a gripper (m) or how far a hand is closed (0 to 100), and what it holds. */
-export interface ToolNow {
+export interface ToolLive {
   readonly width_m: number | null
   readonly closed_percent: number | null
   readonly held: boolean
@@ -1279,6 +1275,12 @@ export interface TransitionBody {
   readonly source: string
   readonly outcome: string
   readonly target: string
+}
+
+/** An arrow of a machine: a child of it (its path), and one of its outcomes. */
+export interface TransitionRef {
+  readonly from: string
+  readonly outcome: string
 }
 
 /** What fires, and what then happens to which robot; the fields of RCY figure 12. The topic's field `field` (the only boolean one, or `value` or `data`, where it is empty) is compared with `trig_value`: `rising_edge` fires when they begin to be equal, `falling_edge` when they end to be, `hold` lasts as long as they are. `joint_dmp_N` is the number of kernels of the primitive, 0 lets the fit decide. `tf_save` captures where `source_frame` is in `target_frame`, `gripper_save` how far the gripper is open and whether it holds something. */
@@ -1303,8 +1305,14 @@ export interface TriggerStatus {
   readonly fault: string
 }
 
+/** What was used of a recording: from `start_s` to `end_s`, counted from its first sample. */
+export interface TrimInterval {
+  readonly start_s: number
+  readonly end_s: number
+}
+
 /** Put the children of a container in its place. */
-export interface Ungroup {
+export interface UngroupNode {
   readonly edit: "ungroup"
   readonly path: string
 }
@@ -1327,7 +1335,7 @@ export interface VersionTextBody {
 }
 
 /** A node that waits at the gate: `before` its entry or `after` its outcome, and for what. */
-export interface WaitingBody {
+export interface WaitingNodeBody {
   readonly path: string
   readonly visit: number
   readonly point: "before" | "after"
@@ -1337,7 +1345,7 @@ export interface WaitingBody {
 }
 
 /** A node that waits `before` its entry or `after` its outcome; `reasons` are pause, lock, autonomy. */
-export interface WaitingLive {
+export interface WaitingNodeLive {
   readonly path: string
   readonly point: "after" | "before"
   readonly outcome: string
@@ -1346,19 +1354,11 @@ export interface WaitingLive {
 }
 
 /** From the client: show this run from now on (empty: the list of runs only); answered by a snapshot. */
-export interface Watch {
+export interface WatchRun {
   readonly k: "watch"
   readonly run?: string
 }
 
-/** The planned way of an arm: `proposed`, `moving` or `blocked`, by what, and since when (of the server's clock). `length_m` is that of the tool's path. */
-export interface WayLine {
-  readonly state: string
-  readonly reason: string
-  readonly length_m: number
-  readonly since_s: number
-}
+export type Frame = Hello | LiveSnapshot | LiveDelta | DocumentsChanged | Ping
 
-export type Frame = Hello | Snapshot | Delta | DocumentsChanged | Ping
-
-export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | Group | Ungroup | Duplicate | Paste | SetDocument | AutoConnect
+export type Edit = AddNode | RemoveNodes | RenameNode | MoveNodes | SetTransition | ClearTransition | SetInitial | SetParameter | ClearParameter | SetField | SetPositions | GroupNodes | UngroupNode | DuplicateNodes | PasteNodes | SetDocument | AutoConnect

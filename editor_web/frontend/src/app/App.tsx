@@ -7,7 +7,7 @@ import { api } from '../api/client'
 import { connect, useLive, watch } from '../api/live'
 import { useSession } from '../api/session'
 import { useTour } from '../api/tour'
-import type { RunLine } from '../api/types'
+import type { RunOverview } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { Loading } from '../components/Loading'
 import { PageLink } from '../components/PageLink'
@@ -17,7 +17,7 @@ import { BehaviorList } from '../features/catalogue/BehaviorList'
 import { LostCell } from '../features/robots/LostCell'
 import { RunList } from '../features/runs/RunList'
 import { Header } from './Header'
-import { Interruption } from './Interruption'
+import { ConnectionLost } from './ConnectionLost'
 import { LogIn } from './LogIn'
 import { behaviorHref, editHref, goTo, PAST_HREF, runHref, RUNS_HREF, TEACH_HREF, useRoute, type Route } from './route'
 import { RoutedPage } from './RoutedPage'
@@ -102,7 +102,7 @@ export function App() {
         </div>
       </AppShell.Navbar>
       <AppShell.Main id="main" className="app-main">
-        <Interruption />
+        <ConnectionLost />
         <LogIn />
         <LostCell />
         <Loading name="This page" of={JSON.stringify(route)}>
@@ -125,7 +125,7 @@ function sideItem(isCurrent: boolean): string {
 }
 
 /** The run that a page shows: the one of its address; of a behavior the active one, else its newest. */
-function shownRun(route: Route, runs: readonly RunLine[]): RunLine | undefined {
+function shownRun(route: Route, runs: readonly RunOverview[]): RunOverview | undefined {
   if (route.page === 'run') return runs.find((run) => run.id === route.id)
   if (route.page !== 'behavior') return undefined
   const own = runs.filter((run) => run.behavior === route.id)

@@ -2,13 +2,13 @@
 import { Button } from '@mantine/core'
 import { IconPencil, IconPlayerPlayFilled } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
-import { loadKept, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
+import { loadSavedBreakpoints, toggleBreakpoint, useBreakpoints } from '../api/breakpoints'
 import { api } from '../api/client'
 import { useLive } from '../api/live'
 import { useGoalsOf } from '../api/goals'
-import { forgive, refuse } from '../api/refusal'
+import { clearRefusal, showRefusal } from '../api/refusal'
 import { hasCellView } from '../api/session'
-import type { BehaviorBody, RunLine, SessionBody } from '../api/types'
+import type { BehaviorBody, RunOverview, SessionBody } from '../api/types'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
 import { Panel } from '../components/Panel'
@@ -36,7 +36,7 @@ import { Breadcrumb } from './Breadcrumb'
 import { dockBodies } from './dock'
 import { InterruptedHere } from './InterruptedHere'
 import { FORM_ID, ParameterForm } from '../features/parameters/ParameterForm'
-import { BlockedWays } from '../features/robots/BlockedWays'
+import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { PastLine } from '../features/timeline/PastLine'
 import { useFetched } from './useFetched'
@@ -45,9 +45,9 @@ import { NarrowGraph, SideTabs, Wide, type Tab } from './WorkSpace'
 export interface BehaviorPageProps {
   readonly id: string
   /** The run that is shown, if any. */
-  readonly run: RunLine | undefined
+  readonly run: RunOverview | undefined
   /** All runs under way. */
-  readonly active: readonly RunLine[]
+  readonly active: readonly RunOverview[]
   readonly session: SessionBody | undefined
   readonly isNarrow: boolean
   readonly onStarted: () => void
@@ -62,8 +62,8 @@ export function BehaviorPage(props: BehaviorPageProps) {
   const changedAt = useLive((s) => s.log.findLast((line) => line.kind === 'behavior_changed')?.seq ?? 0)
   const fetched = useFetched(id, () => api.behavior(id), changedAt)
   useEffect(() => {
-    forgive()
-    void loadKept(id)
+    clearRefusal()
+    void loadSavedBreakpoints(id)
   }, [id, generation])
   if (fetched.problem) return <Empty title="This behavior cannot be shown">{fetched.problem}</Empty>
   if (!fetched.value) return <div className="page-wait" role="status" aria-label="Loading" />
@@ -111,17 +111,17 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       }),
     repeat: () => withNode('Run again', 'repeat', (path) => void commands.repeat(path)),
     force: () => withNode('Force', 'force', () => focusFirst(FORCE_ID)),
-    answer: () => focusFirst(REQUESTS_ID) || refuse('Answer', 'the run asks nothing'),
+    answer: () => focusFirst(REQUESTS_ID) || showRefusal('Answer', 'the run asks nothing'),
     waiting: () => {
       const waiting = useLive.getState().control?.waiting[0]
       if (waiting) show(waiting.path)
-      else refuse('Go to a node that waits', 'no node waits')
+      else showRefusal('Go to a node that waits', 'no node waits')
     },
   })
 
   function withNode(words: string, command: Parameters<Commands['obstacle']>[0], act: (path: string) => void): void {
     const why = commands.obstacle(command)
-    if (why || !node) refuse(words, why ?? 'choose a node in the graph first')
+    if (why || !node) showRefusal(words, why ?? 'choose a node in the graph first')
     else act(node.path)
   }
 
@@ -232,7 +232,7 @@ function Loaded({ behavior, run, active, session, isNarrow, onStarted, onEdit }:
       </ViewBoundary>
       <RefusalLine />
       <ViewBoundary name="Requests">
-        <BlockedWays />
+        <BlockedPaths />
         <Requests root={behavior.graph} commands={commands} onShow={show} />
       </ViewBoundary>
       {isNarrow ? (
@@ -277,13 +277,13 @@ function focusFirst(id: string): boolean {
   return button !== null
 }
 
-function obstacleOf(behavior: BehaviorBody, active: readonly RunLine[], session: SessionBody | undefined): string | undefined {
+function obstacleOf(behavior: BehaviorBody, active: readonly RunOverview[], session: SessionBody | undefined): string | undefined {
   if (session && session.role !== 'operator') return 'You may look only: log in with the operator token to start runs'
   if (behavior.errors > 0) return 'The document has errors; see its problems'
   return active.some((run) => run.behavior === behavior.id) ? 'This behavior is running' : undefined
 }
 
-function placeOf(session: SessionBody | undefined, active: readonly RunLine[]): string {
+function placeOf(session: SessionBody | undefined, active: readonly RunOverview[]): string {
   const where = session?.cell_name ? `It runs in the cell ${session.cell_name}, in real time.` : 'It runs without a cell, in real time.'
   const others = active.length === 1 ? 'Another run is' : `${active.length} other runs are`
   return active.length > 0 ? `${where} ${others} under way: an arm that one of them holds is refused to this one.` : where

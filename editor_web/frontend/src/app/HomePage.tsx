@@ -10,7 +10,7 @@ import { wallTime } from '../document/time'
 import { CellFrame } from '../features/cell/CellFrame'
 import { HandleMenu } from '../features/cell/HandleMenu'
 import { ShowMenu } from '../features/cell/ShowMenu'
-import { BlockedWays } from '../features/robots/BlockedWays'
+import { BlockedPaths } from '../features/robots/BlockedPaths'
 import { RobotStrip } from '../features/robots/RobotStrip'
 import { nameOf, RunTime, waitsText } from '../features/runs/RunList'
 import { TourInvitation } from '../features/tour/TourInvitation'
@@ -108,7 +108,7 @@ function RunTools({ mayOperate }: { mayOperate: boolean }) {
 function CellFoot() {
   return (
     <>
-      <BlockedWays />
+      <BlockedPaths />
       <RobotStrip />
     </>
   )

@@ -2,7 +2,7 @@
 import { Suspense } from 'react'
 import { useLive } from '../api/live'
 import { hasCellView, type Session } from '../api/session'
-import type { RunLine } from '../api/types'
+import type { RunOverview } from '../api/types'
 import { lazyView } from '../components/lazyView'
 import { ViewBoundary } from '../components/ViewBoundary'
 import { isActive } from '../document/live'
@@ -16,14 +16,14 @@ const TeachPage = lazyView(async () => (await import('./TeachPage')).TeachPage)
 const PastPage = lazyView(async () => (await import('./PastPage')).PastPage)
 const PastRunsPage = lazyView(async () => (await import('./PastRunsPage')).PastRunsPage)
 const RunsPage = lazyView(async () => (await import('./RunsPage')).RunsPage)
-const BesidePage = lazyView(async () => (await import('./BesidePage')).BesidePage)
+const BesidePage = lazyView(async () => (await import('./SideBySidePage')).SideBySidePage)
 const EditorPage = lazyView(async () => (await import('../features/editor/EditorPage')).EditorPage)
 const EditorPreview = lazyView(async () => (await import('./EditorPreview')).EditorPreview)
 
 export interface RoutedPageProps {
   readonly route: Route
   /** The run of the page, if any. */
-  readonly shown: RunLine | undefined
+  readonly shown: RunOverview | undefined
   readonly session: Session | undefined
   readonly isNarrow: boolean
   readonly onOpen: (href: string) => void

@@ -1,10 +1,10 @@
 /** All runs under way at once, each with its commands; those that ended last; and two of them to be compared. */
 import { IconLayoutColumns, IconPlayerPlay } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
-import { useData, type LeaseLine } from '../api/data'
+import { useData, type LeaseMetrics } from '../api/data'
 import { useLive } from '../api/live'
-import { forgive, refuse } from '../api/refusal'
-import type { RunLine } from '../api/types'
+import { clearRefusal, showRefusal } from '../api/refusal'
+import type { RunOverview } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { LiveOf } from '../components/LiveOf'
@@ -18,7 +18,7 @@ import { RunCard } from '../features/runs/RunCard'
 import { nameOf } from '../features/runs/RunList'
 import '../features/runs/runs.css'
 import { InterruptedHere } from './InterruptedHere'
-import { besideHref, runHref } from './route'
+import { sideBySideHref, runHref } from './route'
 import { useBehaviorOf } from './useBehaviorOf'
 
 /** So many of those that are over are listed. */
@@ -29,7 +29,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
   const runs = useLive((s) => s.runs)
   const [chosen, setChosen] = useState<readonly string[]>([])
   const leases = useLeases()
-  useEffect(forgive, [])
+  useEffect(clearRefusal, [])
   const active = runs.filter(isActive)
   const ended = runs.filter((run) => !isActive(run)).slice(0, ENDED)
   const pair = pairOf(chosen.filter((id) => runs.some((run) => run.id === id)), active)
@@ -56,8 +56,8 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
           hint="Graph and log of two runs beside one another"
           icon={<IconLayoutColumns size={16} aria-hidden />}
           obstacle={pair ? undefined : CHOOSE}
-          onObstacle={() => refuse('Side by side', CHOOSE)}
-          onPress={() => pair && onOpen(besideHref(...pair))}
+          onObstacle={() => showRefusal('Side by side', CHOOSE)}
+          onPress={() => pair && onOpen(sideBySideHref(...pair))}
         />
       </header>
       <RefusalLine />
@@ -96,7 +96,7 @@ export function RunsPage({ onOpen }: { onOpen: (href: string) => void }) {
 }
 
 interface CardProps {
-  readonly run: RunLine
+  readonly run: RunOverview
   readonly held: readonly string[]
   readonly isChosen: boolean
   readonly onChoose: (isChosen: boolean) => void
@@ -122,8 +122,8 @@ function Card({ run, held, isChosen, onChoose, onOpen }: CardProps) {
   )
 }
 
-function useLeases(): readonly LeaseLine[] {
-  const [leases, setLeases] = useState<readonly LeaseLine[]>([])
+function useLeases(): readonly LeaseMetrics[] {
+  const [leases, setLeases] = useState<readonly LeaseMetrics[]>([])
   useData({ traffic: true }, (frame) => {
     if (frame.k === 'traffic') setLeases(frame.leases)
   })
@@ -131,7 +131,7 @@ function useLeases(): readonly LeaseLine[] {
 }
 
 /** The two that were chosen; without a choice the only two that are under way. */
-function pairOf(chosen: readonly string[], active: readonly RunLine[]): readonly [string, string] | undefined {
+function pairOf(chosen: readonly string[], active: readonly RunOverview[]): readonly [string, string] | undefined {
   const [left, right] = chosen.length > 0 ? chosen : active.length === 2 ? active.map((run) => run.id) : []
   return left !== undefined && right !== undefined ? [left, right] : undefined
 }

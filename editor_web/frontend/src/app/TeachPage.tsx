@@ -1,9 +1,9 @@
 /** The page on which arms are taught: the cell, jogging and leading, captures, entries, triggers and buttons. */
 import { useEffect, useState } from 'react'
 import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
-import { connectTeach, lookAway, useTeach } from '../api/teaching'
+import { connectTeach, endPreview, useTeach } from '../api/teaching'
 import { hasCellView } from '../api/session'
-import type { ArmCard, SessionBody } from '../api/types'
+import type { ArmInfo, SessionBody } from '../api/types'
 import { CommandButton } from '../components/CommandButton'
 import { Empty } from '../components/Empty'
 import { OpenedTabs } from '../components/OpenedTabs'
@@ -41,7 +41,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
       tools={
         <>
           <span className="spacer" />
-          {hasCellView(session) && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={lookAway} />}
+          {hasCellView(session) && isLooking && <CommandButton label="Hide the ghosts" tone="quiet" onPress={endPreview} />}
           {hasCellView(session) && <ShowMenu />}
           {hasCellView(session) && session?.role === 'operator' && <HandleMenu />}
         </>
@@ -83,7 +83,7 @@ export function TeachPage({ session, isNarrow }: TeachPageProps) {
   )
 }
 
-function Tabs({ arms, arm }: { readonly arms: readonly ArmCard[]; readonly arm: ArmCard }) {
+function Tabs({ arms, arm }: { readonly arms: readonly ArmInfo[]; readonly arm: ArmInfo }) {
   const names = arms.map((each) => each.name)
   const bodies = {
     Move: (

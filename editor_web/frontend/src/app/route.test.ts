@@ -1,6 +1,6 @@
 /** Addresses. */
 import { expect, it } from 'vitest'
-import { behaviorHref, besideHref, editHref, PAST_HREF, recordingHref, routeOf, RUNS_HREF, TEACH_HREF } from './route'
+import { behaviorHref, sideBySideHref, editHref, PAST_HREF, recordingHref, routeOf, RUNS_HREF, TEACH_HREF } from './route'
 
 it('finds the way back from the address of a behavior, slashes and blanks included', () => {
   const id = 'behaviors/my cell/a%b.yaml'
@@ -23,7 +23,7 @@ it('finds the way back from the address of a recording, and to the past runs', (
 it('finds the way to all runs and to two of them side by side', () => {
   expect(routeOf(RUNS_HREF)).toEqual({ page: 'runs' })
   expect(routeOf('/runs/')).toEqual({ page: 'runs' })
-  expect(routeOf(besideHref('a b', 'c/d'))).toEqual({ page: 'beside', left: 'a b', right: 'c/d' })
+  expect(routeOf(sideBySideHref('a b', 'c/d'))).toEqual({ page: 'beside', left: 'a b', right: 'c/d' })
   expect(routeOf('/beside/a')).toEqual({ page: 'beside', left: 'a', right: '' })
 })
 

@@ -52,7 +52,7 @@ export function runHref(id: string): string {
 export const RUNS_HREF = '/runs'
 
 /** Two runs side by side. */
-export function besideHref(left: string, right: string): string {
+export function sideBySideHref(left: string, right: string): string {
   return `/beside/${encodeURIComponent(left)}/${encodeURIComponent(right)}`
 }
 

@@ -1,9 +1,9 @@
 /** Which commands are possible, and why not. */
 import { describe, expect, it } from 'vitest'
-import type { ControlLive, RunLine, WaitingLive } from '../api/types'
-import { obstacleTo, operatorWords, requestsOf, standing, waitingWords, type Command, type Situation } from './commands'
+import type { ControlLive, RunOverview, WaitingNodeLive } from '../api/types'
+import { disabledReason, operatorWords, requestsOf, runStatusText, waitingWords, type Command, type Situation } from './commands'
 
-const run: RunLine = {
+const run: RunOverview = {
   id: 'r', behavior: 'b', status: 'running', outcome: null, success: false, cause: '', started_at_s: 0, duration_s: 0, waits: '',
 }
 const control: ControlLive = {
@@ -11,7 +11,7 @@ const control: ControlLive = {
   operator: 'none', demanded: false, loss_policy: 'hold', loss_timeout_s: 5,
 }
 const now: Situation = { role: 'operator', isConnected: true, run, control, node: undefined, nodeStatus: 'idle' }
-const asks: WaitingLive = { path: 'root/a', point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
+const asks: WaitingNodeLive = { path: 'root/a', point: 'after', outcome: 'held', required: 'high', reasons: ['autonomy'] }
 
 describe('a command', () => {
   it.each<[Command, Partial<Situation>, string | undefined]>([
@@ -36,7 +36,7 @@ describe('a command', () => {
     ['force', { node: 'root/a', control: { ...control, waiting: [asks] } }, undefined],
     ['breakpoint', { node: 'root/a', run: undefined, control: null }, undefined],
   ])('%s with %j: %s', (command, given, expected) => {
-    expect(obstacleTo(command, { ...now, ...given })).toBe(expected)
+    expect(disabledReason(command, { ...now, ...given })).toBe(expected)
   })
 })
 
@@ -50,7 +50,7 @@ describe('the words of a run', () => {
     [{ waiting: [asks] }, 'Asks for an answer'],
     [{ waiting: [{ ...asks, reasons: ['lock'] }] }, 'Waits at a lock'],
   ])('%j: %s', (given, words) => {
-    expect(standing(run, { ...control, ...given })).toBe(words)
+    expect(runStatusText(run, { ...control, ...given })).toBe(words)
   })
 
   it('says where a node waits and for what', () => {

@@ -1,5 +1,5 @@
 /** Which commands a run takes now, and in words why it does not take the others. Pure. */
-import type { ControlLive, RunLine, WaitingLive } from '../api/types'
+import type { ControlLive, RunOverview, WaitingNodeLive } from '../api/types'
 import { isActive } from './live'
 
 export const LEVELS = ['off', 'low', 'high', 'full'] as const
@@ -19,7 +19,7 @@ export type Command =
 export interface Situation {
   readonly role: string
   readonly isConnected: boolean
-  readonly run: RunLine | undefined
+  readonly run: RunOverview | undefined
   readonly control: ControlLive | null
   /** Path of the chosen node. */
   readonly node: string | undefined
@@ -27,7 +27,7 @@ export interface Situation {
 }
 
 /** Why a command is not possible now; undefined when it is. */
-export function obstacleTo(command: Command, now: Situation): string | undefined {
+export function disabledReason(command: Command, now: Situation): string | undefined {
   const { control, node, run } = now
   if (!now.isConnected) return 'the server does not answer'
   if (now.role !== 'operator') return 'you may look only; log in with the operator token'
@@ -62,20 +62,20 @@ function obstacleToOrder({ control, node, nodeStatus }: Situation): string | und
 }
 
 /** The questions of a run to its operator. */
-export function requestsOf(control: ControlLive | null): readonly WaitingLive[] {
+export function requestsOf(control: ControlLive | null): readonly WaitingNodeLive[] {
   return control?.waiting.filter((each) => each.reasons.includes('autonomy')) ?? []
 }
 
 const REASONS: Record<string, string> = { pause: 'paused', lock: 'locked', autonomy: 'asks for your agreement' }
 
 /** `before its entry: paused`, `with held: locked`. */
-export function waitingWords({ point, outcome, reasons }: WaitingLive): string {
+export function waitingWords({ point, outcome, reasons }: WaitingNodeLive): string {
   const place = point === 'before' ? 'before its entry' : outcome ? `with ${outcome}` : 'after its end'
   return `${place}: ${reasons.map((reason) => REASONS[reason] ?? `held by ${reason}`).join(', ')}`
 }
 
 /** How a run stands, in one line. */
-export function standing(run: RunLine | undefined, control: ControlLive | null): string {
+export function runStatusText(run: RunOverview | undefined, control: ControlLive | null): string {
   if (!run || !isActive(run) || !control) return ''
   if (run.status === 'stopping') return 'Stopping: states clean up, robots come to rest'
   const asked = requestsOf(control).length

@@ -1,11 +1,11 @@
 import { describe, expect, it } from 'vitest'
-import type { DecidedStepBody } from '../api/types'
+import type { ProposedStepBody } from '../api/types'
 import { added, bodyOf, moved, rolesOf, takes, teachable, type Step } from './demonstration'
 
 const home: Step = { key: 1, kind: 'joints', name: 'home' }
 const pick: Step = { key: 2, kind: 'pose', name: 'pick', role: 'grasp', part: '' }
 
-function decided(role: DecidedStepBody['role']): DecidedStepBody {
+function decided(role: ProposedStepBody['role']): ProposedStepBody {
   return { kind: 'action', name: 'close', role, part: null }
 }
 

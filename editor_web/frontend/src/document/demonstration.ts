@@ -1,8 +1,8 @@
 /** The steps that a behavior is proposed from: taught entries in their order, and actions of the tool. Pure. */
-import type { DecidedStepBody, EntryBody, TaughtStepBody } from '../api/types'
+import type { ProposedStepBody, EntryBody, DemonstrationStepBody } from '../api/types'
 
-export type Role = DecidedStepBody['role']
-export type Kind = TaughtStepBody['kind']
+export type Role = ProposedStepBody['role']
+export type Kind = DemonstrationStepBody['kind']
 
 export interface Step {
   /** Tells two steps of the same entry apart. */
@@ -62,11 +62,11 @@ export function moved(steps: readonly Step[], index: number, by: number): readon
   return [...rest.slice(0, target), step, ...rest.slice(target)]
 }
 
-export function bodyOf({ kind, name, role, part }: Step): TaughtStepBody {
+export function bodyOf({ kind, name, role, part }: Step): DemonstrationStepBody {
   return { kind, name, ...(role ? { role } : {}), ...(part === undefined ? {} : { part }) }
 }
 
 /** Whether a step takes something: a grasp, or the tool that closes with no grasp before it. */
-export function takes(step: DecidedStepBody, before: DecidedStepBody | undefined): boolean {
+export function takes(step: ProposedStepBody, before: ProposedStepBody | undefined): boolean {
   return step.role === 'grasp' || (step.role === 'close' && before?.role !== 'grasp')
 }

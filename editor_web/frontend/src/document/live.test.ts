@@ -1,6 +1,6 @@
 /** The live picture: snapshots replace, deltas add, gaps ask anew. */
 import { describe, expect, it } from 'vitest'
-import type { Delta, LogLine, NodeLive, RunLine, Snapshot } from '../api/types'
+import type { LiveDelta, LogLine, NodeLive, RunOverview, LiveSnapshot } from '../api/types'
 import { EMPTY, fold, LOG_LINES, type LiveState } from './live'
 
 const node = (status: string, visits = 1): NodeLive => ({
@@ -14,7 +14,7 @@ const node = (status: string, visits = 1): NodeLive => ({
   plan: null,
 })
 const line = (seq: number): LogLine => ({ seq, time_s: 0, kind: 'log', level: 'info', path: '', text: '', causes: [] })
-const run = (id: string, started_at_s: number, status = 'running'): RunLine => ({
+const run = (id: string, started_at_s: number, status = 'running'): RunOverview => ({
   id,
   behavior: 'b',
   status,
@@ -25,7 +25,7 @@ const run = (id: string, started_at_s: number, status = 'running'): RunLine => (
   duration_s: 0,
   waits: '',
 })
-const snapshot = (change: Partial<Snapshot> = {}): Snapshot => ({
+const snapshot = (change: Partial<LiveSnapshot> = {}): LiveSnapshot => ({
   k: 'snapshot',
   run: 'r1',
   seq: 3,
@@ -38,7 +38,7 @@ const snapshot = (change: Partial<Snapshot> = {}): Snapshot => ({
   robots: {},
   ...change,
 })
-const delta = (change: Partial<Delta> = {}): Delta => ({
+const delta = (change: Partial<LiveDelta> = {}): LiveDelta => ({
   k: 'delta',
   run: 'r1',
   after: 3,

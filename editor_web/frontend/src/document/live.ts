@@ -1,6 +1,6 @@
 /** The page's picture of the watched run, folded from the frames of the live stream. Pure. */
 import type { Dict } from './dict'
-import type { ControlLive, Delta, Frame, LogLine, NodeLive, RobotLine, RunLine, Snapshot } from '../api/types'
+import type { ControlLive, LiveDelta, Frame, LogLine, NodeLive, RobotLive, RunOverview, LiveSnapshot } from '../api/types'
 
 /** Log lines kept in the page; older ones are in the journal. */
 export const LOG_LINES = 2000
@@ -16,13 +16,13 @@ export interface LiveState {
   readonly nowS: number
   readonly atMs: number
   readonly ticking: boolean
-  readonly runs: readonly RunLine[]
+  readonly runs: readonly RunOverview[]
   readonly nodes: Dict<NodeLive>
   readonly log: readonly LogLine[]
   readonly dropped: number
   /** What can be done with the watched run; null when it is over. */
   readonly control: ControlLive | null
-  readonly robots: Dict<RobotLine>
+  readonly robots: Dict<RobotLive>
   /** The hash on disk of documents that have changed since the page was loaded; null where they are gone. */
   readonly documents: Dict<string | null>
 }
@@ -61,7 +61,7 @@ export function fold(state: LiveState, frame: Frame, atMs: number): LiveState | 
   }
 }
 
-function fromSnapshot(state: LiveState, frame: Snapshot, atMs: number): LiveState {
+function fromSnapshot(state: LiveState, frame: LiveSnapshot, atMs: number): LiveState {
   const { run, seq, runs, nodes, log, ticking } = frame
   const dropped = log.length > 0 ? (log[0]?.seq ?? 1) - 1 : 0
   const { robots } = frame
@@ -69,7 +69,7 @@ function fromSnapshot(state: LiveState, frame: Snapshot, atMs: number): LiveStat
   return { ...state, run, seq, nowS: frame.now_s, atMs, ticking, runs, nodes, log, dropped, control, robots }
 }
 
-function withDelta(state: LiveState, frame: Delta, atMs: number): LiveState {
+function withDelta(state: LiveState, frame: LiveDelta, atMs: number): LiveState {
   const log = frame.log.length > 0 ? [...state.log, ...frame.log] : state.log
   const over = Math.max(0, log.length - LOG_LINES)
   return {
@@ -92,7 +92,7 @@ function unchanged(old: ControlLive | null, fresh: ControlLive | null): ControlL
   return JSON.stringify(old) === JSON.stringify(fresh) ? old : fresh
 }
 
-function mergeRuns(runs: readonly RunLine[], changed: readonly RunLine[]): readonly RunLine[] {
+function mergeRuns(runs: readonly RunOverview[], changed: readonly RunOverview[]): readonly RunOverview[] {
   if (changed.length === 0) return runs
   const byId = new Map(changed.map((run) => [run.id, run]))
   const kept = runs.map((run) => byId.get(run.id) ?? run)
@@ -102,6 +102,6 @@ function mergeRuns(runs: readonly RunLine[], changed: readonly RunLine[]): reado
 }
 
 /** Is this run still going? */
-export function isActive(run: RunLine | undefined): boolean {
+export function isActive(run: RunOverview | undefined): boolean {
   return run?.status === 'running' || run?.status === 'stopping'
 }

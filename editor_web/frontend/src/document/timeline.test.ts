@@ -1,11 +1,11 @@
 /** Rows, views, ticks and marks of a timeline. */
 import { describe, expect, it } from 'vitest'
-import type { Moment, NodeLive, Span, TimeMark, Timeline } from '../api/types'
+import type { PastRunState, NodeLive, ActivationInterval, TimelineMarker, Timeline } from '../api/types'
 import { EMPTY } from './live'
 import { afterKey, neighbor, panned, placeWords, revealing, rowsOf, spanAt, ticks, timeAt, wholeView, withTimeline, xOf, zoomed } from './timeline'
 import { atMoment, nextMoment } from './timelineMoment'
 
-const span = (seq: number, start_s: number, end_s: number | null): Span => ({
+const span = (seq: number, start_s: number, end_s: number | null): ActivationInterval => ({
   seq,
   start_s,
   end_s,
@@ -15,8 +15,8 @@ const span = (seq: number, start_s: number, end_s: number | null): Span => ({
   visit: 1,
   count: 1,
 })
-const mark = (seq: number, kind = 'goal'): TimeMark => ({ seq, time_s: seq / 10, kind, path: 'root', text: '' })
-const told = (seq: number, rows: Timeline['rows'], marks: readonly TimeMark[] = [], merged = false): Timeline => ({
+const mark = (seq: number, kind = 'goal'): TimelineMarker => ({ seq, time_s: seq / 10, kind, path: 'root', text: '' })
+const told = (seq: number, rows: Timeline['rows'], marks: readonly TimelineMarker[] = [], merged = false): Timeline => ({
   run: 'r',
   seq,
   duration_s: seq / 10,
@@ -125,7 +125,7 @@ it('says where it is', () => {
 
 describe('a moment', () => {
   const node = (status: string): NodeLive => ({ status, visits: 1, outcome: '', entered_s: 0, duration_s: 0, cause: '', followed: '', plan: null })
-  const moment = (seq: number, nodes: Moment['nodes'], lines: readonly number[]): Moment => ({
+  const moment = (seq: number, nodes: PastRunState['nodes'], lines: readonly number[]): PastRunState => ({
     seq,
     time_s: seq / 10,
     nodes,

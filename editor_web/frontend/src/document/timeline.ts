@@ -1,8 +1,8 @@
 /** The timeline of a run: its rows, what part of the time is seen, and going from mark to mark. Pure. */
-import type { Span, TimeMark, Timeline } from '../api/types'
+import type { ActivationInterval, TimelineMarker, Timeline } from '../api/types'
 
 /** Everything that is known of one run up to event `seq`. */
-export interface Course {
+export interface LoadedTimeline {
   readonly run: string
   readonly seq: number
   readonly durationS: number
@@ -10,12 +10,12 @@ export interface Course {
   /** Spans that lie close together are one; a part of the time can be had exactly. */
   readonly merged: boolean
   readonly leftOut: number
-  readonly rows: ReadonlyMap<string, readonly Span[]>
-  readonly marks: readonly TimeMark[]
+  readonly rows: ReadonlyMap<string, readonly ActivationInterval[]>
+  readonly marks: readonly TimelineMarker[]
 }
 
 /** Take what the server has told: all of it, or what is new after `course`. */
-export function withTimeline(course: Course | undefined, told: Timeline): Course {
+export function withTimeline(course: LoadedTimeline | undefined, told: Timeline): LoadedTimeline {
   const isWhole = course === undefined || told.merged || course.merged || course.run !== told.run
   const rows = new Map(isWhole ? [] : course.rows)
   for (const { path, spans } of told.rows) {
@@ -140,7 +140,7 @@ function timeLabel(timeS: number, digits: number): string {
 }
 
 /** The last span that begins at or before a time, if the time is in it or no more than `nearS` from it. */
-export function spanAt(spans: readonly Span[], timeS: number, nearS: number): Span | undefined {
+export function spanAt(spans: readonly ActivationInterval[], timeS: number, nearS: number): ActivationInterval | undefined {
   let [low, high] = [0, spans.length]
   while (low < high) {
     const middle = (low + high) >> 1
@@ -174,8 +174,8 @@ export interface Place {
 }
 
 /** The mark after (1) or before (-1) a place. */
-export function neighbor(marks: readonly TimeMark[], place: Place, direction: 1 | -1): TimeMark | undefined {
-  const isBeyond = (mark: TimeMark) => (direction > 0 ? mark.seq > place.seq : mark.seq < place.seq)
+export function neighbor(marks: readonly TimelineMarker[], place: Place, direction: 1 | -1): TimelineMarker | undefined {
+  const isBeyond = (mark: TimelineMarker) => (direction > 0 ? mark.seq > place.seq : mark.seq < place.seq)
   return direction > 0 ? marks.find(isBeyond) : marks.findLast(isBeyond)
 }
 

@@ -1,6 +1,6 @@
 /** The page's picture of a run as it was at a moment of it, in the place of the live one. Pure. */
 import { lookup, type Dict } from './dict'
-import type { LogLine, Moment, NodeLive } from '../api/types'
+import type { LogLine, PastRunState, NodeLive } from '../api/types'
 import type { LiveState } from './live'
 
 /** What is shown of a run while its past is looked at. */
@@ -20,7 +20,7 @@ export function atMoment(live: LiveState, moment: ShownMoment): LiveState {
 }
 
 /** A moment as the server told it, with the objects of the one before where they say the same: they are not drawn again. */
-export function nextMoment(before: ShownMoment | undefined, told: Moment, timeS: number): ShownMoment {
+export function nextMoment(before: ShownMoment | undefined, told: PastRunState, timeS: number): ShownMoment {
   const known = new Map(before?.log.map((line) => [line.seq, line]))
   return {
     seq: told.seq,

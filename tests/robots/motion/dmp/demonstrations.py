@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from hypothesis import strategies as st
 
-from engine.demonstration import Trajectory
-from robots.motion.dmp.turns import exp, product
+from engine.messages.demonstrations import Trajectory
+from robots.motion.dmp.quaternions import exp, product
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array
 

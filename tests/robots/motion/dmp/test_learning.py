@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.demonstration import Trajectory
 from engine.errors import RobotError
-from robots.motion.dmp import learn_cart_dmp, learn_joint_dmp, roll_out_joints, roll_out_pose
-from robots.motion.dmp.turns import conjugate, log, product, toward
+from engine.messages.demonstrations import Trajectory
+from robots.motion.dmp import integrate_joints, integrate_pose, learn_cart_dmp, learn_joint_dmp
+from robots.motion.dmp.quaternions import conjugate, log, product, toward
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import interpolated, led_joints, led_tool, seeds
 
@@ -30,7 +30,7 @@ def test_a_joint_primitive_ends_where_the_demonstration_did(seed: int, duration_
     """Within 0.1°, and it is never more than 3 mrad off on the way."""
     led = led_joints(seed, duration_s=duration_s, period_s=period_s)
     learned = learn_joint_dmp(led.recorded)
-    path = roll_out_joints(learned.dmp)
+    path = integrate_joints(learned.dmp)
     assert np.abs(path.position[-1] - led.truth[-1]).max() < TENTH_OF_A_DEGREE
     assert learned.fit.max_rad < 3e-3
     assert learned.fit.end_rad < TENTH_OF_A_DEGREE
@@ -42,7 +42,7 @@ def test_a_cartesian_primitive_ends_where_the_demonstration_did(seed: int, durat
     """Within 1 mm and 0.1°, also past half a turn and with quaternions of either sign."""
     led = led_tool(seed, duration_s=duration_s, turn_rad=turn_rad)
     learned = learn_cart_dmp(led.recorded)
-    path = roll_out_pose(learned.dmp)
+    path = integrate_pose(learned.dmp)
     assert np.linalg.norm(path.xyz[-1] - led.truth[-1, :3]) < 1e-3
     assert angle_rad(path.xyzw[-1], led.truth[-1, 3:]) < TENTH_OF_A_DEGREE
     assert learned.fit.max_m < 2e-3
@@ -55,7 +55,7 @@ def test_noise_is_smoothed_and_not_learned(seed: int, noise_rad: float) -> None:
     """The rolled out motion is nearer to the truth than the samples are, and its end much nearer."""
     led = led_joints(seed, noise_rad=noise_rad)
     learned = learn_joint_dmp(led.recorded)
-    path = roll_out_joints(learned.dmp)
+    path = integrate_joints(learned.dmp)
     times = np.array(led.recorded.times_s)
     taken = (times >= learned.fit.cut.start_s - 1e-9) & (times <= learned.fit.cut.end_s + 1e-9)
     shares = (times[taken] - learned.fit.cut.start_s) / learned.dmp.tau
@@ -73,7 +73,7 @@ def test_the_reported_error_is_that_of_the_rolled_out_motion(seed: int, noise_ra
     learned = learn_joint_dmp(led.recorded, kernels=20)
     times, cut = np.array(led.recorded.times_s), learned.fit.cut
     taken = (times >= cut.start_s - 1e-9) & (times <= cut.end_s + 1e-9)
-    path = roll_out_joints(learned.dmp)
+    path = integrate_joints(learned.dmp)
     shares = (times[taken] - cut.start_s) / learned.dmp.tau
     rolled = interpolated(shares, path.shares, path.position)
     error = np.abs(rolled - np.array(led.recorded.joints)[taken])
@@ -126,7 +126,7 @@ def test_uneven_samples_with_a_gap_are_learned() -> None:
     recorded = Trajectory(
         times_s=tuple(led.recorded.times_s[k] for k in kept), joints=tuple(led.recorded.joints[k] for k in kept)
     )
-    path = roll_out_joints(learn_joint_dmp(recorded).dmp)
+    path = integrate_joints(learn_joint_dmp(recorded).dmp)
     assert np.abs(path.position[-1] - led.truth[-1]).max() < TENTH_OF_A_DEGREE
 
 

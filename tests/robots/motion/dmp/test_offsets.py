@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from engine.errors import RobotError
-from engine.primitive import ForceReference
+from engine.messages.primitives import ForceReference
 from robots.motion.dmp import no_offsets, offsets_at, offsets_from_samples, phase_at, wrench_at
 from robots.port import Array
 from tests.robots.motion.dmp.demonstrations import seeds

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.demonstration import Trajectory
 from engine.errors import RobotError
-from engine.primitive import CartDmp
-from robots.model.rigid import Rigid, quaternion_of
-from robots.model.rigid import product as turned
-from robots.motion.dmp import learn_cart_dmp, moved, plan_cart_dmp, roll_out_pose
-from robots.motion.dmp.turns import exp, product
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import CartDmp
+from robots.model.transform import RigidTransform, quaternion_of
+from robots.model.transform import product as turned
+from robots.motion.dmp import integrate_pose, learn_cart_dmp, plan_cart_dmp, transform_dmp
+from robots.motion.dmp.quaternions import exp, product
 from robots.motion.min_jerk import min_jerk
 from robots.port import JointTrajectory
 from tests.robots.panda_arm import BASE, home, panda_kinematics, panda_model, played
@@ -36,23 +36,23 @@ def led_tool_from_home(*, move: tuple[float, float, float] = (0.1, 0.2, -0.1), d
     return learn_cart_dmp(Trajectory(times_s=tuple(times.tolist()), poses=rows)).dmp
 
 
-def plan(dmp: CartDmp, *, goal: Rigid | None = None, frame: Rigid | None = None) -> JointTrajectory:
+def plan(dmp: CartDmp, *, goal: RigidTransform | None = None, frame: RigidTransform | None = None) -> JointTrajectory:
     """Plan for the Panda at home."""
     if frame is None:
         return plan_cart_dmp(panda_kinematics(), dmp, home(), goal=goal)
     return plan_cart_dmp(panda_kinematics(), dmp, home(), goal=goal, frame=frame)
 
 
-def goal_of(dmp: CartDmp) -> Rigid:
+def goal_of(dmp: CartDmp) -> RigidTransform:
     """Where it ends."""
-    return Rigid.of(dmp.goal[:3], dmp.goal[3:])
+    return RigidTransform.of(dmp.goal[:3], dmp.goal[3:])
 
 
 def test_the_tool_follows_the_primitive() -> None:
     """Within 0.5 mm and 2 mrad of its roll-out, between the samples too, from rest to rest in tau, within limits."""
     dmp = led_tool_from_home()
     way = plan(dmp)
-    path = roll_out_pose(dmp)
+    path = integrate_pose(dmp)
     assert (way.position_rad[0] == home()).all()
     assert not way.velocity_rad_s[[0, -1]].any()
     assert way.duration_s == pytest.approx(dmp.tau)
@@ -65,7 +65,7 @@ def test_the_tool_follows_the_primitive() -> None:
         at = int(np.argmin(np.abs(path.shares - share)))
         tool = panda_kinematics().tool_pose(joints)
         span = (share - path.shares[at]) * path.rate[at]
-        wanted = Rigid(xyz=path.xyz[at] + span[:3], xyzw=turned(quaternion_of(span[3:]), path.xyzw[at]))
+        wanted = RigidTransform(xyz=path.xyz[at] + span[:3], xyzw=turned(quaternion_of(span[3:]), path.xyzw[at]))
         assert tool.distance_m(wanted) < 5e-4
         assert tool.angle_rad(wanted) < 2e-3
     end = panda_kinematics().tool_pose(way.position_rad[-1])
@@ -82,7 +82,7 @@ def test_another_goal_is_reached_in_the_same_time(shift: np.ndarray, turn: np.nd
     """Exactly, whichever sign its quaternion has; a motion that the arm cannot make is refused."""
     dmp = led_tool_from_home()
     old = goal_of(dmp)
-    goal = Rigid(xyz=old.xyz + shift, xyzw=sign * turned(quaternion_of(turn), old.xyzw))
+    goal = RigidTransform(xyz=old.xyz + shift, xyzw=sign * turned(quaternion_of(turn), old.xyzw))
     way = plan(dmp, goal=goal)
     end = panda_kinematics().tool_pose(way.position_rad[-1])
     assert end.distance_m(goal) < 1e-6
@@ -97,9 +97,9 @@ def test_a_start_beside_the_primitives_own_fades_out(
 ) -> None:
     """The arm starts where it stands and ends at the goal."""
     dmp = led_tool_from_home()
-    there = Rigid(xyz=np.array(dmp.y0[:3]), xyzw=np.array([0.0, 0.0, 0.0, 1.0]))
-    move = Rigid(xyz=there.xyz + np.array(shift), xyzw=quaternion_of(np.array(turn)))
-    beside = moved(dmp, move.then(there.inverse()), frame="world")
+    there = RigidTransform(xyz=np.array(dmp.y0[:3]), xyzw=np.array([0.0, 0.0, 0.0, 1.0]))
+    move = RigidTransform(xyz=there.xyz + np.array(shift), xyzw=quaternion_of(np.array(turn)))
+    beside = transform_dmp(dmp, move.then(there.inverse()), frame="world")
     way = plan(beside)
     assert (way.position_rad[0] == home()).all()
     assert panda_kinematics().tool_pose(way.position_rad[-1]).distance_m(goal_of(beside)) < 1e-6
@@ -109,16 +109,18 @@ def test_a_primitive_given_in_the_arms_frame_or_moved_by_its_task_transformation
     """Said in the base frame, and said elsewhere and brought here by `tasktrans`."""
     dmp = led_tool_from_home()
     plain = plan(dmp)
-    in_base = moved(dmp, BASE.inverse(), frame="left/panda_link0")
+    in_base = transform_dmp(dmp, BASE.inverse(), frame="left/panda_link0")
     assert np.abs(plan(in_base, frame=BASE).position_rad - plain.position_rad).max() < 1e-6
-    away = Rigid(xyz=np.array([0.3, -0.2, 0.1]), xyzw=quaternion_of(np.array([0.4, -0.9, 1.2])))
+    away = RigidTransform(xyz=np.array([0.3, -0.2, 0.1]), xyzw=quaternion_of(np.array([0.4, -0.9, 1.2])))
     back = away.inverse()
     matrix = np.vstack((np.hstack((back.rotation, back.xyz[:, None])), [0.0, 0.0, 0.0, 1.0]))
-    elsewhere = msgspec.structs.replace(moved(dmp, away, frame="world"), tasktrans=tuple(matrix.reshape(-1).tolist()))
+    elsewhere = msgspec.structs.replace(
+        transform_dmp(dmp, away, frame="world"), tasktrans=tuple(matrix.reshape(-1).tolist())
+    )
     assert np.abs(plan(elsewhere).position_rad - plain.position_rad).max() < 1e-6
-    start = Rigid.from_pose(elsewhere.start)
-    assert start.distance_m(Rigid.of(dmp.y0[:3], dmp.y0[3:])) < 1e-9
-    assert start.angle_rad(Rigid.of(dmp.y0[:3], dmp.y0[3:])) < 1e-7
+    start = RigidTransform.from_pose(elsewhere.start)
+    assert start.distance_m(RigidTransform.of(dmp.y0[:3], dmp.y0[3:])) < 1e-9
+    assert start.angle_rad(RigidTransform.of(dmp.y0[:3], dmp.y0[3:])) < 1e-7
 
 
 def test_too_fast_is_refused_and_the_tau_it_asks_for_suffices() -> None:

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine.demonstration import Trajectory
 from engine.errors import RobotError
-from engine.primitive import JointDmp
-from robots.motion.dmp import learn_joint_dmp, plan_joint_dmp, roll_out_joints
+from engine.messages.demonstrations import Trajectory
+from engine.messages.primitives import JointDmp
+from robots.motion.dmp import integrate_joints, learn_joint_dmp, plan_joint_dmp
 from robots.motion.min_jerk import min_jerk
 from robots.port import Array, JointTrajectory
 from tests.robots.motion.dmp.demonstrations import seeds
@@ -69,7 +69,7 @@ def test_an_arm_at_the_start_follows_the_primitive_itself() -> None:
     """Within a milliradian of its roll-out all the way."""
     dmp = led_from_home()
     way = plan(dmp, np.array(dmp.y0))
-    assert np.abs(way.position_rad - roll_out_joints(dmp).position).max() < 1e-3
+    assert np.abs(way.position_rad - integrate_joints(dmp).position).max() < 1e-3
 
 
 @settings(max_examples=15, deadline=None)

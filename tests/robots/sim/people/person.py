@@ -7,12 +7,12 @@ import numpy as np
 
 from engine.messages import Vector3
 from robots.port import Array
-from robots.sim.cell_model import CellModel
-from robots.sim.commands import MoveHand
+from robots.sim.commands.world_commands import MovePersonHand
+from robots.sim.loop.simulation import Simulation
+from robots.sim.loop.snapshot import SimSnapshot
 from robots.sim.people.person_report import PersonSample
-from robots.sim.scene import PersonBody, Scene
-from robots.sim.simulation import Simulation
-from robots.sim.snapshot import Snapshot
+from robots.sim.physics.cell_model import CellModel
+from robots.sim.scene.sim_scene import PersonBody, SimScene
 
 ANNA = PersonBody(name="anna", shoulder=(0.0, -0.65, 0.45), hand_rests=(0.0, -0.6, 0.15))
 REST = np.array(ANNA.hand_rests)
@@ -22,7 +22,7 @@ OVER_TABLE: Vector3 = (0.0, -0.2, 0.25)
 AT_LEFT_HAND: Vector3 = (-0.22, -0.07, 0.6)
 
 
-def with_anna(scene: Scene, anna: PersonBody = ANNA) -> Scene:
+def with_anna(scene: SimScene, anna: PersonBody = ANNA) -> SimScene:
     """Return the scene with the person in it."""
     return msgspec.structs.replace(scene, people=(anna,))
 
@@ -35,7 +35,7 @@ class SteppedPerson:
 
     def reach(self, hand_m: Vector3, *, speed_m_s: float = 1.0, stay_s: float | None = None) -> None:
         """Send the hand to a place."""
-        self.simulation.apply(MoveHand(person="anna", hand_m=hand_m, speed_m_s=speed_m_s, stay_s=stay_s))
+        self.simulation.apply(MovePersonHand(person="anna", hand_m=hand_m, speed_m_s=speed_m_s, stay_s=stay_s))
 
     def run(self, seconds: float) -> None:
         """Let time pass."""
@@ -51,11 +51,11 @@ class SteppedPerson:
             seen.append(np.array(self.snapshot().frames()[0][row : row + 3]))
         return np.array(seen)
 
-    def snapshot(self) -> Snapshot:
+    def snapshot(self) -> SimSnapshot:
         """What is measured now."""
         values = self.simulation.layout.new_array()
         self.simulation.write_snapshot(values)
-        return Snapshot(self.simulation.layout, values)
+        return SimSnapshot(self.simulation.layout, values)
 
     @property
     def sample(self) -> PersonSample:

@@ -1,7 +1,7 @@
 /** Where things go on the editor's canvas. */
 import { expect, it } from 'vitest'
 import { arrange, rulesId } from './arrange'
-import { freeName, holderOf, isForeign, nameFor, nodeOf, waysOf } from './model'
+import { freeName, holderOf, isForeign, nameFor, nodeOf, outgoingTransitions } from './model'
 import { machineNode, node } from './testNodes'
 
 const options = {
@@ -80,7 +80,7 @@ it('knows names, ways out, holders and what belongs to another document', () => 
   expect(freeName(chain, 'a')).toBe('a_2')
   expect(freeName(chain, 'new one!')).toBe('new_one_')
   expect(nameFor('motion.MoveJoints')).toBe('move_joints')
-  expect(waysOf(chain, nodeOf(chain, 'root/a') ?? chain).map((way) => [way.outcome, way.target])).toEqual([
+  expect(outgoingTransitions(chain, nodeOf(chain, 'root/a') ?? chain).map((way) => [way.outcome, way.target])).toEqual([
     ['done', 'b'],
     ['failed', 'failed'],
   ])

@@ -22,7 +22,7 @@ import {
   tableHeight,
   twigSize,
 } from './measure'
-import { isFrame, isMachine, isTreePart, waysOf, type EditNode } from './model'
+import { isFrame, isMachine, isTreePart, outgoingTransitions, type EditNode } from './model'
 
 export interface ArrangeOptions {
   /** Is the inside of the container at this path shown? */
@@ -82,7 +82,7 @@ async function unit(node: EditNode, parent: EditNode, options: ArrangeOptions): 
   if (isTreePart(node.kind) && node.kind !== 'tree') return sized(twigSize(node))
   if (!isFrame(node) || !options.isOpen(node.path)) return sized(leafSize(node, parent))
   const content = await inside(node, { ...options, rowLimit: options.rowLimit - 2 * PADDING }, false)
-  const rows = rowsHeight(waysOf(parent, node).length)
+  const rows = rowsHeight(outgoingTransitions(parent, node).length)
   const table = tableHeight(node)
   const frame = empty(
     Math.max(content.width + 2 * PADDING, frameWidth(node), table > 0 ? 300 : 0),

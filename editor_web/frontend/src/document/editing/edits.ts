@@ -1,10 +1,10 @@
 /** Making edits of a document, which the server applies. Pure. */
-import type { Edit, Group } from '../../api/types'
+import type { Edit, GroupNodes } from '../../api/types'
 
 export type { AddNode, Edit } from '../../api/types'
 
 export type Corner = readonly [number, number]
-export type GroupKind = Group['kind']
+export type GroupKind = GroupNodes['kind']
 
 /** Set one thing of a node; null takes it away. */
 export function setField(path: string, field: string, value: unknown): Edit {

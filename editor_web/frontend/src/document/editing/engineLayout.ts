@@ -3,11 +3,11 @@ import { arrowId, outcomeId, type ElkShape, type LayoutCall } from '../layout'
 import type { Size } from '../geometry'
 import { adopt, empty, put, type Content } from './content'
 import { entryY, PILL_HEIGHT, pillWidth, portY } from './measure'
-import { waysOf, type EditNode } from './model'
+import { outgoingTransitions, type EditNode } from './model'
 
 /** Where the port of an outcome is, from the top of its node. */
 export function portOf(parent: EditNode, node: EditNode, outcome: string, box: Size): number {
-  const ways = waysOf(parent, node)
+  const ways = outgoingTransitions(parent, node)
   return portY(
     box.height,
     ways.length,
@@ -21,7 +21,7 @@ export function portOf(parent: EditNode, node: EditNode, outcome: string, box: S
 /** Where arrows come into a child, or into an outcome, from its top. */
 export function entryOf(parent: EditNode, name: string, box: Size): number {
   const child = parent.children.find((each) => each.name === name)
-  return entryY(box.height, child ? waysOf(parent, child).length : 0)
+  return entryY(box.height, child ? outgoingTransitions(parent, child).length : 0)
 }
 
 interface Port extends ElkShape {
@@ -47,7 +47,7 @@ export async function byEngine(
 ): Promise<Content> {
   const children: (ElkShape & { ports: Port[] })[] = node.children.map((child, index) => {
     const { width, height } = units[index] ?? empty()
-    const ways = waysOf(node, child)
+    const ways = outgoingTransitions(node, child)
     const outs = ways.map((way, row) =>
       port(`${child.path}>${way.outcome}`, width, portY(height, ways.length, row), 'EAST'),
     )

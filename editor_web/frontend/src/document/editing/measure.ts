@@ -1,5 +1,5 @@
 /** How large each node of the editor's canvas is, and where its ports are. Pure. */
-import { isMachine, waysOf, type EditNode } from './model'
+import { isMachine, outgoingTransitions, type EditNode } from './model'
 import type { Size } from '../geometry'
 
 export const HEAD_HEIGHT = 48
@@ -18,7 +18,7 @@ function textWidth(text: string, perCharacter: number): number {
 }
 
 /** The words beside a port whose arrow is not drawn: `failed → lost`. */
-export function wayText(outcome: string, target: string | undefined): string {
+export function transitionText(outcome: string, target: string | undefined): string {
   return target === undefined || target === outcome ? outcome : `${outcome} → ${target}`
 }
 
@@ -29,8 +29,8 @@ export function rowsHeight(count: number): number {
 
 /** A state, or a container that is closed. */
 export function leafSize(node: EditNode, parent: EditNode | undefined): Size {
-  const ways = waysOf(parent, node)
-  const rows = ways.map((way) => textWidth(wayText(way.outcome, way.target), 6.4) + 44)
+  const ways = outgoingTransitions(parent, node)
+  const rows = ways.map((way) => textWidth(transitionText(way.outcome, way.target), 6.4) + 44)
   const widest = Math.max(textWidth(node.name, 8.2) + 62, textWidth(node.title, 6.9) + 46, ...rows)
   return {
     width: Math.min(MAX_WIDTH, Math.max(MIN_WIDTH, widest)),

@@ -143,7 +143,7 @@ export function nameProblem(parent: EditNode | undefined, name: string, present 
 }
 
 /** A way out of a node, and where it leads; undefined where nothing is connected. */
-export interface Way {
+export interface OutgoingTransition {
   readonly outcome: string
   readonly target: string | undefined
   /** An outcome of the node, or a timeout, guard or error that leads away. */
@@ -151,7 +151,7 @@ export interface Way {
 }
 
 /** The ways out of a child of a machine, its own outcomes first; none elsewhere. */
-export function waysOf(parent: EditNode | undefined, node: EditNode): readonly Way[] {
+export function outgoingTransitions(parent: EditNode | undefined, node: EditNode): readonly OutgoingTransition[] {
   if (!parent || !isMachine(parent.kind)) return []
   const own = parent.transitions.filter((t) => t.source === node.name)
   const targets = new Map(own.map((t) => [t.outcome, t.target]))

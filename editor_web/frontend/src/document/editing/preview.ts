@@ -3,7 +3,7 @@ import { lookup, type Dict } from '../dict'
 import type { Trace } from '../../api/types'
 import { degrees, rollPitchYaw } from '../teaching'
 import { duration } from '../time'
-import type { EntryLine } from './entryWords'
+import type { EntryLine } from './entryText'
 import { isTemplate } from './fields'
 
 type Mapping = Dict<unknown>

@@ -4,7 +4,7 @@ import type { Box } from '../geometry'
 import { completed, openingAt } from './completion'
 import { chordText, isChord } from './keys'
 import { aligned, neighborOf } from './neighbors'
-import { nodeAtLine, stateNear, writingAt } from './places'
+import { nodeAtLine, stateNear, writingAt } from './textPositions'
 import { added, conditionsOf, consequenceOf, withChild, withCount, withPreempted } from './rules'
 import { machineNode, node } from './testNodes'
 

@@ -5,12 +5,12 @@ import { CloseButton, SegmentedControl, TextInput } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { IconPlugConnected, IconSearch } from '@tabler/icons-react'
 import { useEffect, useMemo, useRef, useState } from 'react'
-import { bus, type BusBoard } from '../../api/bus'
+import { bus, type BusListing } from '../../api/bus'
 import { wordsOf } from '../../api/client'
-import { useData, type MessageFrame, type TrafficFrame } from '../../api/data'
+import { useData, type MessageFrame, type BusMetricsFrame } from '../../api/data'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { useShown } from '../../components/useShown'
+import { useIsVisible } from '../../components/useIsVisible'
 import { found } from '../../document/busTree'
 import { entriesOf, KINDS, type BusKind } from './entries'
 import { EntryList } from './EntryList'
@@ -26,14 +26,14 @@ interface BusProps {
 
 export function Bus({ session }: BusProps) {
   const area = useRef<HTMLDivElement>(null)
-  const isShown = useShown(area)
+  const isShown = useIsVisible(area)
   const { ref: toolsRef, width } = useElementSize()
   const [kind, setKind] = useState<BusKind>('topics')
   const [search, setSearch] = useState('')
   const [chosen, setChosen] = useState<Readonly<Partial<Record<BusKind, string>>>>({})
-  const [board, setBoard] = useState<BusBoard>()
+  const [board, setBoard] = useState<BusListing>()
   const [problem, setProblem] = useState('')
-  const [traffic, setTraffic] = useState<TrafficFrame>()
+  const [traffic, setTraffic] = useState<BusMetricsFrame>()
   const [message, setMessage] = useState<MessageFrame>()
   const name = chosen[kind]
   const topic = kind === 'topics' && name ? name : ''
@@ -101,7 +101,7 @@ export function Bus({ session }: BusProps) {
     )
   }
 
-  function detail(known: BusBoard) {
+  function detail(known: BusListing) {
     if (!name) return <Empty title="Nothing is chosen">Choose one on the left to see what it is, and what it says or takes.</Empty>
     const shared = { mayChange, onBack: () => setChosen({ ...chosen, [kind]: undefined }) }
     const facts = known.topics.find((each) => each.name === name)

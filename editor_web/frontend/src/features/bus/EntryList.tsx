@@ -1,7 +1,7 @@
 /** The entries of one kind, grouped by namespace; topics with their rate and the age of their latest message. */
 import { lookup, type Dict } from '../../document/dict'
 import { memo, useMemo } from 'react'
-import type { TopicLine } from '../../api/data'
+import type { TopicMetrics } from '../../api/data'
 import { byNamespace, shortName, type Named } from '../../document/busTree'
 import { ageText, rateText } from './words'
 
@@ -10,7 +10,7 @@ interface EntryListProps {
   readonly kind: string
   readonly chosen: string | undefined
   readonly onChoose: (name: string) => void
-  readonly traffic: Dict<TopicLine> | undefined
+  readonly traffic: Dict<TopicMetrics> | undefined
 }
 
 export function EntryList({ entries, kind, chosen, onChoose, traffic }: EntryListProps) {

@@ -7,7 +7,7 @@ import { ValueTree } from '../../components/ValueTree'
 import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
 import { RequestForm } from './RequestForm'
-import { cancel, isOver, send, useRequests, type Course } from './requests'
+import { cancel, isOver, send, useRequests, type RequestProgress } from './requests'
 import { useForm } from './useForm'
 
 interface SkillViewProps {
@@ -55,7 +55,7 @@ export function SkillView({ facts, mayChange, onBack }: SkillViewProps) {
   )
 }
 
-function CourseView({ course }: { course: Course }) {
+function CourseView({ course }: { course: RequestProgress }) {
   const share = shareOf(course.feedback)
   return (
     <div className="bus-course" role="status" aria-label="Course of the request">

@@ -5,7 +5,7 @@ import { IconSend } from '@tabler/icons-react'
 import { useState } from 'react'
 import { bus, type TopicFacts } from '../../api/bus'
 import { wordsOf } from '../../api/client'
-import type { MessageFrame, TopicLine } from '../../api/data'
+import type { MessageFrame, TopicMetrics } from '../../api/data'
 import { ValueTree } from '../../components/ValueTree'
 import { requestFields } from '../../document/requestForm'
 import { Caution, Detail } from './Detail'
@@ -16,7 +16,7 @@ import { ageText, rateText } from './words'
 interface TopicViewProps {
   readonly facts: TopicFacts
   readonly message: MessageFrame | undefined
-  readonly traffic: TopicLine | undefined
+  readonly traffic: TopicMetrics | undefined
   readonly mayChange: boolean
   readonly onBack: () => void
 }

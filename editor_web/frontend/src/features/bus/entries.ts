@@ -1,5 +1,5 @@
 /** What a bus has, by kind. */
-import type { BusBoard } from '../../api/bus'
+import type { BusListing } from '../../api/bus'
 import type { Named } from '../../document/busTree'
 
 export type BusKind = 'topics' | 'services' | 'actions' | 'parameters' | 'leases'
@@ -12,7 +12,7 @@ export const KINDS: { value: BusKind; label: string }[] = [
   { value: 'leases', label: 'Leases' },
 ]
 
-export function entriesOf(board: BusBoard, kind: BusKind): readonly Named[] {
+export function entriesOf(board: BusListing, kind: BusKind): readonly Named[] {
   switch (kind) {
     case 'topics':
       return board.topics

@@ -4,7 +4,7 @@ import { create } from 'zustand'
 import { bus, sendGoal, type SkillFacts } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 
-export interface Course {
+export interface RequestProgress {
   readonly status: string
   readonly feedback: unknown
   readonly answer: unknown
@@ -14,16 +14,16 @@ export interface Course {
   readonly goal: string
 }
 
-const SENT: Course = { status: 'sent', feedback: undefined, answer: undefined, cause: '', goal: '' }
+const SENT: RequestProgress = { status: 'sent', feedback: undefined, answer: undefined, cause: '', goal: '' }
 const UNDER_WAY: readonly string[] = ['sent', 'pending', 'active', 'held', 'canceling']
 
 /** The newest request to each address. */
-export const useRequests = create<{ readonly courses: Dict<Course> }>(() => ({ courses: {} }))
+export const useRequests = create<{ readonly courses: Dict<RequestProgress> }>(() => ({ courses: {} }))
 
 let leaving = new AbortController()
 
 /** Has it ended? */
-export function isOver(course: Course): boolean {
+export function isOver(course: RequestProgress): boolean {
   return !UNDER_WAY.includes(course.status)
 }
 
@@ -76,6 +76,6 @@ async function follow(address: string, request: Dict<unknown>, signal: AbortSign
   if (!isOver(latest)) throw new Error('the connection was lost; the server cancels the goal')
 }
 
-function put(address: string, course: Course): void {
+function put(address: string, course: RequestProgress): void {
   useRequests.setState(({ courses }) => ({ courses: { ...courses, [address]: course } }))
 }

@@ -1,9 +1,9 @@
 /** Traffic in words. */
-import type { TopicLine } from '../../api/data'
+import type { TopicMetrics } from '../../api/data'
 import { duration } from '../../document/time'
 
 /** `125 Hz`, `0.5 Hz`, `on demand`; a dash where nothing comes. */
-export function rateText(line: TopicLine | undefined): string {
+export function rateText(line: TopicMetrics | undefined): string {
   if (!line) return ''
   if (line.on_demand && line.rate_hz === 0) return 'on demand'
   if (line.rate_hz === 0) return '–'
@@ -11,7 +11,7 @@ export function rateText(line: TopicLine | undefined): string {
 }
 
 /** How old the latest message is. */
-export function ageText(line: TopicLine | undefined): string {
+export function ageText(line: TopicMetrics | undefined): string {
   if (!line) return ''
   if (line.age_s === null) return line.on_demand ? 'now' : 'never'
   return line.age_s < 1 ? 'now' : duration(Math.floor(line.age_s)).replace('.00', '').replace('.0', '')

@@ -4,7 +4,7 @@ import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
 import { relations } from '../../api/relations'
-import type { DeletedBody } from '../../api/types'
+import type { DeletedDocumentBody } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { wallTime } from '../../document/time'
 
@@ -102,7 +102,7 @@ function NewForm({ onMade }: { onMade: (id: string) => void }) {
 
 /** Behaviors that were deleted and of which a version is kept. */
 function Deleted({ onRestored }: { onRestored: (id: string) => void }) {
-  const [all, setAll] = useState<readonly DeletedBody[]>([])
+  const [all, setAll] = useState<readonly DeletedDocumentBody[]>([])
   const [problem, setProblem] = useState<string>()
   useEffect(() => {
     relations.deleted().then(setAll, (error: unknown) => setProblem(wordsOf(error)))

@@ -3,11 +3,11 @@ import './styles/index.css'
 import { useComputedColorScheme } from '@mantine/core'
 import { IconCube } from '@tabler/icons-react'
 import { useEffect, useRef } from 'react'
-import { sayHeld } from '../../api/grip'
+import { sendDragKeepAlive } from '../../api/handleDrag'
 import { useLive } from '../../api/live'
 import { usePast } from '../../api/past'
 import { useSession } from '../../api/session'
-import { PAGE } from '../../api/shown'
+import { PAGE } from '../../api/layerGroups'
 import { stopByKey } from '../../components/stopKey'
 import { Empty } from '../../components/Empty'
 import { PastMark } from './PastMark'
@@ -48,7 +48,7 @@ function useNewsOfView(origin: string) {
   useEffect(() => {
     const hear = (event: MessageEvent<{ cellView?: string } | null>) => {
       if (event.source !== frame.current?.contentWindow || event.origin !== origin) return
-      if (event.data?.cellView === 'held') sayHeld()
+      if (event.data?.cellView === 'held') sendDragKeepAlive()
       if (event.data?.cellView === 'stop') stopByKey()
     }
     window.addEventListener('message', hear)

@@ -2,10 +2,10 @@
 import { Popover, SegmentedControl } from '@mantine/core'
 import { IconHandMove } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
-import { takeHandle, useGrip, type Way } from '../../api/grip'
+import { showHandle, useHandleDrag, type HandleMode } from '../../api/handleDrag'
 import { useLive } from '../../api/live'
 
-const WORDS: Record<Way, string> = {
+const WORDS: Record<HandleMode, string> = {
   move: 'Drag the handle: the tool follows slowly, as long as the mouse is down.',
   push: 'Drag the handle: an arm that floats is pulled towards it. In simulation only.',
 }
@@ -13,8 +13,8 @@ const WORDS: Record<Way, string> = {
 export function HandleMenu() {
   const [isOpen, setOpen] = useState(false)
   const robots = useLive((s) => s.robots)
-  const { arm, way, pulled, refused } = useGrip()
-  useEffect(() => () => takeHandle(''), [])
+  const { arm, way, pulled, refused } = useHandleDrag()
+  useEffect(() => () => showHandle(''), [])
   const arms = Object.keys(robots)
   if (arms.length === 0) return null
   return (
@@ -38,7 +38,7 @@ export function HandleMenu() {
           aria-label="Arm with the handle"
           data={[{ value: '', label: 'None' }, ...arms.map((each) => ({ value: each, label: each }))]}
           value={arm}
-          onChange={(next) => takeHandle(next, way)}
+          onChange={(next) => showHandle(next, way)}
         />
         <SegmentedControl
           fullWidth
@@ -50,7 +50,7 @@ export function HandleMenu() {
             { value: 'push', label: 'Push the arm' },
           ]}
           value={way}
-          onChange={(next) => takeHandle(arm, next as Way)}
+          onChange={(next) => showHandle(arm, next as HandleMode)}
         />
         <p className="quiet handle-words">{WORDS[way]}</p>
         <p role="status" className={refused ? 'handle-refused' : 'quiet handle-words'}>

@@ -2,9 +2,9 @@
 import { Checkbox, Popover } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useState } from 'react'
-import { GROUPS, setShown, useShown, type Group } from '../../api/shown'
+import { LAYER_GROUPS, setLayerShown, useShownLayers, type LayerGroup } from '../../api/layerGroups'
 
-const WORDS: Record<Group, readonly [label: string, description: string]> = {
+const WORDS: Record<LayerGroup, readonly [label: string, description: string]> = {
   voxels: ['Voxels', 'Where the cameras see something unknown'],
   ways: ['Planned ways', 'Blue when proposed, green under way, red while blocked'],
   obstacles: ['Planning scene', 'Obstacles that were put there, and what arms hold'],
@@ -16,7 +16,7 @@ const WORDS: Record<Group, readonly [label: string, description: string]> = {
 
 export function ShowMenu() {
   const [isOpen, setOpen] = useState(false)
-  const shown = useShown((s) => s.groups)
+  const shown = useShownLayers((s) => s.groups)
   return (
     <Popover opened={isOpen} onChange={setOpen} position="bottom-end" width={290} shadow="md" trapFocus returnFocus>
       <Popover.Target>
@@ -26,14 +26,14 @@ export function ShowMenu() {
         </button>
       </Popover.Target>
       <Popover.Dropdown className="show-menu">
-        {GROUPS.map((group) => (
+        {LAYER_GROUPS.map((group) => (
           <Checkbox
             key={group}
             size="sm"
             label={WORDS[group][0]}
             description={WORDS[group][1]}
             checked={shown.includes(group)}
-            onChange={(event) => setShown(group, event.currentTarget.checked)}
+            onChange={(event) => setLayerShown(group, event.currentTarget.checked)}
           />
         ))}
       </Popover.Dropdown>

@@ -1,7 +1,7 @@
 /** Why the server, or the page itself, refused the last command. */
 import { CloseButton } from '@mantine/core'
 import { IconHandStop } from '@tabler/icons-react'
-import { forgive, useRefusal } from '../../api/refusal'
+import { clearRefusal, useRefusal } from '../../api/refusal'
 
 export function RefusalLine() {
   const refusal = useRefusal((s) => s.refusal)
@@ -13,7 +13,7 @@ export function RefusalLine() {
         <strong>{refusal.what} was refused:</strong> {refusal.message}
         {refusal.hint && <span className="quiet"> – {refusal.hint}</span>}
       </span>
-      <CloseButton size="sm" aria-label="Put the refusal away" onClick={forgive} />
+      <CloseButton size="sm" aria-label="Put the refusal away" onClick={clearRefusal} />
     </div>
   )
 }

@@ -2,11 +2,11 @@
 import { lookup } from '../../document/dict'
 import { IconMessageQuestion, IconRoute } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
-import type { GraphNodeBody, WaitingLive } from '../../api/types'
+import type { GraphNodeBody, WaitingNodeLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { requestsOf } from '../../document/commands'
 import { nodeAt } from '../../document/tree'
-import { isProposed, plansOf, planWords } from '../../document/ways'
+import { isProposed, plansOf, planWords } from '../../document/plannedPaths'
 import type { Commands } from './useCommands'
 
 /** Where the key `a` goes. */
@@ -39,7 +39,7 @@ export function Requests({ root, commands, onShow, of }: RequestsProps) {
 }
 
 interface RequestProps {
-  readonly request: WaitingLive
+  readonly request: WaitingNodeLive
   readonly outcomes: readonly string[]
   readonly commands: Commands
   readonly onShow: (path: string) => void

@@ -13,15 +13,15 @@ import {
 } from '@tabler/icons-react'
 import { useLive } from '../../api/live'
 import { useOperated } from '../../api/liveStore'
-import type { RunLine } from '../../api/types'
+import type { RunOverview } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { isActive } from '../../document/live'
-import { LEVEL_WORDS, LEVELS, operatorWords, standing, waitingWords, type Command } from '../../document/commands'
+import { LEVEL_WORDS, LEVELS, operatorWords, runStatusText, waitingWords, type Command } from '../../document/commands'
 import type { Commands } from './useCommands'
 
 export interface RunBarProps {
-  readonly run: RunLine | undefined
+  readonly run: RunOverview | undefined
   readonly commands: Commands
   /** Show all keys; undefined where the keys of the page are not for this run. */
   readonly onSheet?: () => void
@@ -98,7 +98,7 @@ export function RunBar({ run, commands, onSheet, of = '', onShow }: RunBarProps)
       {run && isActive(run) && control && (
         <div className="run-state">
           <span role="status" aria-label={of ? `State of ${of}` : 'State of the run'} className={`run-standing${control.paused ? ' is-paused' : ''}`}>
-            {standing(run, control)}
+            {runStatusText(run, control)}
           </span>
           <span className="quiet run-autonomy">
             Autonomy {control.autonomy}: {LEVEL_WORDS[control.autonomy]}.

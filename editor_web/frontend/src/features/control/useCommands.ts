@@ -3,9 +3,9 @@ import { lookup } from '../../document/dict'
 import { useMemo, useState } from 'react'
 import { api } from '../../api/client'
 import { operate, useLive } from '../../api/live'
-import { refuse, send } from '../../api/refusal'
-import type { RunLine } from '../../api/types'
-import { obstacleTo, type Command, type Level, type Situation } from '../../document/commands'
+import { showRefusal, send } from '../../api/refusal'
+import type { RunOverview } from '../../api/types'
+import { disabledReason, type Command, type Level, type Situation } from '../../document/commands'
 
 export interface Commands {
   /** Why a command is not possible; undefined when it is. */
@@ -31,7 +31,7 @@ export interface Commands {
 }
 
 /** `name` says in refusals which run is meant, on a page that shows several. */
-export function useCommands(run: RunLine | undefined, node: string | undefined, name = ''): Commands {
+export function useCommands(run: RunOverview | undefined, node: string | undefined, name = ''): Commands {
   const role = useLive((s) => s.role)
   const isConnected = useLive((s) => s.connection === 'live')
   const control = useLive((s) => s.control)
@@ -43,18 +43,18 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
     const now: Situation = { role, isConnected, run, control, node, nodeStatus }
     // A chosen node that waits says which branch is meant.
     const branch = control?.waiting.some((each) => each.path === node) ? (node ?? '') : ''
-    const obstacle = (command: Command) => obstacleTo(command, now)
+    const obstacle = (command: Command) => disabledReason(command, now)
     const of = (words: string) => (name ? `${name}: ${words}` : words)
     const sendOf = <T>(words: string, request: () => Promise<T>) => send(of(words), request)
     /** Send it, or say why not. */
     const attempt = (command: Command, words: string, request: () => Promise<unknown>): void => {
       const why = obstacle(command)
-      if (why) refuse(of(words), why)
+      if (why) showRefusal(of(words), why)
       else void sendOf(words, request)
     }
     return {
       obstacle,
-      explain: (command, words) => refuse(of(words), obstacle(command) ?? ''),
+      explain: (command, words) => showRefusal(of(words), obstacle(command) ?? ''),
       pauseOrResume: () => {
         const isHeld = control?.paused === true && !control.stepping
         if (isHeld) attempt('resume', 'Resume', () => api.resume(id))
@@ -66,7 +66,7 @@ export function useCommands(run: RunLine | undefined, node: string | undefined, 
       setAutonomy: async (level) => (await sendOf('Autonomy', () => api.autonomy(id, level))) !== undefined,
       toggleOperating: () => {
         const why = obstacle('operate')
-        if (why) refuse(of('Operate'), why)
+        if (why) showRefusal(of('Operate'), why)
         else operate(useLive.getState().operated === id ? '' : id)
       },
       change: (preempt) =>

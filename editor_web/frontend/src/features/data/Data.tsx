@@ -3,11 +3,11 @@ import './data.css'
 import { CloseButton, TextInput } from '@mantine/core'
 import { IconDatabase, IconSearch } from '@tabler/icons-react'
 import { memo, useMemo, useRef, useState, type ReactNode } from 'react'
-import { useData, type DataLine } from '../../api/data'
+import { useData, type UserdataValue } from '../../api/data'
 import { usePastValues } from '../../api/pastValues'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { useShown } from '../../components/useShown'
+import { useIsVisible } from '../../components/useIsVisible'
 import { ValueTree } from '../../components/ValueTree'
 import { shownScopes, withChanges, type Scopes } from '../../document/userdata'
 import { inShort, isShort } from '../../document/values'
@@ -19,7 +19,7 @@ interface DataProps {
 
 export function Data({ run, onShow }: DataProps) {
   const area = useRef<HTMLDivElement>(null)
-  const isShown = useShown(area)
+  const isShown = useIsVisible(area)
   const [search, setSearch] = useState('')
   const [told, setTold] = useState<{ readonly run: string; readonly scopes: Scopes; readonly problem: string }>()
 
@@ -96,7 +96,7 @@ function NoData({ title, children }: { title: string; children: ReactNode }) {
 
 interface LineProps {
   readonly name: string
-  readonly line: DataLine
+  readonly line: UserdataValue
   readonly onShow: (path: string) => void
 }
 

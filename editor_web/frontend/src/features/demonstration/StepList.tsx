@@ -1,14 +1,14 @@
 /** The chosen steps in their order: what each is for, and what a grasp takes. */
 import { IconArrowDown, IconArrowUp, IconX } from '@tabler/icons-react'
 import type { ReactNode } from 'react'
-import type { DecidedStepBody } from '../../api/types'
+import type { ProposedStepBody } from '../../api/types'
 import { KIND_WORDS, moved, ROLE_WORDS, rolesOf, takes, type Role, type Step } from '../../document/demonstration'
 import { KindIcon } from './EntryChoice'
 
 export interface StepListProps {
   readonly steps: readonly Step[]
   /** As the proposal of these steps decided; missing while it is being made. */
-  readonly decided: readonly DecidedStepBody[]
+  readonly decided: readonly ProposedStepBody[]
   readonly parts: readonly string[]
   readonly onChange: (steps: readonly Step[]) => void
 }
@@ -60,7 +60,7 @@ export function StepList({ steps, decided, parts, onChange }: StepListProps) {
 }
 
 /** Whether what was decided is about these steps, and not about those before a change. */
-function fitting(decided: readonly DecidedStepBody[], steps: readonly Step[]): boolean {
+function fitting(decided: readonly ProposedStepBody[], steps: readonly Step[]): boolean {
   return decided.length === steps.length && decided.every((each, index) => each.name === steps[index]?.name)
 }
 

@@ -2,7 +2,7 @@
 import { IconArrowRight, IconPlus, IconTrash } from '@tabler/icons-react'
 import { nodeOf } from '../../document/editing/model'
 import { choose, remove } from './actions'
-import { askFrom, askInsert } from './asking'
+import { openPortPalette, openInsertPalette } from './paletteRequests'
 import { rootOf, useEditor } from './store'
 
 export function ArrowForm({ arrow }: { arrow: string }) {
@@ -25,10 +25,10 @@ export function ArrowForm({ arrow }: { arrow: string }) {
         </div>
       </header>
       <div className="form-body command-row">
-        <button type="button" className="command" onClick={() => askFrom(`${machine}/${source}`, outcome)}>
+        <button type="button" className="command" onClick={() => openPortPalette(`${machine}/${source}`, outcome)}>
           <IconArrowRight size={15} aria-hidden /> Lead elsewhere
         </button>
-        <button type="button" className="command" onClick={() => askInsert(arrow)}>
+        <button type="button" className="command" onClick={() => openInsertPalette(arrow)}>
           <IconPlus size={15} aria-hidden /> Insert a state
         </button>
         <button type="button" className="command" onClick={() => void remove()}>

@@ -17,37 +17,37 @@ import {
 import { useCallback, useEffect, useLayoutEffect, useMemo, useRef, useState, type DragEvent } from 'react'
 import { Empty } from '../../components/Empty'
 import { isForeign, isHolder, isMachine, nodeOf, parentPath } from '../../document/editing/model'
-import { frameOf } from '../../document/editing/opening'
+import { frameOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
 import { add, choose, chooseArrow, moveInto, place, type Addition } from './actions'
-import { askAdd, askFrom } from './asking'
-import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onReconnect } from './canvasActs'
-import { setCanvasPlaces } from './canvasPlaces'
-import { giveBySteps } from './bySteps'
-import { Beginning } from './Beginning'
-import { BranchLine, EditArrowHeads, WayLine } from './Lines'
-import { FAR, FarLines, fromFar, MANY, setFar } from './Far'
+import { openAddPalette, openPortPalette } from './paletteRequests'
+import { isAllowed, onConnect, onDouble, onEdgeClick, onNodeClick, onReconnect } from './canvasHandlers'
+import { setCanvasPositions } from './canvasPositions'
+import { drawInBatches } from './batchedDrawing'
+import { EmptyCanvas } from './EmptyCanvas'
+import { BranchLine, EditArrowHeads, TransitionLine } from './Lines'
+import { LOW_DETAIL_ZOOM, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES, setLowDetail } from './LowDetail'
 import { FrameCard, LeafCard, PillCard, RulesCard, TwigCard } from './Cards'
 import { canvasEdges, canvasNodes, type CanvasEdge, type CanvasNode } from './elements'
 import { ADDITION } from './dragging'
-import { movingNextFrame } from './moving'
+import { trackMotionNextFrame } from './viewportMotion'
 import { isAllSeen, LEAST, viewportFor } from './viewport'
 import { FlowOverlay } from './FlowOverlay'
 import { NoteOverlay } from './NoteOverlay'
 import { SelectionBar } from './SelectionBar'
-import { editor, refused, rootOf, setEditor, useEditor } from './store'
+import { editor, showEditorRefusal, rootOf, setEditor, useEditor } from './store'
 import { useArrangement, useIsBusy, type Arranged } from './useArrangement'
-import { useKept } from './useKept'
+import { useStableList } from './useStableList'
 
 const NODE_TYPES = {
-  leaf: fromFar(LeafCard),
-  frame: fromFar(FrameCard),
-  twig: fromFar(TwigCard),
-  pill: fromFar(PillCard),
-  rules: fromFar(RulesCard),
+  leaf: withLowDetail(LeafCard),
+  frame: withLowDetail(FrameCard),
+  twig: withLowDetail(TwigCard),
+  pill: withLowDetail(PillCard),
+  rules: withLowDetail(RulesCard),
 }
 const NO_EDGES: CanvasEdge[] = []
-const EDGE_TYPES = { way: WayLine, branch: BranchLine }
+const EDGE_TYPES = { way: TransitionLine, branch: BranchLine }
 const SELECT_KEYS = ['Shift', 'Meta', 'Control']
 
 export function Canvas({ hasMap, boxSelects }: { hasMap: boolean; boxSelects: boolean }) {
@@ -85,7 +85,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const arrow = useEditor((s) => s.arrow)
   const shown = useEditor((s) => s.shown)
   const isStale = useEditor((s) => s.history.steps[s.history.at]?.draft.isStale ?? false)
-  const computed = useKept(useMemo(() => canvasNodes(arranged), [arranged]))
+  const computed = useStableList(useMemo(() => canvasNodes(arranged), [arranged]))
   const [nodes, setNodes] = useState<CanvasNode[]>([...computed])
   const [given, setGiven] = useState<Arranged>()
   const [isWiring, setWiring] = useState(false)
@@ -96,29 +96,29 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
   const isFitted = useRef(false)
 
   useEffect(() => {
-    setCanvasPlaces(arranged.arrangement)
+    setCanvasPositions(arranged.arrangement)
     const chosen = new Set(selection)
     const all = computed.map((node) => (chosen.has(node.id) ? { ...node, selected: true } : node))
     const isThere = (id: string) => getInternalNode(id) !== undefined
-    return giveBySteps(all, { isThere, give: setNodes, done: () => setGiven(arranged) })
+    return drawInBatches(all, { isThere, give: setNodes, done: () => setGiven(arranged) })
   }, [arranged, computed, selection, getInternalNode])
   // React Flow moves its nodes a turn after they were given to it.
   useEffect(() => given && onDrawn(given), [given, onDrawn])
 
-  const edges = useKept(
+  const edges = useStableList(
     useMemo(
       () => canvasEdges(arranged, selection).map((edge) => (edge.id === arrow ? { ...edge, selected: true } : edge)),
       [arranged, selection, arrow],
     ),
   )
 
-  const hasMany = computed.length > MANY
-  const isFar = useStore((s) => s.transform[2] < FAR) && hasMany
-  useLayoutEffect(() => setFar(isFar ? arranged.scope.path : undefined), [isFar, arranged.scope.path])
-  useEffect(() => () => setFar(undefined), [])
+  const hasMany = computed.length > LARGE_GRAPH_NODES
+  const isFar = useStore((s) => s.transform[2] < LOW_DETAIL_ZOOM) && hasMany
+  useLayoutEffect(() => setLowDetail(isFar ? arranged.scope.path : undefined), [isFar, arranged.scope.path])
+  useEffect(() => () => setLowDetail(undefined), [])
 
   useEffect(() => {
-    return movingNextFrame(() => {
+    return trackMotionNextFrame(() => {
       const [width = 0, height = 0] = pane.split('x').map(Number)
       isFitted.current = true
       return setViewport(viewportFor(arranged.arrangement, { width, height })).then(() => setInPlace(true))
@@ -151,7 +151,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
       return
     }
     if (given !== arranged) return
-    return movingNextFrame(() => {
+    return trackMotionNextFrame(() => {
       const target = element.current?.querySelector<HTMLElement>(
         `.react-flow__node[data-id="${CSS.escape(shown.path)}"]`,
       )
@@ -273,7 +273,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     const point = 'changedTouches' in event ? event.changedTouches[0] : event
     if (!point) return
     const screen = { x: point.clientX, y: point.clientY }
-    askFrom(
+    openPortPalette(
       state.fromNode.id,
       state.fromHandle.id,
       screen,
@@ -299,7 +299,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
     const at = screenToFlowPosition(screen)
     const parent = dropHolder(frameAt(at), screen)
     if (parent) void add(what, { parent, at: positionIn(parent, at) })
-    else refused('Add', 'nothing can be put in here', 'Drop it on a container or a free place.')
+    else showEditorRefusal('Add', 'nothing can be put in here', 'Drop it on a container or a free place.')
   }
 
   /** What takes a dropped addition: the branch of a tree under the pointer, else the container around. */
@@ -350,7 +350,7 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
         const at = screenToFlowPosition(screen)
         choose([])
         setEditor({ palette: undefined })
-        askAdd(screen, positionIn(arranged.scope.path, at))
+        openAddPalette(screen, positionIn(arranged.scope.path, at))
       }}
       onDragOver={(event) => {
         if (!event.dataTransfer.types.includes(ADDITION)) return
@@ -385,11 +385,11 @@ function Drawn({ arranged, pane, hasMap, boxSelects, onDrawn }: DrawnProps) {
           nodeClassName={(node) => `map-${node.type ?? ''}`}
         />
       )}
-      {isFar && <FarLines nodes={computed} edges={edges} />}
+      {isFar && <LowDetailEdges nodes={computed} edges={edges} />}
       <FlowOverlay />
       <NoteOverlay />
       <SelectionBar />
-      {arranged.scope.children.length === 0 && <Beginning />}
+      {arranged.scope.children.length === 0 && <EmptyCanvas />}
     </ReactFlow>
   )
 }

@@ -15,11 +15,11 @@ import { useReactFlow } from '@xyflow/react'
 import { useMemo, type ReactNode } from 'react'
 import { nodeOf, pathsTo } from '../../document/editing/model'
 import { focusNode, layOutAnew } from './actions'
-import { askAdd } from './asking'
-import { moving } from './moving'
-import { openOther } from './pageActs'
+import { openAddPalette } from './paletteRequests'
+import { trackViewportMotion } from './viewportMotion'
+import { openOther } from './pageActions'
 import { toggleNotes, useNotes } from './notes'
-import { cameFrom } from './references'
+import { referrerOf } from './references'
 import { toggleDataFlow, useDataFlow } from './dataFlow'
 import { wholeCanvas } from './viewport'
 import { draftOf, rootOf, scopeOf, setEditor, useEditor } from './store'
@@ -45,7 +45,7 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
         </span>
       )}
       <span className="spacer" />
-      <Tool label="Add a state or container (A)" onPress={() => askAdd()}>
+      <Tool label="Add a state or container (A)" onPress={() => openAddPalette()}>
         <IconSquarePlus size={17} />
       </Tool>
       <Tool label="Drag a box to choose" isPressed={boxSelects} onPress={onBoxSelects}>
@@ -63,13 +63,13 @@ export function CanvasBar({ hasMap, onMap, boxSelects, onBoxSelects }: CanvasBar
       <Tool label="Overview" isPressed={hasMap} onPress={onMap}>
         <IconMap size={17} />
       </Tool>
-      <Tool label="Zoom out (-)" onPress={() => moving(zoomOut({ duration: 120 }))}>
+      <Tool label="Zoom out (-)" onPress={() => trackViewportMotion(zoomOut({ duration: 120 }))}>
         <IconMinus size={17} />
       </Tool>
-      <Tool label="Zoom in (+)" onPress={() => moving(zoomIn({ duration: 120 }))}>
+      <Tool label="Zoom in (+)" onPress={() => trackViewportMotion(zoomIn({ duration: 120 }))}>
         <IconPlus size={17} />
       </Tool>
-      <Tool label="Show all (F)" onPress={() => moving(setViewport(wholeCanvas(), { duration: 200 }))}>
+      <Tool label="Show all (F)" onPress={() => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 }))}>
         <IconArrowsMaximize size={17} />
       </Tool>
     </div>
@@ -82,7 +82,7 @@ function Way() {
   const root = useEditor(rootOf)
   const name = useEditor((s) => draftOf(s).document?.name ?? '')
   const id = useEditor((s) => s.id)
-  const from = useMemo(() => cameFrom(id), [id])
+  const from = useMemo(() => referrerOf(id), [id])
   return (
     <nav aria-label="Shown container" className="breadcrumb edit-way">
       <ol>

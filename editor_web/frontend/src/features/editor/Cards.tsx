@@ -11,12 +11,12 @@ import {
   IconShieldHalf,
 } from '@tabler/icons-react'
 import { memo } from 'react'
-import { isFailure, type Way } from '../../document/editing/model'
+import { isFailure, type OutgoingTransition } from '../../document/editing/model'
 import { consequenceOf } from '../../document/editing/rules'
 import { kindLabel } from '../../document/tree'
 import { IN, type CardData, type CardNode, type PillNode, type RulesNode } from './elements'
 import { iconOf } from './kinds'
-import { useMark, useWayFindings } from './marks'
+import { useMark, useTransitionFindings } from './marks'
 
 function KindIcon({ kind, size = 16 }: { kind: string; size?: number }) {
   const Icon = iconOf(kind)
@@ -162,8 +162,8 @@ function Ways({ path, data }: { path: string; data: CardData }) {
   )
 }
 
-function WayRow({ path, way, isDrawn, isForeign }: { path: string; way: Way; isDrawn: boolean; isForeign: boolean }) {
-  const findings = useWayFindings(path, way.outcome)
+function WayRow({ path, way, isDrawn, isForeign }: { path: string; way: OutgoingTransition; isDrawn: boolean; isForeign: boolean }) {
+  const findings = useTransitionFindings(path, way.outcome)
   const isLoose = way.target === undefined
   const classes = `${isLoose ? ' is-loose' : ''}${isFailure(way.outcome) ? ' is-failure' : ''}${findings.length > 0 ? ' has-finding' : ''}`
   return (

@@ -7,7 +7,7 @@ import { looseValue, shownValue } from '../../document/editing/fields'
 import { perform } from './apply'
 import { Section } from './Section'
 import { TemplateInput } from './TemplateInput'
-import { draftOf, editor, refused, useEditor } from './store'
+import { draftOf, editor, showEditorRefusal, useEditor } from './store'
 
 type Mapping = Dict<unknown>
 
@@ -259,8 +259,8 @@ function AddName({ label, taken, onAdd }: { label: string; taken: readonly strin
       onSubmit={(event) => {
         event.preventDefault()
         const wanted = name.trim()
-        if (!/^[A-Za-z_][A-Za-z0-9_]{0,63}$/.test(wanted)) refused(label, 'a name has letters, digits and _')
-        else if (taken.includes(wanted)) refused(label, `there is a ${wanted} already`)
+        if (!/^[A-Za-z_][A-Za-z0-9_]{0,63}$/.test(wanted)) showEditorRefusal(label, 'a name has letters, digits and _')
+        else if (taken.includes(wanted)) showEditorRefusal(label, `there is a ${wanted} already`)
         else {
           onAdd(wanted)
           setName('')

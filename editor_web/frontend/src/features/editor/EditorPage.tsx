@@ -13,7 +13,7 @@ import { ViewBoundary } from '../../components/ViewBoundary'
 import { lookForFindings } from './apply'
 import { Canvas } from './Canvas'
 import { CanvasBar } from './CanvasBar'
-import { setPageActs } from './pageActs'
+import { setPageActions } from './pageActions'
 import { ConflictDialog } from './ConflictDialog'
 import { forgetDataFlow, useDataFlow } from './dataFlow'
 import { DataFlowPanel } from './DataFlowPanel'
@@ -22,15 +22,15 @@ import { FileDialogs } from './FileDialogs'
 import { useFileDialog } from './fileDialogs'
 import { Inspector } from './Inspector'
 import { KeySheet } from './KeySheet'
-import { keepDraftNow } from './kept'
+import { storeDraftNow } from './draftStorage'
 import { LibraryPanel } from './LibraryPanel'
 import { NoticeLine } from './NoticeLine'
-import { moving } from './moving'
+import { trackViewportMotion } from './viewportMotion'
 import { Palettes } from './Palettes'
 import { forgetReferences, refreshReferences } from './references'
 import { lookAtDisk, openDocument, save } from './session'
 import { CellViewContext } from './ShowEntry'
-import { draftOf, editor, isDirty, refused, setEditor, useEditor } from './store'
+import { draftOf, editor, isDirty, showEditorRefusal, setEditor, useEditor } from './store'
 import { useLongPress } from './useLongPress'
 import { useEditorKeys } from './useEditorKeys'
 import { wholeCanvas } from './viewport'
@@ -87,7 +87,7 @@ export function EditorPage(props: EditorPageProps) {
 function useLeaving(): void {
   useEffect(() => {
     const warn = (event: BeforeUnloadEvent) => {
-      keepDraftNow()
+      storeDraftNow()
       if (isDirty(editor())) event.preventDefault()
     }
     const look = () => document.visibilityState === 'visible' && void lookAtDisk()
@@ -95,7 +95,7 @@ function useLeaving(): void {
     addEventListener('focus', look)
     document.addEventListener('visibilitychange', look)
     return () => {
-      keepDraftNow()
+      storeDraftNow()
       removeEventListener('beforeunload', warn)
       removeEventListener('focus', look)
       document.removeEventListener('visibilitychange', look)
@@ -119,18 +119,18 @@ function Loaded({ mayEdit, isNarrow, onRun, onOpen, onGone, libraryTools, previe
     const errors = draftOf(editor()).findings.filter((finding) => finding.severity === 'error').length
     if (errors > 0) {
       setEditor({ tab: 'problems' })
-      refused('Run', errors === 1 ? 'there is an error' : `there are ${errors} errors`, 'See the problems.')
+      showEditorRefusal('Run', errors === 1 ? 'there is an error' : `there are ${errors} errors`, 'See the problems.')
       return
     }
     if (await save()) onRun()
   }
   useEffect(() =>
-    setPageActs({
+    setPageActions({
       run: () => void run(),
-      fit: () => moving(setViewport(wholeCanvas(), { duration: 200 })),
-      zoom: (factor) => moving(zoomTo(getZoom() * factor, { duration: 120 })),
+      fit: () => trackViewportMotion(setViewport(wholeCanvas(), { duration: 200 })),
+      zoom: (factor) => trackViewportMotion(zoomTo(getZoom() * factor, { duration: 120 })),
       open: (id, node) => {
-        keepDraftNow()
+        storeDraftNow()
         onOpen(id, node)
       },
     }),

@@ -4,7 +4,7 @@ import { entries } from '../../api/entries'
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
 import type { EntryRow } from '../../api/types'
-import { entryLines, type EntryLine } from '../../document/editing/entryWords'
+import { entryLines, type EntryLine } from '../../document/editing/entryText'
 import { wallTime } from '../../document/time'
 
 interface Details {

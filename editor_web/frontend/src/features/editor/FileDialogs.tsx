@@ -5,11 +5,11 @@ import { relations } from '../../api/relations'
 import type { ReferrerBody } from '../../api/types'
 import { Dialog } from '../../components/Dialog'
 import { fileProblem, idOfFile, partsOfId } from '../../document/editing/fileNames'
-import { openOther } from './pageActs'
+import { openOther } from './pageActions'
 import { closeFileDialog, useFileDialog, type FileDialog } from './fileDialogs'
-import { forgetDraft } from './kept'
+import { deleteStoredDraft } from './draftStorage'
 import { save } from './session'
-import { editor, isDirty, refused, told, useEditor } from './store'
+import { editor, isDirty, showEditorRefusal, showEditorNotice, useEditor } from './store'
 
 export function FileDialogs({ onGone }: { onGone: () => void }) {
   const open = useFileDialog((s) => s.open)
@@ -36,7 +36,7 @@ function useReferrers(id: string): readonly ReferrerBody[] | undefined {
     let isCurrent = true
     relations.referrers(id).then(
       (all) => isCurrent && setFound(all),
-      (error: unknown) => refused('References', wordsOf(error)),
+      (error: unknown) => showEditorRefusal('References', wordsOf(error)),
     )
     return () => {
       isCurrent = false
@@ -87,11 +87,11 @@ function NameForm({ id, kind }: { id: string; kind: 'rename' | 'duplicate' }) {
     try {
       if (isRename) {
         const moved = await relations.move(id, to, follows)
-        forgetDraft(id)
+        deleteStoredDraft(id)
         closeFileDialog()
         openOther(to)
-        told(moved.followed.length > 0 ? `Renamed; ${moved.followed.length} follow` : 'Renamed')
-        if (moved.left.length > 0) refused('Rename', `not changed: ${moved.left.join(', ')}`, 'Change them by hand.')
+        showEditorNotice(moved.followed.length > 0 ? `Renamed; ${moved.followed.length} follow` : 'Renamed')
+        if (moved.left.length > 0) showEditorRefusal('Rename', `not changed: ${moved.left.join(', ')}`, 'Change them by hand.')
       } else {
         await relations.duplicate(id, to)
         closeFileDialog()
@@ -155,7 +155,7 @@ function DeleteForm({ id, onGone }: { id: string; onGone: () => void }) {
   async function go(): Promise<void> {
     try {
       await relations.remove(id)
-      forgetDraft(id)
+      deleteStoredDraft(id)
       closeFileDialog()
       onGone()
     } catch (error) {

@@ -8,10 +8,10 @@ import { PLACED } from '../../document/editing/preview'
 import { found } from '../../document/editing/search'
 import { add, type Addition } from './actions'
 import { entryAddition, itemIcon, itemsOf, type Item } from './additions'
-import { placeForNew } from './asking'
+import { placeForNew } from './paletteRequests'
 import { ADDITION } from './dragging'
 import { LibraryPreview } from './ShowEntry'
-import { refused, useEditor } from './store'
+import { showEditorRefusal, useEditor } from './store'
 
 export function LibraryPanel({ tools }: { tools?: ReactNode }) {
   const catalogue = useEditor((s) => s.catalogue)
@@ -158,5 +158,5 @@ function LibraryItem({ item, isExplained, onExplain }: { item: Item; isExplained
 function addHere(addition: Addition): void {
   const parent = placeForNew()
   if (parent) void add(addition, { parent: parent.path })
-  else refused('Add', 'nothing can be put in here', 'Choose a container.')
+  else showEditorRefusal('Add', 'nothing can be put in here', 'Choose a container.')
 }

@@ -3,14 +3,14 @@ import { getSmoothStepPath, Position, type EdgeProps } from '@xyflow/react'
 import { memo, useMemo } from 'react'
 import { shiftOf } from '../../document/editing/shift'
 import { roundedPath, type Point } from '../../document/geometry'
-import type { BranchEdge, WayEdge } from './elements'
-import { askInsert } from './asking'
-import { useWayFindings } from './marks'
+import type { BranchEdge, TransitionEdge } from './elements'
+import { openInsertPalette } from './paletteRequests'
+import { useTransitionFindings } from './marks'
 import { ArrowHeads } from './ArrowHeads'
 
-export const WayLine = memo(function WayLine(props: EdgeProps<WayEdge>) {
+export const TransitionLine = memo(function WayLine(props: EdgeProps<TransitionEdge>) {
   const { id, source, data, selected } = props
-  const findings = useWayFindings(source, data?.outcome ?? '')
+  const findings = useTransitionFindings(source, data?.outcome ?? '')
   const points = data?.points
   const laidOut = useMemo(() => points && { path: roundedPath(points, 7), middle: middleOf(points) }, [points])
   const from = { x: props.sourceX, y: props.sourceY }
@@ -34,7 +34,7 @@ export const WayLine = memo(function WayLine(props: EdgeProps<WayEdge>) {
           onPointerDown={(event) => event.stopPropagation()}
           onClick={(event) => {
             event.stopPropagation()
-            askInsert(id, { x: event.clientX, y: event.clientY })
+            openInsertPalette(id, { x: event.clientX, y: event.clientY })
           }}
         >
           <title>Insert a state here</title>
@@ -47,7 +47,7 @@ export const WayLine = memo(function WayLine(props: EdgeProps<WayEdge>) {
 })
 
 /** While a node at one end of it is dragged. */
-function straight({ sourceX, sourceY, targetX, targetY }: EdgeProps<WayEdge>): { path: string; middle: Point } {
+function straight({ sourceX, sourceY, targetX, targetY }: EdgeProps<TransitionEdge>): { path: string; middle: Point } {
   const [path, x, y] = getSmoothStepPath({
     sourceX,
     sourceY,

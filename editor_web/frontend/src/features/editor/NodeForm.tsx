@@ -2,12 +2,12 @@
 import { IconCursorText, IconExternalLink } from '@tabler/icons-react'
 import { isForeign, isMachine, isTreePart, nodeOf, parentPath, ROOT, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
-import { placeInOther } from '../../document/editing/grafting'
+import { enclosingReference } from '../../document/editing/referenceInlining'
 import { kindLabel } from '../../document/tree'
 import { perform } from './apply'
 import { itemIcon } from './additions'
-import { openReferred } from './pageActs'
-import { ConductForm } from './ConductForm'
+import { openReferred } from './pageActions'
+import { PolicyForm } from './PolicyForm'
 import { PostForm } from './PostForm'
 import { DataForm } from './DataForm'
 import { NodeFindings } from './FixButtons'
@@ -103,7 +103,7 @@ export function NodeForm({ node, isScope, others }: NodeFormProps) {
       <SettingsForm node={node} />
       {runs && <DataForm node={node} inputs={state?.inputs ?? []} outputs={state?.outputs ?? []} />}
       <FlowSection node={node} />
-      {node.path !== ROOT && node.kind !== 'guard' && <ConductForm node={node} parent={parent} />}
+      {node.path !== ROOT && node.kind !== 'guard' && <PolicyForm node={node} parent={parent} />}
       {parent && isTreePart(parent.kind) && <PostForm node={node} />}
       <Section title="Notes">
         <TemplateInput
@@ -159,7 +159,7 @@ function OpenOther({ id, from, node = '' }: { id: string; from: string; node?: s
 }
 
 function Foreign({ node, root }: { node: EditNode; root: EditNode }) {
-  const place = placeInOther(root, node.path)
+  const place = enclosingReference(root, node.path)
   return (
     <div className="node-form">
       <header className="form-head">

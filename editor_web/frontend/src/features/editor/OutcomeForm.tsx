@@ -1,6 +1,6 @@
 /** The outcomes of a node in a machine: where each leads, and from which autonomy on it passes by itself. */
 import { lookup, without } from '../../document/dict'
-import { waysOf, type EditNode } from '../../document/editing/model'
+import { outgoingTransitions, type EditNode } from '../../document/editing/model'
 import { setField } from '../../document/editing/edits'
 import { connect, disconnect } from './actions'
 import { performOn } from './apply'
@@ -19,7 +19,7 @@ const LEVEL_WORDS: Record<string, string> = {
 export function OutcomeForm({ node, parent }: { node: EditNode; parent: EditNode }) {
   const root = useEditor(rootOf)
   const outcomes = useEditor((s) => draftOf(s).document?.outcomes ?? NONE)
-  const ways = waysOf(parent, node).filter((way) => way.isOutcome)
+  const ways = outgoingTransitions(parent, node).filter((way) => way.isOutcome)
   if (!root || ways.length === 0) return null
   const inside = parent.children.map((child) => child.name)
   const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(

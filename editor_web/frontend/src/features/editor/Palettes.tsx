@@ -8,15 +8,15 @@ import {
   nameOfPath,
   nodeOf,
   parentPath,
-  waysOf,
+  outgoingTransitions,
   type EditNode,
 } from '../../document/editing/model'
 import { chordText } from '../../document/editing/keys'
 import { add, connect, disconnect, focusNode } from './actions'
 import { fits, itemIcon, itemsOf } from './additions'
-import { askFrom } from './asking'
+import { openPortPalette } from './paletteRequests'
 import { ChoiceBox, type Choice } from './ChoiceBox'
-import { COMMANDS, obstacleOf } from './commands'
+import { COMMANDS, disabledReason } from './commands'
 import { reveal } from './session'
 import { declaredOutcomes } from './useArrangement'
 import { draftOf, editor, rootOf, setEditor, useEditor, type PaletteRequest } from './store'
@@ -95,7 +95,7 @@ function targetChoices(root: EditNode, parent: EditNode, outcomes: readonly stri
   const ends = [...new Set([...declaredOutcomes(root, outcomes)(parent), ...parent.outcomes])].filter(
     (outcome) => !inside.has(outcome),
   )
-  const present = waysOf(parent, nodeOf(root, from.path) ?? parent).find((way) => way.outcome === from.outcome)?.target
+  const present = outgoingTransitions(parent, nodeOf(root, from.path) ?? parent).find((way) => way.outcome === from.outcome)?.target
   return [
     ...parent.children.map((child): Choice => ({
       id: `to:${child.name}`,
@@ -142,7 +142,7 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
   const root = useEditor(rootOf)
   const node = nodeOf(root, path)
   const parent = nodeOf(root, parentPath(path))
-  const ways = node ? waysOf(parent, node).filter((way) => way.isOutcome) : []
+  const ways = node ? outgoingTransitions(parent, node).filter((way) => way.isOutcome) : []
   const choices = ways.map((way): Choice => ({
     id: way.outcome,
     title: way.outcome,
@@ -150,7 +150,7 @@ function ConnectPalette({ path, onClose }: { path: string; onClose: () => void }
     detail: way.target === undefined ? 'not connected' : `now leads to ${way.target}`,
     icon: <IconCircleDot size={15} className={isFailure(way.outcome) ? 'is-failure' : ''} aria-hidden />,
     // In the same update: what is typed on goes to the next box.
-    run: () => askFrom(path, way.outcome),
+    run: () => openPortPalette(path, way.outcome),
   }))
   return (
     <ChoiceBox
@@ -170,7 +170,7 @@ function CommandPalette({ onClose }: { onClose: () => void }) {
       title: command.words,
       group: 'Commands',
       hint: command.chords[0] && chordText(command.chords[0]),
-      obstacle: obstacleOf(command),
+      obstacle: disabledReason(command),
       run: () => setTimeout(() => command.run()),
     }))
     const nodes = root

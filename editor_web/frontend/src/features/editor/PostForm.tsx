@@ -1,7 +1,7 @@
 /** What userdata is assigned when a part of a tree has ended, or was halted. */
 import { lookup } from '../../document/dict'
 import { setField } from '../../document/editing/edits'
-import { assignedText, assignments } from '../../document/editing/assigning'
+import { assignedText, assignments } from '../../document/editing/assignmentText'
 import type { EditNode } from '../../document/editing/model'
 import { performOn } from './apply'
 import { Section } from './Section'

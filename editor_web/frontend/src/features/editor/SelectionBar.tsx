@@ -23,10 +23,10 @@ import {
   parentPath,
   type EditNode,
 } from '../../document/editing/model'
-import { placeInOther } from '../../document/editing/grafting'
+import { enclosingReference } from '../../document/editing/referenceInlining'
 import { duplicate, enter, focusNode, group, remove, rename, toggleOpen } from './actions'
-import { askAdd, askConnect } from './asking'
-import { openReferred } from './pageActs'
+import { openAddPalette, openConnectPalette } from './paletteRequests'
+import { openReferred } from './pageActions'
 import { writeNote } from './notes'
 import { toggleReference } from './references'
 import { editor, isOpenNow, rootOf, setEditor, useEditor } from './store'
@@ -36,7 +36,7 @@ export function SelectionBar() {
   const renaming = useEditor((s) => s.renaming)
   const node = useEditor((s) => nodeOf(rootOf(s), s.selection.at(-1) ?? ''))
   const root = useEditor(rootOf)
-  const foreign = root && node && placeInOther(root, node.path)
+  const foreign = root && node && enclosingReference(root, node.path)
   if (renaming !== undefined) {
     return (
       <NodeToolbar nodeId={renaming} isVisible position={Position.Top} offset={8}>
@@ -80,10 +80,10 @@ function One({ node }: { node: EditNode }) {
   const reference = node.document
   return (
     <>
-      <Act label="Add a state or container here (A)" onPress={() => askAdd()}>
+      <Act label="Add a state or container here (A)" onPress={() => openAddPalette()}>
         <IconPlus size={16} />
       </Act>
-      <Act label="Connect (C)" onPress={askConnect}>
+      <Act label="Connect (C)" onPress={openConnectPalette}>
         <IconPlugConnected size={16} />
       </Act>
       {reference !== null && (

@@ -7,7 +7,7 @@ import { CommandButton } from '../../components/CommandButton'
 import type { EditField } from '../../document/editing/fields'
 import type { EditNode } from '../../document/editing/model'
 import { armOf, byDefault, entryNamed, PLACED } from '../../document/editing/preview'
-import { draftOf, refused, useEditor } from './store'
+import { draftOf, showEditorRefusal, useEditor } from './store'
 
 /** Has the server a 3D view? */
 export const CellViewContext = createContext(false)
@@ -50,7 +50,7 @@ export function FieldPreview({ node, field, value, entries, pointed }: FieldPrev
         isPressed={isShown}
         obstacle={why}
         // Where nothing hovers, the reason is told when it is pressed.
-        onObstacle={() => why && refused('Show in 3D', why)}
+        onObstacle={() => why && showEditorRefusal('Show in 3D', why)}
         onPress={() => showPreview(isShown ? undefined : { by, kind, name: name ?? '', arm })}
       />
     </div>

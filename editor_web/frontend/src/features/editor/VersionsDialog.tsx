@@ -9,7 +9,7 @@ import type { EditNode } from '../../document/editing/model'
 import { wallTime } from '../../document/time'
 import { takeText } from './apply'
 import { closeFileDialog, useFileDialog } from './fileDialogs'
-import { draftOf, editor, isDirty, rootOf, told, useEditor } from './store'
+import { draftOf, editor, isDirty, rootOf, showEditorNotice, useEditor } from './store'
 import { VersionView, type Shown } from './VersionView'
 
 /** The text that is being edited, among the versions. */
@@ -57,7 +57,7 @@ function Versions() {
     const version = versions?.find((each) => each.hash === shown)
     closeFileDialog()
     await takeText(`Restore the version of ${wallTime(version?.saved_at ?? 0)}`, text)
-    told('Restored; save it to keep it')
+    showEditorNotice('Restored; save it to keep it')
   }
 
   if (problem) {

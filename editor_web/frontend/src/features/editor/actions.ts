@@ -20,8 +20,8 @@ import {
 import { aligned, type Alignment } from '../../document/editing/neighbors'
 import type { Box } from '../../document/geometry'
 import { perform, performOn } from './apply'
-import { canvasBoxes } from './canvasPlaces'
-import { chosenOf, draftOf, editor, refused, rootOf, scopeOf, setEditor, told, type AddRequest } from './store'
+import { canvasBoxes } from './canvasPositions'
+import { chosenOf, draftOf, editor, showEditorRefusal, rootOf, scopeOf, setEditor, showEditorNotice, type AddRequest } from './store'
 
 /** What a new node is. */
 export interface Addition {
@@ -124,8 +124,8 @@ function own(paths: readonly string[], what: string): readonly string[] {
   const root = rootOf(editor())
   const mine = root ? paths.filter((path) => !isForeign(root, path)) : []
   if (mine.length < paths.length)
-    refused(what, 'this is part of another behavior', 'Open that behavior and change it there.')
-  else if (paths.length === 0) refused(what, 'nothing is chosen', 'Choose nodes on the canvas first.')
+    showEditorRefusal(what, 'this is part of another behavior', 'Open that behavior and change it there.')
+  else if (paths.length === 0) showEditorRefusal(what, 'nothing is chosen', 'Choose nodes on the canvas first.')
   return mine
 }
 
@@ -162,10 +162,10 @@ export async function copy(cut = false): Promise<void> {
   try {
     const { yaml } = await documents.copy(id, draftOf(editor()).text, paths)
     await toClipboard(yaml)
-    told(paths.length === 1 ? `Copied ${nameOfPath(paths[0] ?? '')}` : `Copied ${paths.length} nodes`)
+    showEditorNotice(paths.length === 1 ? `Copied ${nameOfPath(paths[0] ?? '')}` : `Copied ${paths.length} nodes`)
     if (cut) await remove()
   } catch (error) {
-    refused(cut ? 'Cut' : 'Copy', wordsOf(error))
+    showEditorRefusal(cut ? 'Cut' : 'Copy', wordsOf(error))
   }
 }
 
@@ -193,7 +193,7 @@ export async function paste(): Promise<void> {
 
 export async function pasteText(yaml: string, root = rootOf(editor())): Promise<void> {
   if (!root || !yaml.trim()) {
-    refused('Paste', 'the clipboard is empty', 'Copy nodes first, here or in another behavior.')
+    showEditorRefusal('Paste', 'the clipboard is empty', 'Copy nodes first, here or in another behavior.')
     return
   }
   const chosen = chosenOf(editor())
@@ -252,7 +252,7 @@ export async function layOutAnew(): Promise<void> {
   const scope = scopeOf(editor())
   const placed = scope ? positionedBelow(scope) : []
   if (placed.length === 0) {
-    told('It is laid out already')
+    showEditorNotice('It is laid out already')
     return
   }
   await perform('Lay out', [
@@ -296,7 +296,7 @@ export async function align(how: Alignment): Promise<void> {
     outermost().flatMap((path): [string, Box][] => (boxes.has(path) ? [[path, boxes.get(path) as Box]] : [])),
   )
   if (chosen.size < 2) {
-    refused('Align', 'choose two nodes or more')
+    showEditorRefusal('Align', 'choose two nodes or more')
     return
   }
   await place(aligned(chosen, how))

@@ -1,12 +1,12 @@
 /** Edits that are on their way to the server while something else happens to the document. */
 import { beforeEach, expect, test, vi } from 'vitest'
 import { documents } from '../../api/documents'
-import type { EditedBody } from '../../api/types'
+import type { EditResultBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { newHistory, presentOf } from '../../document/editing/history'
 import { node } from '../../document/editing/testNodes'
 import { lookForFindings, perform, redo, typed, undo } from './apply'
-import { obstacleOf, type Command } from './commands'
+import { disabledReason, type Command } from './commands'
 import { blank, draftOf, editor, useEditor } from './store'
 
 vi.mock('../../api/documents', () => ({ documents: { edit: vi.fn(), draft: vi.fn(), findings: vi.fn() } }))
@@ -18,8 +18,8 @@ vi.mock('../../api/client', async (original) => ({
 const EDIT: readonly Edit[] = [{ edit: 'duplicate', paths: ['root/a'] }]
 const UNDO = { id: 'undo', words: 'Undo', needs: 'undo' } as Command
 
-function answer(text: string): EditedBody {
-  return { text, graph: node('root', []), findings: [], checked: false, document: null, changed: [], refused: null } as unknown as EditedBody
+function answer(text: string): EditResultBody {
+  return { text, graph: node('root', []), findings: [], checked: false, document: null, changed: [], refused: null } as unknown as EditResultBody
 }
 
 /** A server that answers when it is told to: with the text it was sent and a `+`. */
@@ -45,12 +45,12 @@ test('what is on its way can be taken back before it has arrived, also where it 
   const server = slowServer()
   const done = perform('Duplicate', EDIT)
   await vi.waitFor(() => expect(server.sent).toEqual(['a']))
-  expect(obstacleOf(UNDO)).toBeUndefined()
+  expect(disabledReason(UNDO)).toBeUndefined()
   undo()
   server.release()
   expect(await done).toBeDefined()
   await vi.waitFor(() => expect(text()).toBe('a'))
-  expect(obstacleOf(UNDO)).toBe('nothing was changed')
+  expect(disabledReason(UNDO)).toBe('nothing was changed')
   redo()
   await vi.waitFor(() => expect(text()).toBe('a+'))
 })

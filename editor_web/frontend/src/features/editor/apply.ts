@@ -1,16 +1,16 @@
 /** Changing the document: edits by the server, typing, undo and redo; one after the other, none lost. */
 import { wordsOf, ServerError } from '../../api/client'
 import { documents } from '../../api/documents'
-import type { EditedBody } from '../../api/types'
+import type { EditResultBody } from '../../api/types'
 import type { Edit } from '../../document/editing/edits'
 import { sameFindings } from '../../document/editing/findings'
 import { pushed, redone, replaced, settled, undone, type History } from '../../document/editing/history'
 import { nodeOf, parentPath, type Draft, type EditNode } from '../../document/editing/model'
 import { lookForNames } from './cellNames'
 import { findingsOf } from './checking'
-import { keepDraft } from './kept'
+import { storeDraft } from './draftStorage'
 import { withReferences } from './references'
-import { draftOf, editor, refused, rootOf, setEditor } from './store'
+import { draftOf, editor, showEditorRefusal, rootOf, setEditor } from './store'
 import { lookForTargets } from './targets'
 
 const TYPING_PAUSE_MS = 250
@@ -39,7 +39,7 @@ export function inTurn<T>(work: () => Promise<T>): Promise<T> {
 export function perform(
   label: string,
   edits: readonly Edit[] | (() => readonly Edit[]),
-): Promise<EditedBody | undefined> {
+): Promise<EditResultBody | undefined> {
   const { id } = editor()
   return inTurn(async () => {
     try {
@@ -52,7 +52,7 @@ export function perform(
         if (editor().id !== id) break
         if (draftOf(editor()).text !== before.text) continue
         if (answer.refused) {
-          refused(label, answer.refused.message, answer.refused.hint)
+          showEditorRefusal(label, answer.refused.message, answer.refused.hint)
           return undefined
         }
         setHistory(pushed(settled(editor().history), label, draftFrom(answer, answer.text, before)))
@@ -60,7 +60,7 @@ export function perform(
         return answer
       }
     } catch (error) {
-      if (editor().id === id) refused(label, ...reasonOf(error))
+      if (editor().id === id) showEditorRefusal(label, ...reasonOf(error))
     }
     return undefined
   })
@@ -71,7 +71,7 @@ export function performOn(
   path: string,
   label: string,
   edits: (now: EditNode) => readonly Edit[],
-): Promise<EditedBody | undefined> {
+): Promise<EditResultBody | undefined> {
   return perform(label, () => {
     const now = nodeOf(rootOf(editor()), path)
     return now ? edits(now) : []
@@ -110,7 +110,7 @@ let looking: Promise<void> | undefined
 export function lookForFindings(): Promise<void> {
   looking ??= Promise.resolve()
     .then(look)
-    .catch((error: unknown) => refused('Check', ...reasonOf(error)))
+    .catch((error: unknown) => showEditorRefusal('Check', ...reasonOf(error)))
   return looking
 }
 
@@ -137,13 +137,13 @@ async function look(): Promise<void> {
 
 function setHistory(history: History): void {
   setEditor({ history: withReferences(history) })
-  keepDraft()
-  forgetTheGone()
+  storeDraft()
+  dropStaleSelection()
   void lookForFindings()
 }
 
 /** What is chosen or shown and is not there any more is let go. */
-function forgetTheGone(): void {
+function dropStaleSelection(): void {
   const state = editor()
   const root = rootOf(state)
   const selection = state.selection.filter((path) => nodeOf(root, path))
@@ -160,7 +160,7 @@ export function typed(text: string): void {
   const before = draftOf(editor())
   if (text === before.text) return
   setEditor({ history: pushed(editor().history, 'Type', { ...before, text, isChecked: false, areTargetsKnown: false }, 'typing') })
-  keepDraft()
+  storeDraft()
   clearTimeout(due)
   due = setTimeout(() => void readAnew(), TYPING_PAUSE_MS)
 }
@@ -175,7 +175,7 @@ export function readAnew(): Promise<void> {
     if (editor().id === id && draftOf(editor()).text === before.text) {
       setHistory(replaced(editor().history, draftFrom(answer, before.text, before)))
     }
-  }).catch((error: unknown) => refused('Check', ...reasonOf(error)))
+  }).catch((error: unknown) => showEditorRefusal('Check', ...reasonOf(error)))
 }
 
 export function undo(): void {

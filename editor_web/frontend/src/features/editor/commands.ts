@@ -23,11 +23,11 @@ import {
   ungroup,
 } from './actions'
 import { redo, undo } from './apply'
-import { askAdd, askConnect } from './asking'
+import { openAddPalette, openConnectPalette } from './paletteRequests'
 import { toggleDataFlow } from './dataFlow'
 import { exportPicture } from './exporting'
 import { openFileDialog } from './fileDialogs'
-import { openReferred, pageActs } from './pageActs'
+import { openReferred, pageActions } from './pageActions'
 import { goToProblem } from './problems'
 import { toggleReference } from './references'
 import { discard, save } from './session'
@@ -58,7 +58,7 @@ export const COMMANDS: readonly Command[] = [
     part: 'Document',
     words: 'Save, check, and go to the run page',
     chords: [{ key: 'Enter', ctrl: true }],
-    run: () => pageActs().run(),
+    run: () => pageActions().run(),
   },
   { id: 'undo', part: 'Document', words: 'Undo', chords: [{ key: 'z', ctrl: true }], needs: 'undo', run: undo },
   {
@@ -124,7 +124,7 @@ export const COMMANDS: readonly Command[] = [
     part: 'Build',
     words: 'Add a state or container',
     chords: [{ key: 'a' }, { key: 'Insert' }],
-    run: () => askAdd(),
+    run: () => openAddPalette(),
   },
   {
     id: 'connect',
@@ -132,7 +132,7 @@ export const COMMANDS: readonly Command[] = [
     words: 'Connect an outcome of the chosen node',
     chords: [{ key: 'c' }],
     needs: 'node',
-    run: askConnect,
+    run: openConnectPalette,
   },
   {
     id: 'auto',
@@ -305,20 +305,20 @@ export const COMMANDS: readonly Command[] = [
     chords: [{ key: 'd' }],
     run: toggleDataFlow,
   },
-  { id: 'fit', part: 'Move around', words: 'Show all', chords: [{ key: 'f' }], run: () => pageActs().fit() },
+  { id: 'fit', part: 'Move around', words: 'Show all', chords: [{ key: 'f' }], run: () => pageActions().fit() },
   {
     id: 'zoom-in',
     part: 'Move around',
     words: 'Zoom in',
     chords: [{ key: '+' }, { key: '=' }],
-    run: () => pageActs().zoom(1.3),
+    run: () => pageActions().zoom(1.3),
   },
   {
     id: 'zoom-out',
     part: 'Move around',
     words: 'Zoom out',
     chords: [{ key: '-' }],
-    run: () => pageActs().zoom(1 / 1.3),
+    run: () => pageActions().zoom(1 / 1.3),
   },
 ]
 
@@ -366,7 +366,7 @@ function openOrClose(): void {
 }
 
 /** Why a command cannot be used now, or nothing. */
-export function obstacleOf(command: Command): string | undefined {
+export function disabledReason(command: Command): string | undefined {
   const state = editor()
   switch (command.needs) {
     case 'node':

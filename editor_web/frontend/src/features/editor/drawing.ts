@@ -1,7 +1,7 @@
 /** Laying out a whole behavior that is drawn once: a version, or a file to be taken along. */
 import { layOutByElk } from '../../components/elk'
 import { arrange, type Arrangement } from '../../document/editing/arrange'
-import { openByItself } from '../../document/editing/opening'
+import { expandedByDefault } from '../../document/editing/expansion'
 import type { EditNode } from '../../document/editing/model'
 import type { DrawnInput } from './elements'
 import { declaredOutcomes } from './useArrangement'
@@ -23,6 +23,6 @@ export async function drawingOf(
 
 /** Open what is open by itself on the canvas. */
 export function openWith(root: EditNode): (path: string) => boolean {
-  const byItself = openByItself(root)
+  const byItself = expandedByDefault(root)
   return (path) => byItself.has(path)
 }

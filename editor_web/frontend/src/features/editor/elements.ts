@@ -10,17 +10,17 @@ import {
   isMachine,
   isTreePart,
   parentPath,
-  waysOf,
+  outgoingTransitions,
   type EditNode,
-  type Way,
+  type OutgoingTransition,
 } from '../../document/editing/model'
-import { countInside, drawnNodes, frameOf } from '../../document/editing/opening'
+import { countInside, drawnNodes, frameOf } from '../../document/editing/expansion'
 import type { Box, Point } from '../../document/geometry'
 import { kindLabel } from '../../document/tree'
 
 export interface CardData extends Record<string, unknown> {
   readonly node: EditNode
-  readonly ways: readonly Way[]
+  readonly ways: readonly OutgoingTransition[]
   /** Ways that an arrow is drawn for; the others say where they lead. */
   readonly drawn: ReadonlySet<string>
   readonly isInitial: boolean
@@ -36,12 +36,12 @@ export type CardNode = Node<CardData, 'leaf' | 'frame' | 'twig'>
 export type PillNode = Node<{ machine: string; outcome: string; count: number }, 'pill'>
 export type RulesNode = Node<{ node: EditNode }, 'rules'>
 export type CanvasNode = CardNode | PillNode | RulesNode
-export type WayEdge = Edge<
+export type TransitionEdge = Edge<
   { points: readonly Point[] | undefined; outcome: string; machine: string; isQuiet: boolean },
   'way'
 >
 export type BranchEdge = Edge<Record<string, unknown>, 'branch'>
-export type CanvasEdge = WayEdge | BranchEdge
+export type CanvasEdge = TransitionEdge | BranchEdge
 
 export const IN = 'in'
 /** Width and height of the port of a way out. */
@@ -105,7 +105,7 @@ function card(node: EditNode, around: Surroundings | undefined, { scope, arrange
   const box = arrangement.boxes.get(node.path)
   if (!box || !around) return []
   const { parent, frame, ends } = around
-  const ways = waysOf(parent, node)
+  const ways = outgoingTransitions(parent, node)
   const isTwig = isTreePart(node.kind) && node.kind !== 'tree'
   const isShown = isOpen(node.path) && isFrame(node)
   const isInTree = isTreePart(parent.kind)
@@ -144,7 +144,7 @@ function sized({ width, height }: Box): Pick<CanvasNode, 'width' | 'height' | 'm
 }
 
 /** Where ports are in the node, as its styles put them. */
-function wayHandles(box: Box, ways: readonly Way[]): NodeHandle[] {
+function wayHandles(box: Box, ways: readonly OutgoingTransition[]): NodeHandle[] {
   const outs = ways.map(({ outcome }, row): NodeHandle => ({
     id: outcome,
     type: 'source',
@@ -169,7 +169,7 @@ function twigHandles({ width, height }: Box): NodeHandle[] {
   ]
 }
 
-function spoken(node: EditNode, ways: readonly Way[]): string {
+function spoken(node: EditNode, ways: readonly OutgoingTransition[]): string {
   const leads = ways.map((way) => `${way.outcome} ${way.target === undefined ? 'not connected' : `to ${way.target}`}`)
   const inside = node.children.length > 0 ? `, ${countInside(node)} nodes inside` : ''
   return `${kindLabel(node.kind)} ${node.name}${node.title ? `, runs ${node.title}` : ''}${inside}${leads.length > 0 ? `; ${leads.join(', ')}` : ''}`
@@ -210,7 +210,7 @@ export function canvasEdges(input: DrawnInput, selection: readonly string[]): re
   )
 }
 
-function ways(machine: EditNode, { arrangement, declared }: DrawnInput, chosen: ReadonlySet<string>): WayEdge[] {
+function ways(machine: EditNode, { arrangement, declared }: DrawnInput, chosen: ReadonlySet<string>): TransitionEdge[] {
   const paths = new Map(machine.children.map((child) => [child.name, child.path]))
   const { drawn, gathered } = pillsOf(machine, declared(machine))
   return machine.transitions.flatMap((t) => {

@@ -1,12 +1,12 @@
 /** The whole behavior as a picture file, in the colours of the page: SVG, or PNG at twice the size. */
 import { createRoot } from 'react-dom/client'
 import { flushSync } from 'react-dom'
-import { openness } from '../../document/editing/opening'
+import { expansionOf } from '../../document/editing/expansion'
 import { wordsOf } from '../../api/client'
 import { drawingOf } from './drawing'
 import { Picture } from './Picture'
 import { OF_PAGE, type Palette } from './pictureParts'
-import { draftOf, editor, refused, rootOf, told } from './store'
+import { draftOf, editor, showEditorRefusal, rootOf, showEditorNotice } from './store'
 
 const ROW_PX = 1800
 const SCALE = 2
@@ -19,9 +19,9 @@ export async function exportPicture(format: 'svg' | 'png'): Promise<void> {
     const name = `${(editor().id.split('/').pop() ?? 'behavior').replace(/\.[a-z]+$/, '')}.${format}`
     if (format === 'svg') download(name, new Blob([svg], { type: 'image/svg+xml' }))
     else download(name, await pngOf(svg))
-    told(`Exported ${name}`)
+    showEditorNotice(`Exported ${name}`)
   } catch (error) {
-    refused('Export', wordsOf(error))
+    showEditorRefusal('Export', wordsOf(error))
   }
 }
 
@@ -31,7 +31,7 @@ export async function pictureOfDraft(): Promise<string> {
   const root = rootOf(state)
   if (!root) throw new Error('there is nothing to draw yet')
   const { document: info } = draftOf(state)
-  const isOpen = openness(root, state.opened, state.opensByItself)
+  const isOpen = expansionOf(root, state.opened, state.opensByItself)
   const drawn = await drawingOf(root, info?.outcomes ?? [], isOpen, ROW_PX)
   const host = document.createElement('div')
   const page = createRoot(host)

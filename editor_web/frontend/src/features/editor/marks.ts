@@ -50,14 +50,14 @@ function placedOf(findings: readonly FindingBody[]): Placed {
 }
 
 /** The findings that name a way out: they are shown at its arrow or port. */
-export function findingsOfWay(findings: readonly FindingBody[], path: string, outcome: string): readonly FindingBody[] {
+export function findingsOfTransition(findings: readonly FindingBody[], path: string, outcome: string): readonly FindingBody[] {
   return findings.filter((finding) => finding.path === path && finding.message.includes(`\`${outcome}\``))
 }
 
-export function useWayFindings(path: string, outcome: string): readonly FindingBody[] {
+export function useTransitionFindings(path: string, outcome: string): readonly FindingBody[] {
   const findings = useEditor((s) => placedOf(problemsOf(draftOf(s))).at.get(path))
   return useMemo(() => {
-    const own = findings ? findingsOfWay(findings, path, outcome) : NONE
+    const own = findings ? findingsOfTransition(findings, path, outcome) : NONE
     return own.length > 0 ? own : NONE
   }, [findings, path, outcome])
 }

@@ -3,7 +3,7 @@ import { create } from 'zustand'
 import { setField } from '../../document/editing/edits'
 import { isForeign, nodeOf, ROOT } from '../../document/editing/model'
 import { perform } from './apply'
-import { chosenOf, editor, refused, rootOf } from './store'
+import { chosenOf, editor, showEditorRefusal, rootOf } from './store'
 
 export const useNotes = create<{ readonly isShown: boolean; readonly writing: string | undefined }>(() => ({
   isShown: true,
@@ -19,7 +19,7 @@ export function writeNote(path = chosenOf(editor())?.path ?? editor().scope): vo
   const root = rootOf(editor())
   if (!root || !nodeOf(root, path)) return
   if (isForeign(root, path))
-    refused('Note', 'this is part of another behavior', 'Open that behavior and write it there.')
+    showEditorRefusal('Note', 'this is part of another behavior', 'Open that behavior and write it there.')
   else useNotes.setState({ isShown: true, writing: path })
 }
 

@@ -4,7 +4,7 @@ import { problemsOf } from '../../document/editing/findings'
 import { allNodes } from '../../document/editing/model'
 import { nearestPath } from './marks'
 import { reveal } from './session'
-import { draftOf, editor, rootOf, setEditor, told } from './store'
+import { draftOf, editor, rootOf, setEditor, showEditorNotice } from './store'
 
 let last = -1
 
@@ -20,7 +20,7 @@ export function goToProblem(): void {
   const findings = problemsOf(draftOf(editor()))
   const next = findings[(last + 1) % Math.max(1, findings.length)]
   if (!next) {
-    told('No problems')
+    showEditorNotice('No problems')
     return
   }
   last = (last + 1) % findings.length

@@ -2,10 +2,10 @@
 import { lookup, type Dict } from '../../document/dict'
 import { wordsOf } from '../../api/client'
 import { documents } from '../../api/documents'
-import { graft } from '../../document/editing/grafting'
+import { inlineReferences } from '../../document/editing/referenceInlining'
 import { replaced, presentOf, type History } from '../../document/editing/history'
 import { nodeOf, type EditNode } from '../../document/editing/model'
-import { draftOf, editor, isOpenNow, refused, rootOf, setEditor } from './store'
+import { draftOf, editor, isOpenNow, showEditorRefusal, rootOf, setEditor } from './store'
 
 interface Body {
   readonly hash: string
@@ -21,7 +21,7 @@ function roots(): ReadonlyMap<string, EditNode> {
 /** A history whose present draft shows the insides of the references that were opened. */
 export function withReferences(history: History): History {
   const { draft } = presentOf(history)
-  const root = draft.root && graft(draft.root, roots())
+  const root = draft.root && inlineReferences(draft.root, roots())
   return root === draft.root ? history : replaced(history, { ...draft, root })
 }
 
@@ -45,14 +45,14 @@ async function load(id: string): Promise<boolean> {
     const { graph, hash, document } = await documents.open(id)
     if (editor().id !== edited) return false
     if (!graph) {
-      refused('Open in place', `${id} cannot be read`, 'Open it in its own page and mend it.')
+      showEditorRefusal('Open in place', `${id} cannot be read`, 'Open it in its own page and mend it.')
       return false
     }
     bodies.set(id, { hash, root: { ...graph, name: document?.name || graph.name } })
     setEditor({ history: withReferences(editor().history) })
     return true
   } catch (error) {
-    refused('Open in place', wordsOf(error))
+    showEditorRefusal('Open in place', wordsOf(error))
     return false
   }
 }
@@ -66,7 +66,7 @@ export function refreshReferences(onDisk: Dict<string | null>): void {
 }
 
 /** Where a behavior was opened from. */
-export interface CameFrom {
+export interface Referrer {
   readonly id: string
   readonly name: string
   readonly node: string
@@ -77,19 +77,19 @@ function keyOf(id: string): string {
 }
 
 /** Remember that `id` is opened from a node here, so that its page leads back. */
-export function rememberWay(id: string, node: string): void {
+export function rememberReferrer(id: string, node: string): void {
   const { id: from } = editor()
   const name = draftOf(editor()).document?.name || from.split('/').pop() || from
   try {
-    sessionStorage.setItem(keyOf(id), JSON.stringify({ id: from, name, node } satisfies CameFrom))
+    sessionStorage.setItem(keyOf(id), JSON.stringify({ id: from, name, node } satisfies Referrer))
   } catch {
     // A browser that keeps nothing: its own way back is left.
   }
 }
 
-export function cameFrom(id: string): CameFrom | undefined {
+export function referrerOf(id: string): Referrer | undefined {
   try {
-    const kept = JSON.parse(sessionStorage.getItem(keyOf(id)) ?? 'null') as Partial<CameFrom> | null
+    const kept = JSON.parse(sessionStorage.getItem(keyOf(id)) ?? 'null') as Partial<Referrer> | null
     if (typeof kept?.id !== 'string' || typeof kept.name !== 'string' || typeof kept.node !== 'string') return undefined
     return { id: kept.id, name: kept.name, node: kept.node }
   } catch {

@@ -4,20 +4,20 @@ import { conflictOf, documents } from '../../api/documents'
 import { newHistory, pushed, replaced } from '../../document/editing/history'
 import { nodeOf, parentPath, ROOT } from '../../document/editing/model'
 import { draftFrom, inTurn, lookForFindings, readAnew, takeText } from './apply'
-import { forgetDraft, keepDraftNow, keptDraft } from './kept'
-import { blank, draftOf, editor, isDirty, refused, setEditor, told, useEditor } from './store'
+import { deleteStoredDraft, storeDraftNow, storedDraft } from './draftStorage'
+import { blank, draftOf, editor, isDirty, showEditorRefusal, setEditor, showEditorNotice, useEditor } from './store'
 
 /** Read a document and everything that can be put into it; a draft from an earlier visit is taken up. */
 export async function openDocument(id: string, node: string): Promise<void> {
   useEditor.setState(blank(id), true)
   try {
     const catalogue = documents.catalogue().catch((error: unknown) => {
-      refused('Library', wordsOf(error), 'Load the page again.')
+      showEditorRefusal('Library', wordsOf(error), 'Load the page again.')
       return undefined
     })
     const answer = await documents.open(id)
     if (editor().id !== id) return
-    const kept = keptDraft(id)
+    const kept = storedDraft(id)
     const draft = draftFrom(answer, answer.text, undefined)
     setEditor({ phase: 'ready', base: { text: answer.text, hash: answer.hash }, history: newHistory(draft) })
     if (kept && kept.text !== answer.text) await takeUp(kept.text, kept.base, kept.baseText)
@@ -60,13 +60,13 @@ export function save(): Promise<boolean> {
     try {
       const { hash } = await documents.save(id, text, base.hash)
       setEditor({ base: { text, hash }, notice: undefined, conflict: undefined, isRestored: false, isOutdated: false })
-      keepDraftNow()
-      told('Saved')
+      storeDraftNow()
+      showEditorNotice('Saved')
       return true
     } catch (error) {
       const conflict = conflictOf(error)
       if (conflict) setEditor({ conflict })
-      else refused('Save', wordsOf(error), 'The draft is kept in this browser; try again.')
+      else showEditorRefusal('Save', wordsOf(error), 'The draft is kept in this browser; try again.')
       return false
     }
   })
@@ -84,7 +84,7 @@ export async function resolve(side: Side): Promise<void> {
   setEditor({ conflict: undefined, isOutdated: false, base: { text: conflict.theirs, hash: conflict.theirs_hash } })
   if (side !== 'mine') await takeText(side === 'merged' ? 'Merge with the file' : 'Take the file', text)
   if (side !== 'theirs') await save()
-  else keepDraftNow()
+  else storeDraftNow()
 }
 
 /** Go back to the file as it is on disk; the draft stays in the history. */
@@ -94,9 +94,9 @@ export async function discard(): Promise<void> {
     const answer = await documents.open(id)
     setEditor({ base: { text: answer.text, hash: answer.hash }, isRestored: false, isOutdated: false })
     await takeText('Go back to the file', answer.text)
-    forgetDraft(id)
+    deleteStoredDraft(id)
   } catch (error) {
-    refused('Go back to the file', wordsOf(error))
+    showEditorRefusal('Go back to the file', wordsOf(error))
   }
 }
 

@@ -3,7 +3,7 @@ import { create } from 'zustand'
 import type { CatalogueBody, ConflictBody } from '../../api/types'
 import { newHistory, presentOf, type History } from '../../document/editing/history'
 import { nodeOf, ROOT, type Draft, type EditNode } from '../../document/editing/model'
-import { openness } from '../../document/editing/opening'
+import { expansionOf } from '../../document/editing/expansion'
 import type { Point } from '../../document/geometry'
 
 /** Something to add, asked for by typing. */
@@ -125,7 +125,7 @@ export function setOpensByItself(opensByItself: boolean): void {
 /** Is the inside of a container shown on the canvas? */
 export function isOpenNow(state: EditorState, path: string): boolean {
   const scope = scopeOf(state)
-  return scope ? openness(scope, state.opened, state.opensByItself)(path) : false
+  return scope ? expansionOf(scope, state.opened, state.opensByItself)(path) : false
 }
 
 export function draftOf(state: EditorState): Draft {
@@ -151,10 +151,10 @@ export function chosenOf(state: EditorState): EditNode | undefined {
   return nodeOf(rootOf(state), state.selection.at(-1) ?? '')
 }
 
-export function refused(what: string, message: string, hint = ''): void {
+export function showEditorRefusal(what: string, message: string, hint = ''): void {
   setEditor({ notice: { what, message, hint, tone: 'refused' } })
 }
 
-export function told(message: string): void {
+export function showEditorNotice(message: string): void {
   setEditor({ notice: { what: '', message, hint: '', tone: 'done' } })
 }

@@ -2,7 +2,7 @@
 import type { Completion, CompletionContext, CompletionResult } from '@codemirror/autocomplete'
 import { openingAt } from '../../document/editing/completion'
 import { allNodes, nodeOf, parentPath } from '../../document/editing/model'
-import { nodeAtLine, stateNear, writingAt } from '../../document/editing/places'
+import { nodeAtLine, stateNear, writingAt } from '../../document/editing/textPositions'
 import { draftOf, editor, rootOf } from './store'
 
 const NODE_KEYS = [

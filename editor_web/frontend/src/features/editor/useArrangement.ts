@@ -3,9 +3,9 @@ import { useEffect, useRef, useState } from 'react'
 import { layOutByElk, warmUpElk } from '../../components/elk'
 import { arrange, type Arrangement } from '../../document/editing/arrange'
 import { allNodes, type EditNode } from '../../document/editing/model'
-import { drawnNodes, openness } from '../../document/editing/opening'
+import { drawnNodes, expansionOf } from '../../document/editing/expansion'
 import { zoom, type Size } from '../../document/geometry'
-import { useIsMoving } from './moving'
+import { useIsMoving } from './viewportMotion'
 import { draftOf, rootOf, scopeOf, setOpensByItself, useEditor } from './store'
 import type { LayoutCall } from '../../document/layout'
 import { layOutRoughly } from '../../document/roughLayout'
@@ -54,11 +54,11 @@ export function useArrangement(pane: Size | undefined): { arranged: Arranged | u
     async function run(whole: EditNode, filling: EditNode, area: Size): Promise<void> {
       const begun = performance.now()
       const laidOut = async ({ limit, opens }: Chosen, call: LayoutCall) => {
-        const isOpen = openness(filling, opened, opens)
+        const isOpen = expansionOf(filling, opened, opens)
         const arrangement = await arrange(filling, { isOpen, declared, rowLimit: limit, call })
         return { limit, opens, isOpen, arrangement }
       }
-      const drawn = drawnNodes(filling, openness(filling, opened, chosen.current?.opens)).length
+      const drawn = drawnNodes(filling, expansionOf(filling, opened, chosen.current?.opens)).length
       const first = drawn > SOME ? layOutRoughly : layOutByElk
       const isMany = drawn > MANY
       const isSame = chosen.current?.scope === filling.path && chosen.current.isMany === isMany

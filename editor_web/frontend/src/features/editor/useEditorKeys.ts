@@ -4,8 +4,8 @@ import { neighborOf, type Heading } from '../../document/editing/neighbors'
 import { parentPath } from '../../document/editing/model'
 import type { Box } from '../../document/geometry'
 import { choose, focusNode } from './actions'
-import { commandOf, obstacleOf } from './commands'
-import { editor, refused } from './store'
+import { commandOf, disabledReason } from './commands'
+import { editor, showEditorRefusal } from './store'
 
 const ARROWS: ReadonlySet<string> = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'])
 /** What holds also while somebody writes in a field. */
@@ -34,8 +34,8 @@ export function useEditorKeys(area: RefObject<HTMLElement | null>): void {
       // What is marked on the page is copied by the browser.
       if (command.id === 'copy' && (getSelection()?.toString() ?? '') !== '') return
       event.preventDefault()
-      const obstacle = obstacleOf(command)
-      if (obstacle) refused(command.words, obstacle)
+      const obstacle = disabledReason(command)
+      if (obstacle) showEditorRefusal(command.words, obstacle)
       else command.run()
     }
     addEventListener('keydown', onKeyDown)

@@ -2,7 +2,7 @@
 import { getViewportForBounds, type Viewport } from '@xyflow/react'
 import type { Arrangement } from '../../document/editing/arrange'
 import type { Box, Size } from '../../document/geometry'
-import { canvasBoxes } from './canvasPlaces'
+import { canvasBoxes } from './canvasPositions'
 
 export const LEAST = 0.03
 const MOST = 1.1

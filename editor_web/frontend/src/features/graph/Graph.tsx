@@ -19,11 +19,11 @@ import { Panel } from '../../components/Panel'
 import { flatten, isContainer } from '../../document/tree'
 import { ArrowHeads, CourseLine } from './CourseLine'
 import { canvasEdges, canvasNodes, type CanvasNode, type CourseEdge } from './elements'
-import { FAR, FarContext, FarCourses, fromFar, MANY } from './Far'
+import { LOW_DETAIL_ZOOM, LowDetailContext, LowDetailEdges, withLowDetail, LARGE_GRAPH_NODES } from './LowDetailGraph'
 import { ContainerNode, LeafNode, OutcomeNodeShell } from './StepShell'
 import { useLayout, type Flow, type LaidOut } from './useLayout'
 
-const NODE_TYPES = { leaf: fromFar(LeafNode), container: fromFar(ContainerNode), outcome: fromFar(OutcomeNodeShell) }
+const NODE_TYPES = { leaf: withLowDetail(LeafNode), container: withLowDetail(ContainerNode), outcome: withLowDetail(OutcomeNodeShell) }
 const EDGE_TYPES = { course: CourseLine }
 const NO_EDGES: CourseEdge[] = []
 /** Small graphs are not blown up beyond what is read well, more on screens of very high resolution. */
@@ -127,8 +127,8 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
     [drawn, selected],
   )
 
-  const hasMany = drawn.length > MANY
-  const isFar = useStore((s) => s.transform[2] < FAR) && hasMany
+  const hasMany = drawn.length > LARGE_GRAPH_NODES
+  const isFar = useStore((s) => s.transform[2] < LOW_DETAIL_ZOOM) && hasMany
 
   useEffect(() => {
     const frame = requestAnimationFrame(() => void fitView(active ? followOptions(active) : fitOptions()))
@@ -145,7 +145,7 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
   )
 
   return (
-    <FarContext value={isFar}>
+    <LowDetailContext value={isFar}>
     <ReactFlow
       nodes={nodes}
       edges={isFar ? NO_EDGES : edges}
@@ -170,9 +170,9 @@ function Drawn({ laidOut, pane, selected, onSelect, shown, follows }: DrawnProps
       aria-label="Graph of the behavior"
     >
       <Background variant={BackgroundVariant.Dots} gap={20} size={1.2} />
-      {isFar && <FarCourses courses={laidOut.layout.courses} />}
+      {isFar && <LowDetailEdges courses={laidOut.layout.courses} />}
     </ReactFlow>
-    </FarContext>
+    </LowDetailContext>
   )
 }
 

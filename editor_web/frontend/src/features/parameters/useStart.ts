@@ -1,12 +1,12 @@
 /** The form's behavior: values, checks, and the request to start. */
 import { lookup, type Dict } from '../../document/dict'
 import { useMemo, useState } from 'react'
-import { useKept } from '../../api/breakpoints'
-import { lookAtCell } from '../../api/cellConnection'
+import { useSavedBreakpoints } from '../../api/breakpoints'
+import { loadCellConnection } from '../../api/cellConnection'
 import { api, ServerError } from '../../api/client'
 import { attached, operate } from '../../api/live'
 import { originOf } from '../../api/origin'
-import { forgive, refuse, send } from '../../api/refusal'
+import { clearRefusal, showRefusal, send } from '../../api/refusal'
 import type { BehaviorBody, StartBody } from '../../api/types'
 import { fieldOf, inputsOf, inputsText, parametersOf, problemWith, shownValue, type Field } from '../../document/schema'
 import { SUPERVISION, supervisionOf, type Supervision } from '../../document/supervision'
@@ -22,7 +22,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   const [inputs, setInputs] = useState('')
   const data = inputsOf(inputs)
   const [supervision, setSupervision] = useState<Supervision>(SUPERVISION)
-  const hasBreakpoints = useKept((s) => s.kept.length > 0)
+  const hasBreakpoints = useSavedBreakpoints((s) => s.kept.length > 0)
 
   function set(name: string, value: unknown): void {
     setValues({ ...values, [name]: value })
@@ -44,7 +44,7 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
   async function submit(): Promise<void> {
     const found = problemsOf(fields, values)
     setProblems(found)
-    forgive()
+    clearRefusal()
     if (Object.values(found).some(Boolean) || !data) return
     try {
       const body: StartBody = {
@@ -61,8 +61,8 @@ export function useStart(behavior: BehaviorBody, onStarted: () => void) {
       const said = error instanceof ServerError ? error.body : { message: String(error), where: '', hint: '' }
       const name = fields.find((f) => said.where === f.name || said.where.endsWith(`.${f.name}`))?.name
       if (name) setProblems({ [name]: said.hint ? `${said.message} (${said.hint})` : said.message })
-      else refuse('Start', said.message, said.hint)
-      void lookAtCell()
+      else showRefusal('Start', said.message, said.hint)
+      void loadCellConnection()
     }
   }
 

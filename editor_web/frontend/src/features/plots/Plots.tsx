@@ -7,7 +7,7 @@ import { bus, type TopicFields } from '../../api/bus'
 import { wordsOf } from '../../api/client'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { useShown } from '../../components/useShown'
+import { useIsVisible } from '../../components/useIsVisible'
 import { csvOf } from '../../document/curves'
 import { wallTime } from '../../document/time'
 import { coloured, describe } from './fields'
@@ -22,7 +22,7 @@ const ASK_AGAIN_MS = 5000
 
 export function Plots() {
   const area = useRef<HTMLDivElement>(null)
-  const isShown = useShown(area)
+  const isShown = useIsVisible(area)
   const plot = usePlot(isShown)
   const { topics, problem } = useFields(isShown)
   const [atS, setAtS] = useState<number>()

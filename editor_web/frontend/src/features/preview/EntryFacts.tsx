@@ -1,9 +1,9 @@
 /** A named entry in words: where the arm would be, who changed it last, and its tags. */
 import { traceLines } from '../../document/editing/preview'
 import { wallTime } from '../../document/time'
-import type { EntryCourse } from './useEntryCourse'
+import type { EntryTrace } from './useEntryTrace'
 
-export function EntryFacts({ course: { row, trace } }: { readonly course: EntryCourse }) {
+export function EntryFacts({ course: { row, trace } }: { readonly course: EntryTrace }) {
   const lines = trace ? traceLines(trace) : []
   return (
     <dl className="preview-facts">

@@ -4,12 +4,12 @@ import './preview.css'
 import { CloseButton } from '@mantine/core'
 import { useEffect, useInsertionEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react'
 import type { Previewed } from '../../api/preview'
-import { connectTeach, lookAt, lookAway, useTeach } from '../../api/teaching'
-import type { ArmCard } from '../../api/types'
+import { connectTeach, previewTaught, endPreview, useTeach } from '../../api/teaching'
+import type { ArmInfo } from '../../api/types'
 import { useModal } from '../../components/modal'
 import { PLACED } from '../../document/editing/preview'
 import { EntryFacts } from './EntryFacts'
-import { useEntryCourse } from './useEntryCourse'
+import { useEntryTrace } from './useEntryTrace'
 
 export interface EntryPreviewProps {
   readonly shown: Previewed
@@ -27,7 +27,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   const isOpen = useTeach((s) => s.isOpen)
   const { arm, choose } = useArm(shown, arms)
   const isHere = arms?.some((each) => each.name === arm) ?? false
-  const course = useEntryCourse(shown.kind, shown.name, isHere ? arm : '')
+  const course = useEntryTrace(shown.kind, shown.name, isHere ? arm : '')
   useGhost(shown, isOpen && isHere ? arm : '')
   const close = useReturn(shown.by, onClose)
   const said = obstacle(shown, arms, arm, isOpen) || course.problem || course.trace?.remark || ''
@@ -66,7 +66,7 @@ export function EntryPreview({ shown, view, tools, isSheet, onClose }: EntryPrev
   )
 }
 
-function obstacle(shown: Previewed, arms: readonly ArmCard[] | undefined, arm: string, isOpen: boolean): string {
+function obstacle(shown: Previewed, arms: readonly ArmInfo[] | undefined, arm: string, isOpen: boolean): string {
   if (arms === undefined) return ''
   if (!isOpen) return 'The server does not answer; nothing is shown until it does.'
   if (arms.length === 0) return 'This cell has no arm that could be shown.'
@@ -75,7 +75,7 @@ function obstacle(shown: Previewed, arms: readonly ArmCard[] | undefined, arm: s
 }
 
 /** The arm that the entry is meant for, or the first one, until somebody chooses another. */
-function useArm({ by, arm: meant }: Previewed, arms: readonly ArmCard[] | undefined) {
+function useArm({ by, arm: meant }: Previewed, arms: readonly ArmInfo[] | undefined) {
   const [chosen, setChosen] = useState({ of: '', arm: '' })
   // The library says of no entry for which arm it is: the choice stays from one to the next.
   const of = meant ? `${by} ${meant}` : ''
@@ -87,8 +87,8 @@ function useGhost({ kind, name }: Previewed, arm: string): void {
   const changed = useTeach((s) => s.entries)
   useEffect(() => {
     if (!arm || !name) return
-    lookAt(arm, { kind, name, capture: 0 })
-    return lookAway
+    previewTaught(arm, { kind, name, capture: 0 })
+    return endPreview
   }, [kind, name, arm, changed])
 }
 
@@ -106,7 +106,7 @@ function useReturn(by: string, onClose: () => void): () => void {
 }
 
 interface ArmChoiceProps {
-  readonly arms: readonly ArmCard[]
+  readonly arms: readonly ArmInfo[]
   readonly arm: string
   readonly onChoose: (arm: string) => void
 }

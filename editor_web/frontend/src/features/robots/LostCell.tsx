@@ -1,7 +1,7 @@
 /** Says that the world or a device of the cell is lost, and connects it again. */
 import { IconPlugConnectedX } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
-import { connectCell, lookAtCell, useCellConnection } from '../../api/cellConnection'
+import { connectCell, loadCellConnection, useCellConnection } from '../../api/cellConnection'
 import { wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
 import { CommandButton } from '../../components/CommandButton'
@@ -18,8 +18,8 @@ export function LostCell() {
   const { isConnecting, problem, connect } = useConnect()
   useEffect(() => {
     if (!isSuspect) return
-    void lookAtCell()
-    const timer = setInterval(() => void lookAtCell(), LOOK_MS)
+    void loadCellConnection()
+    const timer = setInterval(() => void loadCellConnection(), LOOK_MS)
     return () => clearInterval(timer)
   }, [isSuspect, modes])
   if (connected || !isServed) return null

@@ -4,7 +4,7 @@ import { IconRobot } from '@tabler/icons-react'
 import { useState } from 'react'
 import { api, wordsOf } from '../../api/client'
 import { useLive } from '../../api/live'
-import type { RobotLine } from '../../api/types'
+import type { RobotLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { CommitSlider } from '../../components/CommitSlider'
 import { StatusIcon, type Status } from '../../components/StatusIcon'
@@ -40,7 +40,7 @@ export function RobotStrip() {
   )
 }
 
-function Robot({ robot }: { robot: RobotLine }) {
+function Robot({ robot }: { robot: RobotLive }) {
   const isConnected = useLive((s) => s.connection === 'live')
   const role = useLive((s) => s.role)
   const [problem, setProblem] = useState('')

@@ -3,18 +3,18 @@ import { Checkbox } from '@mantine/core'
 import type { ReactNode } from 'react'
 import { useLive } from '../../api/live'
 import { useNodePart } from '../../api/liveParts'
-import type { GraphNodeBody, RunLine } from '../../api/types'
+import type { GraphNodeBody, RunOverview } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { PageLink } from '../../components/PageLink'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
-import { standing, waitingWords } from '../../document/commands'
-import { activeLeaves, pathWords } from '../../document/course'
+import { runStatusText, waitingWords } from '../../document/commands'
+import { activeLeaves, pathWords } from '../../document/runProgress'
 import { wallTime } from '../../document/time'
 import { nameOf } from './RunList'
 import { RunStrip } from './RunStrip'
 
 export interface RunCardProps {
-  readonly run: RunLine
+  readonly run: RunOverview
   /** Its graph, where its document can be read. */
   readonly root: GraphNodeBody | null
   /** The arms and devices that it commands. */
@@ -54,7 +54,7 @@ export function RunCard({ run, root, held, href, onOpen, isChosen, onChoose, req
         />
       </header>
       <p className={`run-standing${run.waits ? ' is-paused' : ''}`} role="status" aria-label={`State of ${name}`}>
-        {standing(run, control) || 'Connecting'}
+        {runStatusText(run, control) || 'Connecting'}
       </p>
       {root && <RunStrip root={root} />}
       <dl className="run-facts">

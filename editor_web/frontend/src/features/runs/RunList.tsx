@@ -1,7 +1,7 @@
 /** The runs of this server, newest first. */
 import { useEffect, useState } from 'react'
 import { serverNow, useLive } from '../../api/live'
-import type { RunLine } from '../../api/types'
+import type { RunOverview } from '../../api/types'
 import { Elapsed } from '../../components/Elapsed'
 import { Empty } from '../../components/Empty'
 import { PageLink } from '../../components/PageLink'
@@ -47,17 +47,17 @@ export function RunList({ current, href, onOpen, limit }: RunListProps) {
 const WAITS: Record<string, string> = { asks: 'asks', paused: 'paused', locked: 'waits at a lock' }
 
 /** What a run waits for that somebody has to give, in words. */
-export function waitsText(run: RunLine): string {
+export function waitsText(run: RunOverview): string {
   return WAITS[run.waits] ?? run.waits
 }
 
-function runText(run: RunLine): string {
+function runText(run: RunOverview): string {
   if (isActive(run)) return [run.status, waitsText(run)].filter(Boolean).join(', ')
   return `${run.outcome ?? run.status}, ${duration(run.duration_s)}`
 }
 
 /** Did it end badly? */
-export function isFailure(run: RunLine): boolean {
+export function isFailure(run: RunOverview): boolean {
   return run.status === 'errored' || (run.status === 'finished' && !run.success)
 }
 
@@ -67,7 +67,7 @@ export function nameOf(behavior: string): string {
 }
 
 /** How long a run takes or took. */
-export function RunTime({ run }: { run: RunLine }) {
+export function RunTime({ run }: { run: RunOverview }) {
   const watched = useLive((s) => s.run)
   if (isActive(run)) return run.id === watched ? <Elapsed sinceS={0} /> : <SinceStart startedS={run.started_at_s} />
   return <span className="elapsed">{duration(run.duration_s)}</span>

@@ -4,11 +4,11 @@ import { useLive } from '../../api/live'
 import { useHolds, useNodePart } from '../../api/liveParts'
 import type { GraphNodeBody } from '../../api/types'
 import { statusOf } from '../../components/StatusIcon'
-import { cellsOf, pathWords, tally } from '../../document/course'
+import { stripCells, pathWords, progressText } from '../../document/runProgress'
 
 export function RunStrip({ root }: { root: GraphNodeBody }) {
-  const cells = useMemo(() => cellsOf(root), [root])
-  const words = useLive((s) => tally(cells, s.nodes, s.control?.waiting.map((each) => each.path)))
+  const cells = useMemo(() => stripCells(root), [root])
+  const words = useLive((s) => progressText(cells, s.nodes, s.control?.waiting.map((each) => each.path)))
   return (
     <div className="run-strip">
       <div className="run-cells" role="img" aria-label={words}>

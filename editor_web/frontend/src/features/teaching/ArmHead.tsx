@@ -4,8 +4,8 @@ import { IconFlag, IconHandGrab, IconPlayerRecordFilled, IconPlayerStopFilled, I
 import { SegmentedControl } from '@mantine/core'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach, useObstacle, useTeach } from '../../api/teaching'
-import type { ArmCard, Trigger } from '../../api/types'
+import { teach, useDisabledReason, useTeach } from '../../api/teaching'
+import type { ArmInfo, Trigger } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { StatusIcon, type Status } from '../../components/StatusIcon'
 import { FrameCapture } from './FrameCapture'
@@ -21,15 +21,15 @@ const LOOKS: Readonly<Record<string, Status>> = {
 }
 
 interface ArmHeadProps {
-  readonly arms: readonly ArmCard[]
-  readonly arm: ArmCard
+  readonly arms: readonly ArmInfo[]
+  readonly arm: ArmInfo
   readonly onArm: (name: string) => void
 }
 
 export function ArmHead({ arms, arm, onArm }: ArmHeadProps) {
   const now = useTeach((s) => lookup(s.now, arm.name))
   const hand = useTeach((s) => s.hand)
-  const off = useObstacle()
+  const off = useDisabledReason()
   const [problem, setProblem] = useState('')
   const isRecording = hand?.recording.includes(arm.name) ?? false
   const obstacle = off ?? (hand === null ? 'this server has no Helping Hand' : undefined)

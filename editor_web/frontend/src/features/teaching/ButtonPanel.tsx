@@ -2,13 +2,13 @@
 import { Switch, TextInput } from '@mantine/core'
 import { IconDeviceGamepad2, IconPlus, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
-import { useObstacle, useTeach } from '../../api/teaching'
+import { useDisabledReason, useTeach } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 import { buttonFault, keepKeys, useButtonMap, type KeyButton } from './buttonMap'
 
 export function ButtonPanel() {
   const { isOn, keys, pressed } = useButtonMap()
-  const off = useObstacle()
+  const off = useDisabledReason()
   const refusal = useTeach((s) => s.refused.button)
   const hand = useTeach((s) => s.hand)
   const listening = new Set((hand?.triggers ?? []).map((each) => each.trigger.trig_topic.replace(/^\/|\/$/g, '')))

@@ -4,7 +4,7 @@ import { Checkbox } from '@mantine/core'
 import { IconEye, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { lookAt, teach, useObstacle, useTeach, type CapturedPlace } from '../../api/teaching'
+import { previewTaught, teach, useDisabledReason, useTeach, type CapturedPlace } from '../../api/teaching'
 import type { CaptureSummary } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
@@ -69,7 +69,7 @@ function summaryWords(capture: CaptureSummary): string {
 }
 
 function Details({ arm, capture }: { readonly arm: string; readonly capture: CaptureSummary }) {
-  const off = useObstacle()
+  const off = useDisabledReason()
   const looked = useTeach((s) => s.refused.look)
   const [problem, setProblem] = useState('')
   const robot = capture.robot || arm
@@ -78,7 +78,7 @@ function Details({ arm, capture }: { readonly arm: string; readonly capture: Cap
   const last = fit?.demonstration
   const place = usePlace(capture)
   const pose = last?.poses.at(-1)
-  const look = () => lookAt(robot, { kind: '', name: '', capture: capture.id })
+  const look = () => previewTaught(robot, { kind: '', name: '', capture: capture.id })
   const joints = last?.joints.at(-1)
   return (
     <section className="teach-part" aria-label={`Capture ${capture.id}`}>

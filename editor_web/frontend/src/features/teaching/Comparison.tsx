@@ -4,8 +4,8 @@ import { NativeSelect } from '@mantine/core'
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { lookAt, teach, type Reference } from '../../api/teaching'
-import type { CaptureSummary, Fits, Trace } from '../../api/types'
+import { previewTaught, teach, type TaughtReference } from '../../api/teaching'
+import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { apart, changesOf, curveOf, degrees, endOf, errorsOf } from '../../document/teaching'
 import { Chart, type Drawn } from './Chart'
@@ -19,7 +19,7 @@ export interface Compared {
   readonly key: string
   readonly label: string
   readonly arm: string
-  readonly what: Reference
+  readonly what: TaughtReference
 }
 
 export function asCompared(capture: CaptureSummary, arm: string): Compared {
@@ -78,7 +78,7 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
       {things.length > 1 && <Differences things={things} fits={fits} />}
       {things.length > 1 && (
         <div className="command-row">
-          <CommandButton label="Show all in the cell" hint="Each in the colour that it has here" icon={<IconEye size={15} aria-hidden />} onPress={() => things.forEach((each, at) => lookAt(each.arm, each.what, at))} />
+          <CommandButton label="Show all in the cell" hint="Each in the colour that it has here" icon={<IconEye size={15} aria-hidden />} onPress={() => things.forEach((each, at) => previewTaught(each.arm, each.what, at))} />
         </div>
       )}
     </div>
@@ -86,7 +86,7 @@ export function Comparison({ things }: { readonly things: readonly Compared[] })
 }
 
 /** In what the others are not the first. */
-function Differences({ things, fits }: { readonly things: readonly Compared[]; readonly fits: Dict<Fits> }) {
+function Differences({ things, fits }: { readonly things: readonly Compared[]; readonly fits: Dict<PrimitiveComparison> }) {
   const [first, ...others] = things
   const before = first && traceOf(lookup(fits, first.key))
   if (!first || !before) return null
@@ -114,11 +114,11 @@ function differencesOf(before: Trace, after: Trace): readonly string[] {
   return isWay ? changesOf(before, after) : changesOf(endOf(before), endOf(after))
 }
 
-function traceOf(fit: Fits | undefined): Trace | undefined {
+function traceOf(fit: PrimitiveComparison | undefined): Trace | undefined {
   return fit?.demonstration ?? fit?.primitive ?? undefined
 }
 
-function drawn(thing: Compared, fit: Fits | undefined, channel: string, at: number): readonly Drawn[] {
+function drawn(thing: Compared, fit: PrimitiveComparison | undefined, channel: string, at: number): readonly Drawn[] {
   const colour = at % MOST_COMPARED
   const made: Drawn[] = []
   if (fit?.demonstration) made.push({ ...curveOf(fit.demonstration, fit.primitive ? `${thing.label} shown` : thing.label, channel), colour, isDashed: false })
@@ -126,31 +126,31 @@ function drawn(thing: Compared, fit: Fits | undefined, channel: string, at: numb
   return made.filter((curve) => curve.values.length > 1)
 }
 
-function apartWords(fit: Fits | undefined, channel: string, unit: string): string {
+function apartWords(fit: PrimitiveComparison | undefined, channel: string, unit: string): string {
   if (!fit?.demonstration || !fit.primitive) return '–'
   const found = apart(curveOf(fit.demonstration, '', channel), curveOf(fit.primitive, '', channel))
   return found ? `${found.rms.toFixed(2)} ${unit} RMS, ${found.most.toFixed(2)} ${unit} at most` : '–'
 }
 
-function jointErrorWords(fit: Fits | undefined): string {
+function jointErrorWords(fit: PrimitiveComparison | undefined): string {
   const found = fit?.demonstration && fit.primitive ? errorsOf(fit.demonstration, fit.primitive).joints : undefined
   return found ? `${degrees(found.rms).toFixed(3)}° RMS, ${degrees(found.most).toFixed(3)}° at most` : '–'
 }
 
-function toolErrorWords(fit: Fits | undefined): string {
+function toolErrorWords(fit: PrimitiveComparison | undefined): string {
   const found = fit?.demonstration && fit.primitive ? errorsOf(fit.demonstration, fit.primitive).tool : undefined
   return found ? `${(found.rms * 1000).toFixed(2)} mm RMS, ${(found.most * 1000).toFixed(2)} mm at most` : '–'
 }
 
 /** What was learned, and how far that is from the demonstration: of the joints and of the tool. */
-export function fitWords(fit: Fits | undefined): string {
+export function fitWords(fit: PrimitiveComparison | undefined): string {
   const own = fit?.cart_fit ?? fit?.joint_fit
   return own ? `${own.kernels} kernels; joints ${jointErrorWords(fit)}; tool ${toolErrorWords(fit)}` : '–'
 }
 
 /** Where an arm is along things, each asked for once. */
-export function useFits(things: readonly Compared[]): { readonly fits: Dict<Fits>; readonly problem: string } {
-  const [fits, setFits] = useState<Dict<Fits>>({})
+export function useFits(things: readonly Compared[]): { readonly fits: Dict<PrimitiveComparison>; readonly problem: string } {
+  const [fits, setFits] = useState<Dict<PrimitiveComparison>>({})
   const [problem, setProblem] = useState('')
   const asked = JSON.stringify(things)
   useEffect(() => {

@@ -3,7 +3,7 @@ import { TextInput } from '@mantine/core'
 import { IconArrowBackUp, IconEye, IconTag, IconTrash } from '@tabler/icons-react'
 import { useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { lookAt, teach, useObstacle, useTeach } from '../../api/teaching'
+import { previewTaught, teach, useDisabledReason, useTeach } from '../../api/teaching'
 import type { EntryRow } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { tagFault, tagsOf } from '../../document/teaching'
@@ -12,12 +12,12 @@ import { PLAYED } from './forms'
 import { PlayBack } from './PlayBack'
 
 export function EntryDetails({ arm, entry }: { readonly arm: string; readonly entry: EntryRow }) {
-  const off = useObstacle()
+  const off = useDisabledReason()
   const looked = useTeach((s) => s.refused.look)
   const [problem, setProblem] = useState('')
   const { kind, name } = entry
   const what = { kind, name, capture: 0 }
-  const look = () => lookAt(arm, what)
+  const look = () => previewTaught(arm, what)
 
   function attempt(work: () => Promise<unknown>): void {
     work().then(

@@ -2,7 +2,7 @@
 import { IconEye } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { lookAt, teach, type EntryChange, type EntryValue } from '../../api/teaching'
+import { previewTaught, teach, type EntryChange, type EntryValue } from '../../api/teaching'
 import type { EntryRow } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, degrees } from '../../document/teaching'
@@ -99,7 +99,7 @@ function Was({ arm, entry, revision }: WasProps) {
           {problem || unfit}
         </p>
       )}
-      {hasPlace && <CommandButton label="Show this one in the cell" icon={<IconEye size={15} aria-hidden />} onPress={() => lookAt(arm, then)} />}
+      {hasPlace && <CommandButton label="Show this one in the cell" icon={<IconEye size={15} aria-hidden />} onPress={() => previewTaught(arm, then)} />}
     </div>
   )
 }

@@ -3,8 +3,8 @@ import { lookup } from '../../document/dict'
 import { SegmentedControl, Slider, Switch } from '@mantine/core'
 import { IconKeyboard, IconMinus, IconPlus } from '@tabler/icons-react'
 import { useId, useState } from 'react'
-import { useObstacle, useTeach } from '../../api/teaching'
-import type { ArmCard, ArmNow } from '../../api/types'
+import { useDisabledReason, useTeach } from '../../api/teaching'
+import type { ArmInfo, ArmLive } from '../../api/types'
 import { degrees, jogVelocity, rollPitchYaw, shareOfRange, TOOL_AXES, toolStep, type Frame, type Space } from '../../document/teaching'
 import { HoldButton } from './HoldButton'
 import { jogKey } from './jogKeys'
@@ -19,7 +19,7 @@ const STEPS_DEG = ['1', '5', '15']
 const JOINT_STEP_SPEED = 0.1
 
 /** Why an arm cannot be jogged now. */
-function busy(now: ArmNow | undefined): string | undefined {
+function busy(now: ArmLive | undefined): string | undefined {
   if (!now) return 'nothing is known of the arm yet'
   if (!BUSY.has(now.mode)) return undefined
   if (now.mode === 'guiding') return 'it floats: let it hold itself first'
@@ -27,7 +27,7 @@ function busy(now: ArmNow | undefined): string | undefined {
   return `it is ${now.mode}${now.activity ? `: ${now.activity}` : ''}`
 }
 
-export function JogPanel({ arm }: { readonly arm: ArmCard }) {
+export function JogPanel({ arm }: { readonly arm: ArmInfo }) {
   const [space, setSpace] = useState<Space>('tool')
   const [frame, setFrame] = useState<Frame>('world')
   const [isStepping, setStepping] = useState(false)
@@ -40,7 +40,7 @@ export function JogPanel({ arm }: { readonly arm: ArmCard }) {
   const steps = useSteps()
   const jog = useJog(arm.name, space, frame)
   const hint = useId()
-  const off = useObstacle()
+  const off = useDisabledReason()
   const obstacle = off ?? (jog.held || steps.isBusy ? undefined : busy(now))
   const rows = space === 'tool' ? toolRows(now) : jointRows(arm, now)
   const [withPad, setWithPad] = useState(false)
@@ -148,7 +148,7 @@ interface Row {
   readonly limits?: string
 }
 
-function toolRows(now: ArmNow | undefined): readonly Row[] {
+function toolRows(now: ArmLive | undefined): readonly Row[] {
   const pose = now?.tool_pose ?? []
   const turns = pose.length === 7 ? rollPitchYaw(pose.slice(3)) : []
   return TOOL_AXES.map((name, axis) => {
@@ -158,7 +158,7 @@ function toolRows(now: ArmNow | undefined): readonly Row[] {
   })
 }
 
-function jointRows(arm: ArmCard, now: ArmNow | undefined): readonly Row[] {
+function jointRows(arm: ArmInfo, now: ArmLive | undefined): readonly Row[] {
   return arm.joint_names.map((_, at) => {
     const value = now?.joints[at]
     const [lower = 0, upper = 0] = [arm.lower_rad[at], arm.upper_rad[at]]

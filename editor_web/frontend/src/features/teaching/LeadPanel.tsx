@@ -4,8 +4,8 @@ import { IconArrowDown, IconArrowLeft, IconArrowRight, IconArrowUp, IconChevrons
 import { Slider } from '@mantine/core'
 import { useEffect, useId, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach, useObstacle, useTeach } from '../../api/teaching'
-import type { ArmCard } from '../../api/types'
+import { teach, useDisabledReason, useTeach } from '../../api/teaching'
+import type { ArmInfo } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { HoldButton } from './HoldButton'
 
@@ -20,10 +20,10 @@ const WAYS = [
   { name: 'down', force: [0, 0, -1], Icon: IconChevronsDown, area: 'bottom' },
 ] as const
 
-export function LeadPanel({ arm }: { readonly arm: ArmCard }) {
+export function LeadPanel({ arm }: { readonly arm: ArmInfo }) {
   const now = useTeach((s) => lookup(s.now, arm.name))
   const canPush = useTeach((s) => s.canPush)
-  const off = useObstacle()
+  const off = useDisabledReason()
   const [problem, setProblem] = useState('')
   const isFloating = now?.mode === 'guiding'
 

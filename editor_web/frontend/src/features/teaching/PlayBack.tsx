@@ -3,14 +3,14 @@ import { NativeSelect } from '@mantine/core'
 import { IconPlayerPlay, IconPlayerStopFilled } from '@tabler/icons-react'
 import { useCallback, useEffect, useRef, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { lookAway, teach, useObstacle, type Reference } from '../../api/teaching'
+import { endPreview, teach, useDisabledReason, type TaughtReference } from '../../api/teaching'
 import { CommandButton } from '../../components/CommandButton'
 
 const SPEEDS = [5, 10, 25, 50]
 
 interface PlayBackProps {
   readonly arm: string
-  readonly what: Reference
+  readonly what: TaughtReference
   readonly words: string
   /** Show in the cell where the arm will go. */
   readonly onLook: () => void
@@ -21,7 +21,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
   const [percent, setPercent] = useState(10)
   const [said, setSaid] = useState('')
   const under = useRef<AbortController>(undefined)
-  const off = useObstacle()
+  const off = useDisabledReason()
 
   const stop = useCallback(() => under.current?.abort(), [])
 
@@ -38,7 +38,7 @@ export function PlayBack({ arm, what, words, onLook }: PlayBackProps) {
       )
       .finally(() => {
         setStage('idle')
-        lookAway()
+        endPreview()
       })
   }
 

@@ -3,8 +3,8 @@ import { NativeSelect, TextInput } from '@mantine/core'
 import { IconDeviceFloppy } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
-import { teach, useObstacle, useTeach } from '../../api/teaching'
-import type { CaptureSummary, Fits, Trace } from '../../api/types'
+import { teach, useDisabledReason, useTeach } from '../../api/teaching'
+import type { CaptureSummary, PrimitiveComparison, Trace } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { changesOf, endOf, nameFault, tagFault, tagsOf } from '../../document/teaching'
 import { FORM_WORDS, formsOf, type Form } from './forms'
@@ -13,7 +13,7 @@ const TYPING_MS = 250
 
 interface SaveFormProps {
   readonly capture: CaptureSummary
-  readonly fit: Fits | undefined
+  readonly fit: PrimitiveComparison | undefined
   readonly arm: string
 }
 
@@ -24,7 +24,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
   const [reason, setReason] = useState('')
   const [said, setSaid] = useState('')
   const [problem, setProblem] = useState('')
-  const off = useObstacle()
+  const off = useDisabledReason()
   const fault = nameFault(name)
   const wrongTags = tagFault(tags)
   const present = usePresent(arm, form, fault ? '' : name)
@@ -91,7 +91,7 @@ export function SaveForm({ capture, fit, arm }: SaveFormProps) {
 }
 
 /** What a capture is in a form. */
-function asForm(fit: Fits, form: Form): Trace {
+function asForm(fit: PrimitiveComparison, form: Form): Trace {
   const course = (form === 'trajectory' ? fit.demonstration : (fit.primitive ?? fit.demonstration)) ?? EMPTY
   return form === 'joints' || form === 'pose' ? endOf(fit.demonstration ?? course) : course
 }

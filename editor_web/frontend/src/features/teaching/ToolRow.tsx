@@ -1,13 +1,13 @@
 /** The gripper or hand of an arm: what it measures, open and close. */
 import { IconHandGrab, IconHandStop } from '@tabler/icons-react'
-import type { ArmCard, ArmNow } from '../../api/types'
+import type { ArmInfo, ArmLive } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import type { Steps } from './useSteps'
 
 /** Closes on whatever is there: held is what stops the fingers. */
 const GRASP = { width_m: 0.0, force_n: 20, tolerance_inner_m: 0.5, tolerance_outer_m: 0.5 }
 
-export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmCard; readonly now: ArmNow | undefined; readonly steps: Steps; readonly obstacle: string | undefined }) {
+export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmInfo; readonly now: ArmLive | undefined; readonly steps: Steps; readonly obstacle: string | undefined }) {
   const isGripper = arm.skills.includes('gripper/gripper_open')
   const isHand = arm.skills.includes('hand/hand_open')
   if (!isGripper && !isHand) return null
@@ -34,7 +34,7 @@ export function ToolRow({ arm, now, steps, obstacle }: { readonly arm: ArmCard; 
 }
 
 /** What the tool measures, in words. */
-export function toolWords(now: ArmNow | undefined): string {
+export function toolWords(now: ArmLive | undefined): string {
   const tool = now?.tool
   if (!tool) return ''
   const opening = tool.width_m !== null ? `${(tool.width_m * 1000).toFixed(0)} mm open` : tool.closed_percent !== null ? `${tool.closed_percent.toFixed(0)} % closed` : ''

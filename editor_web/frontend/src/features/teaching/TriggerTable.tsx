@@ -3,7 +3,7 @@ import { SegmentedControl, Textarea } from '@mantine/core'
 import { IconPencil, IconPlus, IconTrash } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { ServerError, wordsOf } from '../../api/client'
-import { teach, useObstacle, useTeach, type TriggerDocument } from '../../api/teaching'
+import { teach, useDisabledReason, useTeach, type TriggerDocument } from '../../api/teaching'
 import type { Trigger, TriggerStatus } from '../../api/types'
 import { CommandButton } from '../../components/CommandButton'
 import { Empty } from '../../components/Empty'
@@ -38,7 +38,7 @@ export function TriggerTable({ arms }: { readonly arms: readonly string[] }) {
 function Rows({ arms, triggers }: { readonly arms: readonly string[]; readonly triggers: readonly TriggerStatus[] }) {
   const [edited, setEdited] = useState<{ readonly at: number; readonly trigger: Trigger }>()
   const [problem, setProblem] = useState('')
-  const off = useObstacle()
+  const off = useDisabledReason()
 
   async function keep(next: readonly Trigger[]): Promise<boolean> {
     try {
@@ -122,7 +122,7 @@ function TriggerText() {
   const [text, setText] = useState('')
   const [problem, setProblem] = useState('')
   const [said, setSaid] = useState('')
-  const off = useObstacle()
+  const off = useDisabledReason()
 
   useEffect(() => {
     teach.document().then(

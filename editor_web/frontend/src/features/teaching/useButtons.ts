@@ -1,6 +1,6 @@
 /** Buttons of the keyboard and of gamepads on the bus; everything is let go when the page is left. */
 import { useEffect, useRef } from 'react'
-import { forgiveTeach, tellServer, useObstacle } from '../../api/teaching'
+import { clearTeachRefusal, tellServer, useDisabledReason } from '../../api/teaching'
 import { padButtons, useButtonMap } from './buttonMap'
 
 const NOT_TYPED = new Set(['checkbox', 'radio', 'range', 'button'])
@@ -16,7 +16,7 @@ function isMeant(target: EventTarget | null, code: string): boolean {
 /** Listen, whatever is shown. */
 export function useButtons(): void {
   const keys = useButtonMap((s) => s.keys)
-  const obstacle = useObstacle()
+  const obstacle = useDisabledReason()
   const isOn = useButtonMap((s) => s.isOn) && obstacle === undefined
   const down = useRef(new Set<string>())
 
@@ -28,7 +28,7 @@ export function useButtons(): void {
       const name = `${source}/${button}`
       if (held.has(name) === value) return
       if (value) {
-        forgiveTeach('button')
+        clearTeachRefusal('button')
         held.add(name)
       } else held.delete(name)
       useButtonMap.setState({ pressed: new Set(held) })

@@ -4,14 +4,14 @@ import { IconCircleCheck, IconCircleX, IconHistory } from '@tabler/icons-react'
 import { useEffect, useState } from 'react'
 import { wordsOf } from '../../api/client'
 import { pastApi, seekEvent, type Subject } from '../../api/timeline'
-import type { Failure, RunLine } from '../../api/types'
+import type { RunFailure, RunOverview } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
 import { isActive } from '../../document/live'
 import { useSubject } from './useSubject'
 
 export interface FailureViewProps {
-  readonly run: RunLine | undefined
+  readonly run: RunOverview | undefined
   readonly onShow: (path: string) => void
 }
 
@@ -44,7 +44,7 @@ interface At {
   readonly path: string
 }
 
-function Tools({ failure, onShow }: { failure: Failure; onShow: (at: At) => void }) {
+function Tools({ failure, onShow }: { failure: RunFailure; onShow: (at: At) => void }) {
   return (
     <>
       <span className="failure-place quiet">
@@ -59,7 +59,7 @@ function Tools({ failure, onShow }: { failure: Failure; onShow: (at: At) => void
   )
 }
 
-function emptyTitle(run: RunLine | undefined, isOver: boolean, failure: Failure | null | undefined): string {
+function emptyTitle(run: RunOverview | undefined, isOver: boolean, failure: RunFailure | null | undefined): string {
   if (!run) return 'No run yet'
   if (!isOver) return 'The run is under way'
   return failure === undefined ? 'Reading…' : 'This run did not fail'
@@ -67,7 +67,7 @@ function emptyTitle(run: RunLine | undefined, isOver: boolean, failure: Failure 
 
 interface Found {
   /** Undefined until the server has answered. */
-  readonly failure: Failure | null | undefined
+  readonly failure: RunFailure | null | undefined
   readonly problem: string
 }
 
@@ -88,7 +88,7 @@ function useFailure(subject: Subject | undefined, isOver: boolean): Found {
   return found
 }
 
-function Told({ failure, onShow: show }: { failure: Failure; onShow: (at: At) => void }) {
+function Told({ failure, onShow: show }: { failure: RunFailure; onShow: (at: At) => void }) {
   const { links, steps, around, hint, path } = failure
   return (
     <div className="failure" tabIndex={0} role="region" aria-label="How the run failed">

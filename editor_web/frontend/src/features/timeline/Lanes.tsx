@@ -2,7 +2,7 @@
 import { useComputedColorScheme } from '@mantine/core'
 import { useElementSize } from '@mantine/hooks'
 import { useEffect, useRef, useState, type KeyboardEvent } from 'react'
-import type { Span, TimeMark } from '../../api/types'
+import type { ActivationInterval, TimelineMarker } from '../../api/types'
 import { spanAt, timeAt, xOf, type ShownRow, type View } from '../../document/timeline'
 import { cleared, colorsOf, drawBars, drawHead, HEAD, ROW } from './draw'
 import { Names } from './Names'
@@ -11,8 +11,8 @@ import { useGestures } from './useGestures'
 
 export interface LanesProps {
   readonly rows: readonly ShownRow[]
-  readonly spans: ReadonlyMap<string, readonly Span[]>
-  readonly marks: readonly TimeMark[]
+  readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
+  readonly marks: readonly TimelineMarker[]
   readonly view: View
   readonly nowS: number
   readonly cursorS: number

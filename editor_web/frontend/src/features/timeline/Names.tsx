@@ -1,14 +1,14 @@
 /** The names beside the bars: a tree of which only the rows in sight are in the page. */
 import { IconChevronDown, IconChevronRight } from '@tabler/icons-react'
 import { useRef, useState, type KeyboardEvent } from 'react'
-import type { Span } from '../../api/types'
+import type { ActivationInterval } from '../../api/types'
 import { StatusIcon, statusOf } from '../../components/StatusIcon'
 import { spanAt, type ShownRow } from '../../document/timeline'
 import { ROW } from './draw'
 
 export interface NamesProps {
   readonly rows: readonly ShownRow[]
-  readonly spans: ReadonlyMap<string, readonly Span[]>
+  readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
   readonly selected: string | undefined
   readonly cursorS: number
   readonly topPx: number
@@ -103,7 +103,7 @@ export function Names({ rows, spans, selected, cursorS, topPx, heightPx, onShow,
 }
 
 /** How a node was at a time: active, as it was left last, or idle before its first visit. */
-function statusAt(spans: readonly Span[], timeS: number): string {
+function statusAt(spans: readonly ActivationInterval[], timeS: number): string {
   const span = spanAt(spans, timeS, Infinity)
   if (!span || span.start_s > timeS) return 'idle'
   return span.end_s === null || span.end_s > timeS ? 'active' : span.status

@@ -5,10 +5,10 @@ import { IconTimeline } from '@tabler/icons-react'
 import { useMemo, useRef, useState } from 'react'
 import { backToPresent, seek, seekEvent, useTimeline } from '../../api/timeline'
 import { useLive } from '../../api/live'
-import type { BehaviorBody, RunLine } from '../../api/types'
+import type { BehaviorBody, RunOverview } from '../../api/types'
 import { Empty } from '../../components/Empty'
 import { Panel } from '../../components/Panel'
-import { useShown } from '../../components/useShown'
+import { useIsVisible } from '../../components/useIsVisible'
 import { isActive } from '../../document/live'
 import { afterKey, MARK_KINDS, neighbor, panned, placeWords, revealing, rowsOf, wholeView, zoomed, type MarkKind, type View } from '../../document/timeline'
 import { flatten } from '../../document/tree'
@@ -21,7 +21,7 @@ import { useFollowed, useSubject } from './useSubject'
 
 export interface TimelineProps {
   readonly behavior: BehaviorBody
-  readonly run: RunLine | undefined
+  readonly run: RunOverview | undefined
   readonly node: string | undefined
   readonly onShow: (path: string) => void
 }
@@ -30,7 +30,7 @@ const MANY_ROWS = 60
 
 export function Timeline({ behavior, run, node, onShow }: TimelineProps) {
   const place = useRef<HTMLDivElement>(null)
-  const isShown = useShown(place)
+  const isShown = useIsVisible(place)
   const { ref: sized, width } = useElementSize()
   const subject = useSubject(run)
   useFollowed(subject, run, isShown)

@@ -1,5 +1,5 @@
 /** Draws the ruler, the marks and the bars of a timeline; only what is in sight. */
-import type { Span, TimeMark } from '../../api/types'
+import type { ActivationInterval, TimelineMarker } from '../../api/types'
 import { ticks, xOf, type MarkKind, type ShownRow, type View } from '../../document/timeline'
 
 export const ROW = 22
@@ -57,7 +57,7 @@ export function cleared(canvas: HTMLCanvasElement, width: number, height: number
 }
 
 /** The times, and below them the marks. */
-export function drawHead(on: CanvasRenderingContext2D, view: View, width: number, marks: readonly TimeMark[], colors: Colors, font: string): void {
+export function drawHead(on: CanvasRenderingContext2D, view: View, width: number, marks: readonly TimelineMarker[], colors: Colors, font: string): void {
   on.font = `11px ${font}`
   on.textBaseline = 'middle'
   for (const tick of ticks(view, width)) {
@@ -128,7 +128,7 @@ function drawMark(on: CanvasRenderingContext2D, kind: MarkKind, x: number, y: nu
 
 export interface Bars {
   readonly rows: readonly ShownRow[]
-  readonly spans: ReadonlyMap<string, readonly Span[]>
+  readonly spans: ReadonlyMap<string, readonly ActivationInterval[]>
   readonly selected: string | undefined
   readonly nowS: number
   /** How far the rows are scrolled. */
@@ -156,7 +156,7 @@ export function drawBars(on: CanvasRenderingContext2D, view: View, width: number
   }
 }
 
-function drawRow(on: CanvasRenderingContext2D, view: View, width: number, spans: readonly Span[], y: number, nowS: number, colors: Colors, isContainer: boolean): void {
+function drawRow(on: CanvasRenderingContext2D, view: View, width: number, spans: readonly ActivationInterval[], y: number, nowS: number, colors: Colors, isContainer: boolean): void {
   let endX = -Infinity
   for (let index = firstInSight(spans, view); index < spans.length; index += 1) {
     const span = spans[index]
@@ -186,7 +186,7 @@ function writeInside(on: CanvasRenderingContext2D, label: string, x: number, y: 
 }
 
 /** The first span that does not end before what is seen. */
-function firstInSight(spans: readonly Span[], view: View): number {
+function firstInSight(spans: readonly ActivationInterval[], view: View): number {
   let [low, high] = [0, spans.length]
   while (low < high) {
     const middle = (low + high) >> 1

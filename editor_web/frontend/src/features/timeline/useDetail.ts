@@ -1,17 +1,17 @@
 /** The spans to draw: all of them, or, where those of a long run are merged, exactly those of the part that is seen. */
 import { useEffect, useState } from 'react'
 import { pastApi, type Subject } from '../../api/timeline'
-import type { Span } from '../../api/types'
-import type { Course, View } from '../../document/timeline'
+import type { ActivationInterval } from '../../api/types'
+import type { LoadedTimeline, View } from '../../document/timeline'
 
 const PATIENCE_MS = 150
 
 interface Detail extends View {
   readonly seq: number
-  readonly rows: ReadonlyMap<string, readonly Span[]>
+  readonly rows: ReadonlyMap<string, readonly ActivationInterval[]>
 }
 
-export function useDetail(subject: Subject | undefined, course: Course | undefined, view: View, isPart: boolean): ReadonlyMap<string, readonly Span[]> {
+export function useDetail(subject: Subject | undefined, course: LoadedTimeline | undefined, view: View, isPart: boolean): ReadonlyMap<string, readonly ActivationInterval[]> {
   const [detail, setDetail] = useState<Detail>()
   const isWanted = isPart && course?.merged === true && subject !== undefined
   const { fromS, untilS } = view
@@ -36,5 +36,5 @@ export function useDetail(subject: Subject | undefined, course: Course | undefin
       clearTimeout(timer)
     }
   }, [isWanted, fits, fromS, untilS, subject, course?.seq])
-  return fits ? detail.rows : (course?.rows ?? new Map<string, readonly Span[]>())
+  return fits ? detail.rows : (course?.rows ?? new Map<string, readonly ActivationInterval[]>())
 }

@@ -1,8 +1,8 @@
 /** How long the run has taken so far; while it goes on and is seen, it goes on ten times a second. */
 import { useEffect, useState } from 'react'
-import type { Course } from '../../document/timeline'
+import type { LoadedTimeline } from '../../document/timeline'
 
-export function useRunTime(course: Course | undefined, isTicking: boolean): number {
+export function useRunTime(course: LoadedTimeline | undefined, isTicking: boolean): number {
   const durationS = course?.durationS ?? 0
   const goesOn = isTicking && course !== undefined && !course.ended
   const [nowS, setNow] = useState(durationS)

@@ -1,0 +1,118 @@
+"""The planning scene in the 3D view: obstacles that were put into it, and parts that arms hold, translucent."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import viser
+
+from editor_web.cell_view.layers.contact_highlight import bodies_in_contact
+from editor_web.cell_view.rendering.canvas import Canvas
+from editor_web.cell_view.rendering.convex_shapes import add_convex_shape
+from editor_web.cell_view.rendering.geometry import Rgb
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import root_of
+from editor_web.cell_view.rendering.transforms import WorldPose, matrix_of_pose, pose_of_matrix, poses_by_frame
+from engine.messages import FramePoses, Pose, SceneDescription
+from engine.messages.shapes import Obstacle, Solid
+from engine.skills.planning import PathPreview
+from engine.skills.planning_scene import HeldPart, PlanningSceneState
+
+_log = logging.getLogger("flexcell.cell_view")
+_OBSTACLE: Rgb = (217, 119, 6)
+_HELD: Rgb = (124, 58, 237)
+_IN_THE_WAY: Rgb = (220, 38, 38)
+_OPACITY = 0.35
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Shown:
+    """What there is to draw: obstacles, held parts, and the names of those that block a way."""
+
+    obstacles: tuple[Obstacle, ...]
+    held: tuple[HeldPart, ...]
+    blocking: frozenset[str]
+
+
+class ObstacleLayer:
+    """Draws `cell/planning_scene`; what `cell/scene` has under the same name is drawn there."""
+
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
+        self._server = server
+        self._root = root_of("obstacles", under=under)
+        self._read: tuple[PlanningSceneState, SceneDescription | None, Mapping[str, PathPreview]] | None = None
+        self._drawn: _Shown | None = None
+        self._roots: list[viser.FrameHandle] = []
+        self._held: list[tuple[HeldPart, viser.FrameHandle]] = []
+        self._poses: FramePoses | None = None
+
+    def draw(self, newest: LatestMessages) -> None:
+        """Draw what has changed."""
+        state, scene, ways = newest.planning_scene, newest.scene, newest.ways
+        if state is None:
+            return
+        read = self._read
+        if read is None or read[0] is not state or read[1] is not scene or read[2] is not ways:
+            self._read = (state, scene, ways)
+            shown = _shown(state, scene, ways)
+            # A part that moves is a change of the scene, and drawn elsewhere.
+            if shown != self._drawn:
+                self._drawn, self._poses = shown, None
+                with self._server.atomic():
+                    self._build(shown)
+        if self._held and newest.frames is not None and newest.frames is not self._poses:
+            self._poses = newest.frames
+            self._carry(newest.frames)
+
+    def _build(self, shown: _Shown) -> None:
+        for root in self._roots:
+            root.remove()
+        self._roots = []
+        for each in shown.obstacles:
+            colour = _IN_THE_WAY if each.name in shown.blocking else _OBSTACLE
+            self._add(each.name, each.solids, each.pose, colour)
+        self._held = [
+            (part, self._add(part.name, part.solids, part.pose, _IN_THE_WAY if part.name in shown.blocking else _HELD))
+            for part in shown.held
+        ]
+
+    def _add(self, name: str, solids: tuple[Solid, ...], pose: Pose, colour: Rgb) -> viser.FrameHandle:
+        node = f"{self._root}/{name.replace('/', '.')}"
+        at = WorldPose(xyz=pose.xyz, xyzw=pose.xyzw)
+        root = self._server.scene.add_frame(node, show_axes=False, position=at.xyz, wxyz=at.wxyz)
+        self._roots.append(root)
+        for index, solid in enumerate(solids):
+            try:
+                add_convex_shape(self._server, f"{node}/{index}", solid, colour=colour, opacity=_OPACITY)
+            except ValueError as error:
+                # One shape that cannot be drawn must not hide the others.
+                _log.warning("%s is not drawn: %s", name, error)
+        return root
+
+    def _carry(self, frames: FramePoses) -> None:
+        poses = poses_by_frame(frames)
+        with self._server.atomic():
+            for part, root in self._held:
+                link = poses.get(f"{part.robot}/{part.link}", poses.get(part.link))
+                root.visible = link is not None
+                if link is not None:
+                    now = pose_of_matrix(matrix_of_pose(link) @ matrix_of_pose(part.pose))
+                    root.position, root.wxyz = now.xyz, now.wxyz
+
+
+def _shown(state: PlanningSceneState, scene: SceneDescription | None, ways: Mapping[str, PathPreview]) -> _Shown:
+    # A fixture of several bodies has them as `name/0`, `name/1`.
+    known = {g.name.partition("/")[0] for g in scene.geometries} if scene is not None else set[str]()
+    held = {part.name for part in state.held}
+    blocking = bodies_in_contact(ways, [each.name for each in (*state.obstacles, *state.held)])
+    return _Shown(
+        obstacles=tuple(
+            each
+            for each in state.obstacles
+            if each.name in blocking or (each.name not in known and each.name not in held)
+        ),
+        held=state.held,
+        blocking=blocking,
+    )

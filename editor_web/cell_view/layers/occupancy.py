@@ -1,0 +1,94 @@
+"""The occupied voxels of `cell/occupancy` as squares, coloured by their height; only those that can be seen."""
+
+from __future__ import annotations
+
+import logging
+import math
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from editor_web.cell_view.rendering.canvas import Canvas
+from editor_web.cell_view.rendering.colours import Stops, ramp
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import root_of
+from engine.messages.sensing import OccupancyGrid
+
+_log = logging.getLogger("flexcell.cell_view")
+PERIOD_S = 0.1
+# viser's size is half an edge; a gap between neighbours lets one see that there are many.
+_POINT_SHARE = 0.46
+_HEIGHTS = ((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
+"""Viridis: told apart by every kind of eye, and in grey."""
+_STALE = ((90, 90, 90), (170, 170, 170))
+
+
+def occupied(grid: OccupancyGrid) -> NDArray[np.bool_]:
+    """Return which voxels are taken, in the grid's shape.
+
+    Raises:
+        ValueError: there are not as many bits as the shape says.
+    """
+    count = math.prod(grid.shape)
+    bits = np.frombuffer(grid.occupied, dtype=np.uint8)
+    if min(grid.shape) < 0 or len(bits) != (count + 7) // 8:
+        raise ValueError(f"{len(bits)} bytes cannot be a grid of {grid.shape} voxels")
+    return np.unpackbits(bits, count=count).astype(np.bool_).reshape(grid.shape)
+
+
+def surface(taken: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the taken voxels of which at least one of the six sides is free; beyond the grid all is free."""
+    inside = taken.copy()
+    for axis in range(3):
+        rows = np.moveaxis(inside, axis, 0)
+        of = np.moveaxis(taken, axis, 0)
+        rows[1:] &= of[:-1]
+        rows[:-1] &= of[1:]
+        rows[:1] = False
+        rows[-1:] = False
+    return taken & ~inside
+
+
+class VoxelLayer:
+    """Draws the newest grid, at most ten times a second and only when it has changed; grey when it is out of date."""
+
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
+        self._server = server
+        self._node = f"{root_of('voxels', under=under)}/occupied"
+        self._drawn: tuple[OccupancyGrid, bool] | None = None
+        self._handle: viser.PointCloudHandle | None = None
+        self._next_s = 0.0
+
+    def draw(self, newest: LatestMessages, now_s: float) -> float | None:
+        """Draw what has changed; returns when to call again where it is too early now."""
+        grid, state = newest.occupancy, newest.occupancy_state
+        is_stale = state is not None and state.stale_reason != ""
+        if grid is None or (self._drawn is not None and self._drawn[0] is grid and self._drawn[1] == is_stale):
+            return None
+        if now_s < self._next_s:
+            return self._next_s
+        self._drawn, self._next_s = (grid, is_stale), now_s + PERIOD_S
+        try:
+            places = np.argwhere(surface(occupied(grid)))
+        except ValueError as error:
+            _log.warning("the occupancy is not drawn: %s", error)
+            return None
+        self._show(grid, places, stops=_STALE if is_stale else _HEIGHTS)
+        return None
+
+    def _show(self, grid: OccupancyGrid, places: NDArray[np.int64], *, stops: Stops) -> None:
+        points = (places.astype(np.float32) + 0.5) * np.float32(grid.voxel_m)
+        shades = ramp(stops, np.linspace(0.0, 1.0, max(1, grid.shape[2])))[places[:, 2]]
+        with self._server.atomic():
+            if self._handle is None:
+                # Squares, not cubes: in software a browser draws six times as many of them.
+                self._handle = self._server.scene.add_point_cloud(
+                    self._node, points=points, colors=shades, point_shape="square", precision="float16"
+                )
+            else:
+                self._handle.points = points
+                self._handle.colors = shades
+            self._handle.point_size = grid.voxel_m * _POINT_SHARE
+            self._handle.position = grid.corner_m
+            self._handle.visible = len(points) > 0

@@ -1,0 +1,229 @@
+"""The planned way of each arm: the tool's path as a line, and a ghost of the arm that goes along it."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from editor_web.cell_view.rendering.canvas import TAUGHT, Canvas
+from editor_web.cell_view.rendering.geometry import GeometryHandle, Rgb, add_geometry
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import root_of
+from editor_web.cell_view.rendering.transforms import Matrix, matrix_of_pose, pose_of_matrix, poses_by_frame
+from editor_web.cell_view.rendering.urdf_tree import UrdfTree
+from engine.errors import FlexcellError
+from engine.messages import RobotDescription, SceneDescription
+from engine.skills.planning import PathPreview
+
+_log = logging.getLogger("flexcell.cell_view")
+_COLOURS: Mapping[str, Rgb] = {"proposed": (37, 99, 235), "moving": (22, 163, 74), "blocked": (220, 70, 38)}
+# As the page's curves of what is beside each other.
+_PLACE_COLOURS: tuple[Rgb, ...] = ((37, 99, 235), (220, 70, 38), (22, 163, 74), (217, 119, 6), (107, 114, 128))
+_OPACITY = 0.4
+_LINE_PX = 4.0
+_GOAL_M = 0.012
+TRAVEL_S = 4.0
+REST_S = 1.2
+PERIOD_S = 1.0 / 15.0
+GhostPreviews = Mapping[tuple[str, int], PathPreview]
+"""What somebody looks at, by the name of its arm and its place beside others."""
+
+
+class PathLayer:
+    """Draws the previews of all arms that plan."""
+
+    def __init__(self, server: Canvas, *, under: str = "") -> None:
+        self._server = server
+        self._root = root_of("ways", under=under)
+        self._arms: dict[str, _ArmWay] = {}
+
+    def draw(self, newest: LatestMessages, now_s: float, *, is_shown: bool) -> float | None:
+        """Draw what has changed; returns when to call again where a ghost moves and somebody looks."""
+        due: list[float] = []
+        for name, preview in newest.ways.items():
+            if name not in self._arms:
+                self._arms[name] = _ArmWay(self._server, name, node=f"{self._root}/{name}", colours=_COLOURS)
+            way = self._arms[name]
+            way.draw(preview, newest, now_s)
+            if is_shown and (next_s := way.animate(now_s)) is not None:
+                due.append(next_s)
+        return min(due, default=None)
+
+
+class GhostLayer:
+    """Draws what somebody looks at, each place in its colour, also where planned ways are hidden."""
+
+    def __init__(self, server: Canvas) -> None:
+        self._server = server
+        self._arms: dict[tuple[str, int], _ArmWay] = {}
+
+    def draw(self, shown: GhostPreviews, newest: LatestMessages, now_s: float) -> float | None:
+        """Draw what has changed; returns when to call again where a ghost moves."""
+        due: list[float] = []
+        for key, preview in shown.items():
+            if key not in self._arms:
+                name, place = key
+                colours = {"proposed": _PLACE_COLOURS[place % len(_PLACE_COLOURS)]}
+                self._arms[key] = _ArmWay(self._server, name, node=f"{TAUGHT}/{name}.{place}", colours=colours)
+            self._arms[key].draw(preview, newest, now_s)
+            if (next_s := self._arms[key].animate(now_s)) is not None:
+                due.append(next_s)
+        return min(due, default=None)
+
+
+class _ArmWay:
+    def __init__(self, server: Canvas, name: str, *, node: str, colours: Mapping[str, Rgb]) -> None:
+        self._colours = colours
+        self._server = server
+        self._node = node
+        self._name = name
+        self._arm: tuple[SceneDescription | None, RobotDescription | None] | None = None
+        self._preview: PathPreview | None = None
+        self._began_s = 0.0
+        self._next_s = 0.0
+        self._line: tuple[viser.LineSegmentsHandle, viser.IcosphereHandle] | None = None
+        self._ghost: _Ghost | None = None
+
+    def draw(self, preview: PathPreview, newest: LatestMessages, now_s: float) -> None:
+        scene, description = newest.scene, newest.descriptions.get(self._name)
+        is_another_arm = self._arm is None or self._arm[0] is not scene or self._arm[1] is not description
+        if preview is self._preview and not is_another_arm:
+            return
+        is_another_way = self._preview is None or self._preview.joints != preview.joints
+        self._preview, self._arm = preview, (scene, description)
+        with self._server.atomic():
+            self._draw_line(preview)
+            if is_another_arm:
+                self._drop_ghost()
+            self._draw_ghost(preview, newest)
+        if is_another_way:
+            self._began_s = now_s
+        self._next_s = now_s
+
+    def animate(self, now_s: float) -> float | None:
+        """Move the ghost of a proposed way along it, over and over; returns when to call again."""
+        preview, ghost = self._preview, self._ghost
+        if preview is None or ghost is None or preview.state != "proposed" or len(preview.joints) < 2:
+            return None
+        if now_s >= self._next_s:
+            self._next_s = now_s + PERIOD_S
+            share = ((now_s - self._began_s) % (TRAVEL_S + REST_S)) / TRAVEL_S
+            with self._server.atomic():
+                ghost.place(preview.joint_names, interpolate_joints(preview.joints, min(share, 1.0)))
+        return self._next_s
+
+    def _draw_line(self, preview: PathPreview) -> None:
+        if self._line is not None:
+            for handle in self._line:
+                handle.remove()
+            self._line = None
+        colour = self._colours.get(preview.state)
+        points = np.asarray(preview.tool_path, dtype=np.float32).reshape(-1, 3)
+        if colour is None or len(points) < 2 or not np.isfinite(points).all():
+            return
+        x_m, y_m, z_m = (float(value) for value in points[-1])
+        self._line = (
+            self._server.scene.add_line_segments(
+                f"{self._node}/line",
+                points=np.stack([points[:-1], points[1:]], axis=1),
+                colors=colour,
+                thickness=_LINE_PX,
+                thickness_units="screen",
+            ),
+            self._server.scene.add_icosphere(
+                f"{self._node}/goal", radius=_GOAL_M, color=colour, position=(x_m, y_m, z_m), cast_shadow=False
+            ),
+        )
+
+    def _draw_ghost(self, preview: PathPreview, newest: LatestMessages) -> None:
+        colour = self._colours.get(preview.state)
+        if colour is None or not preview.joints:
+            if self._ghost is not None:
+                self._ghost.root.visible = False
+            return
+        if self._ghost is None:
+            self._ghost = self._new_ghost(newest)
+        if self._ghost is not None:
+            self._ghost.see(newest)
+            self._ghost.place(preview.joint_names, preview.joints[-1])
+            self._ghost.paint(colour)
+            self._ghost.root.visible = True
+
+    def _new_ghost(self, newest: LatestMessages) -> _Ghost | None:
+        description = newest.descriptions.get(self._name)
+        if newest.scene is None or description is None:
+            return None
+        try:
+            return _Ghost(self._server, f"{self._node}/ghost", newest.scene, description)
+        except (FlexcellError, ValueError) as error:
+            # The line alone still tells much of the way.
+            _log.warning("the ghost of %s is not drawn: %s", self._name, error)
+            return None
+
+    def _drop_ghost(self) -> None:
+        if self._ghost is not None:
+            self._ghost.root.remove()
+            self._ghost = None
+
+
+class _Ghost:
+    """A translucent copy of an arm."""
+
+    def __init__(self, server: Canvas, node: str, scene: SceneDescription, description: RobotDescription) -> None:
+        self._linkage = UrdfTree(description.urdf)
+        self._base = matrix_of_pose(description.base)
+        self._arm = description.name
+        self._seen: dict[str, Matrix] = {}
+        self.root = server.scene.add_frame(node, show_axes=False)
+        self._frames: dict[str, viser.FrameHandle] = {}
+        self._bodies: list[GeometryHandle] = []
+        # What stands still is there already, and would flicker against itself.
+        moved = self._linkage.moved_by(description.joint_names)
+        for index, geometry in enumerate(scene.geometries):
+            owner, _, link = geometry.frame.partition("/")
+            if owner != description.name or link not in moved:
+                continue
+            below = f"{node}/{link.replace('/', '.')}"
+            if link not in self._frames:
+                self._frames[link] = server.scene.add_frame(below, show_axes=False)
+            self._bodies.append(add_geometry(server, f"{below}/{index}", geometry, opacity=_OPACITY))
+
+    def see(self, newest: LatestMessages) -> None:
+        """Take the fingers of the tool as they are now."""
+        prefix = f"{self._arm}/"
+        poses = poses_by_frame(newest.frames).items()
+        self._seen = {
+            name.removeprefix(prefix): matrix_of_pose(pose) for name, pose in poses if name.startswith(prefix)
+        }
+
+    def place(self, names: tuple[str, ...], joints: tuple[float, ...]) -> None:
+        """Stand at these joints."""
+        links = self._linkage.links(self._base, dict(zip(names, joints, strict=False)), seen=self._seen)
+        for link, handle in self._frames.items():
+            if link in links:
+                pose = pose_of_matrix(links[link])
+                handle.position, handle.wxyz = pose.xyz, pose.wxyz
+
+    def paint(self, colour: Rgb) -> None:
+        """Take on a colour."""
+        for body in self._bodies:
+            body.color = colour
+
+
+def interpolate_joints(joints: tuple[tuple[float, ...], ...], share: float) -> tuple[float, ...]:
+    """Return the configuration at a share, 0 to 1, of the way through `joints`, measured by the joint that turns most.
+
+    Of a way that goes nowhere it is the last one.
+    """
+    rows = np.asarray(joints, dtype=np.float64)
+    gone = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(rows, axis=0)).max(axis=1))])
+    if gone[-1] == 0.0 or not math.isfinite(gone[-1]):
+        return joints[-1]
+    at = share * float(gone[-1])
+    turned: list[NDArray[np.float64]] = list(rows.T)
+    return tuple(float(np.interp(at, gone, values)) for values in turned)

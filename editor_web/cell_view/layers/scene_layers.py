@@ -1,0 +1,40 @@
+"""Everything that is drawn, each kind by itself: for everybody as it is now, or for one page as it was."""
+
+from __future__ import annotations
+
+import time
+
+from editor_web.cell_view.layers.bodies import BodyLayer
+from editor_web.cell_view.layers.cameras import CameraLayer
+from editor_web.cell_view.layers.detections import DetectionLayer
+from editor_web.cell_view.layers.obstacles import ObstacleLayer
+from editor_web.cell_view.layers.occupancy import VoxelLayer
+from editor_web.cell_view.layers.path_view import PathLayer
+from editor_web.cell_view.rendering.canvas import Canvas
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import LayerGroup
+
+
+class SceneLayers:
+    """All kinds of things on one canvas, below the node `under`."""
+
+    def __init__(self, canvas: Canvas, *, under: str = "") -> None:
+        self._bodies = BodyLayer(canvas, under=under)
+        self._ways = PathLayer(canvas, under=under)
+        self._obstacles = ObstacleLayer(canvas, under=under)
+        self._voxels = VoxelLayer(canvas, under=under)
+        self._cameras = CameraLayer(canvas, under=under)
+        self._detections = DetectionLayer(canvas, under=under)
+
+    def all(self, newest: LatestMessages, shown: frozenset[LayerGroup]) -> float | None:
+        """Draw what has changed; returns when, on the steady clock, to draw again without a new message."""
+        now_s = time.monotonic()
+        self._bodies.draw(newest)
+        self._obstacles.draw(newest)
+        self._detections.draw(newest)
+        due = (
+            self._ways.draw(newest, now_s, is_shown="ways" in shown),
+            self._voxels.draw(newest, now_s),
+            self._cameras.draw(newest, now_s),
+        )
+        return min((each for each in due if each is not None), default=None)

@@ -1,0 +1,190 @@
+"""The pages that see a past moment of a run while all others see the cell as it is."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import msgspec
+import viser
+
+from editor_web.cell_view.layers.scene_layers import SceneLayers
+from editor_web.cell_view.recorded_scene import RecordedScene
+from editor_web.cell_view.rendering.canvas import PAST
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import ClientLayerGroups
+from editor_web.cell_view.rendering.viser_gateway import PAGE
+from engine.errors import FlexcellError
+
+FindFiles = Callable[[str], Sequence[Path]]
+PERIOD_S = 1.0 / 30.0
+_KEPT_RUNS = 4
+_KEPT_PAGES = 200
+_log = logging.getLogger("flexcell.cell_view")
+
+
+class PastViewState(msgspec.Struct, frozen=True, kw_only=True):
+    """What a page sees: a run at a time of it, of those that were recorded; or `problem`, and so the present."""
+
+    run: str
+    time_s: float
+    from_s: float = 0.0
+    until_s: float = 0.0
+    problem: str = ""
+
+
+Tell = Callable[[PastViewState], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Wish:
+    run: str
+    time_s: float
+    tell: Tell
+
+
+@dataclass(kw_only=True)
+class _Client:
+    """One connected page; it has a drawing of its own from its first past moment on."""
+
+    handle: viser.ClientHandle
+    page: str
+    newest: LatestMessages = field(default_factory=LatestMessages)
+    drawing: SceneLayers | None = None
+    wish: _Wish | None = None
+    due_s: float | None = None
+
+
+class PastViews:
+    """Draws past moments, each for its page only, on a thread of its own; of many moments in a row the newest wins.
+
+    Args:
+        server: Of the pages.
+        groups: What each page shows.
+        find: Returns the recordings of a run, oldest first; called on any thread.
+    """
+
+    def __init__(self, server: viser.ViserServer, groups: ClientLayerGroups, *, find: FindFiles) -> None:
+        self._groups = groups
+        self._find = find
+        self._lock = threading.Lock()
+        self._wishes: OrderedDict[str, _Wish] = OrderedDict()
+        self._clients: dict[int, _Client] = {}
+        self._runs: OrderedDict[str, RecordedScene] = OrderedDict()
+        self._wake = threading.Event()
+        self._ending = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="cell-past", daemon=True)
+        # Coroutines, because these run in the context of the connection, where `PAGE` is.
+        server.on_client_connect(self._connected)
+        server.on_client_disconnect(self._disconnected)
+        self._thread.start()
+
+    def show(self, page: str, run: str, time_s: float, *, tell: Tell) -> None:
+        """Let a page see a run as it was at a time of it; `tell` is called, on another thread, when it does."""
+        with self._lock:
+            self._wishes.pop(page, None)
+            self._wishes[page] = _Wish(run=run, time_s=time_s, tell=tell)
+            while len(self._wishes) > _KEPT_PAGES:
+                self._wishes.popitem(last=False)
+        self._wake.set()
+
+    def leave(self, page: str) -> None:
+        """Let a page see the present again."""
+        with self._lock:
+            self._wishes.pop(page, None)
+            self._groups.show_past(self._groups.past - {page})
+
+    def close(self) -> None:
+        """End the thread and close the recordings; may take a moment, call it off the event loop."""
+        self._ending.set()
+        self._wake.set()
+        self._thread.join()
+
+    async def _connected(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            self._clients[client.client_id] = _Client(handle=client, page=PAGE.get())
+        self._wake.set()
+
+    async def _disconnected(self, client: viser.ClientHandle) -> None:
+        with self._lock:
+            self._clients.pop(client.client_id, None)
+
+    def _work(self) -> None:
+        wait_s: float | None = None
+        while not self._ending.is_set():
+            self._wake.wait(wait_s)
+            self._wake.clear()
+            due_s = self._draw_all()
+            wait_s = None if due_s is None else max(0.0, due_s - time.monotonic())
+            self._ending.wait(PERIOD_S)
+        for run in self._runs.values():
+            run.close()
+
+    def _draw_all(self) -> float | None:
+        """Draw what is wished for; returns when, on the steady clock, to draw again without a new wish."""
+        with self._lock:
+            wishes = dict(self._wishes)
+            clients = [client for client in self._clients.values() if client.page in wishes]
+        due: list[float] = []
+        for client in clients:
+            wish = wishes[client.page]
+            try:
+                self._draw(client, wish)
+            except Exception as error:
+                # Whatever is in a file: this page sees the present again, the others what they wish for.
+                expected = isinstance(error, FlexcellError)
+                level = logging.INFO if expected else logging.ERROR
+                _log.log(level, "a moment of %s cannot be shown: %s", wish.run, error, exc_info=not expected)
+                problem = error.message if expected else "its recording cannot be shown"
+                self._end(client.page, wish)
+                wish.tell(PastViewState(run=wish.run, time_s=wish.time_s, problem=problem))
+                continue
+            if client.due_s is not None:
+                due.append(client.due_s)
+        return min(due, default=None)
+
+    def _end(self, page: str, wish: _Wish) -> None:
+        with self._lock:
+            if self._wishes.get(page) is wish:
+                del self._wishes[page]
+            self._groups.show_past(self._groups.past - {page})
+
+    def _draw(self, client: _Client, wish: _Wish) -> None:
+        before, is_new = client.wish, client.wish is not wish
+        if is_new:
+            is_another_run = before is None or before.run != wish.run
+            run = self._opened(wish.run, is_another=is_another_run)
+            if is_another_run or client.drawing is None:
+                self._groups.clear_past(client.handle.client_id)
+                client.newest, client.drawing = LatestMessages(), SceneLayers(client.handle, under=PAST)
+            run.show(client.newest, wish.time_s)
+            client.wish = wish
+        elif client.due_s is None:
+            return
+        if client.drawing is not None:
+            # Nothing moves by itself: the way of a ghost is not gone over and over, as in the live view.
+            client.due_s = client.drawing.all(client.newest, frozenset())
+        if is_new:
+            with self._lock:
+                # Only now: until it was drawn there was nothing to see, and meanwhile the page may have left.
+                if client.page in self._wishes:
+                    self._groups.show_past(self._groups.past | {client.page})
+            from_s, until_s = self._runs[wish.run].span_s
+            wish.tell(PastViewState(run=wish.run, time_s=wish.time_s, from_s=from_s, until_s=until_s))
+
+    def _opened(self, run: str, *, is_another: bool) -> RecordedScene:
+        known = self._runs.pop(run, None)
+        # A run that was resumed has one file more; one that is over lies elsewhere, and the open file is as good.
+        if known is None or (is_another and len(self._find(run)) != len(known.files)):
+            if known is not None:
+                known.close()
+            known = RecordedScene(self._find(run))
+        self._runs[run] = known
+        while len(self._runs) > _KEPT_RUNS:
+            self._runs.popitem(last=False)[1].close()
+        return known

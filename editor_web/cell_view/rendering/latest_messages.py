@@ -1,0 +1,59 @@
+"""The newest message of each kind: written by the event loop's thread, read by the thread that draws."""
+
+from __future__ import annotations
+
+import threading
+
+from engine.messages import FramePoses, RobotDescription, SceneDescription
+from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.skills.planning import PathPreview
+from engine.skills.planning_scene import PlanningSceneState
+from engine.skills.vision import Detections
+
+
+class LatestMessages:
+    """One reference for each, the newest wins; `arrived` is set with every message.
+
+    `descriptions`, `ways`, `cameras`, `depths` and `detections` are by the name of the arm or camera. Messages are
+    frozen: whoever reads one sees it whole.
+    """
+
+    def __init__(self) -> None:
+        self.arrived = threading.Event()
+        self.scene: SceneDescription | None = None
+        self.frames: FramePoses | None = None
+        self.planning_scene: PlanningSceneState | None = None
+        self.occupancy: OccupancyGrid | None = None
+        self.descriptions: dict[str, RobotDescription] = {}
+        self.ways: dict[str, PathPreview] = {}
+        self.occupancy_state: OccupancyState | None = None
+        self.cameras: dict[str, CameraInfo] = {}
+        self.depths: dict[str, DepthImage] = {}
+        self.detections: dict[str, Detections] = {}
+
+    def put(self, name: str, message: object) -> None:
+        """Keep a message; `name` is that of its arm or camera, where it has one."""
+        match message:
+            case SceneDescription():
+                self.scene = message
+            case FramePoses():
+                self.frames = message
+            case PlanningSceneState():
+                self.planning_scene = message
+            case OccupancyGrid():
+                self.occupancy = message
+            case OccupancyState():
+                self.occupancy_state = message
+            case CameraInfo():
+                self.cameras = {**self.cameras, name: message}
+            case RobotDescription():
+                self.descriptions = {**self.descriptions, name: message}
+            case PathPreview():
+                self.ways = {**self.ways, name: message}
+            case DepthImage():
+                self.depths = {**self.depths, name: message}
+            case Detections():
+                self.detections = {**self.detections, name: message}
+            case _:
+                return
+        self.arrived.set()

@@ -1,0 +1,116 @@
+"""Which topics the 3D view follows: some always, the costly ones only while somebody looks at them."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from editor_web.cell_view.rendering.layer_groups import LayerGroup
+from editor_web.contracts.backend import Unsubscribe
+from engine.bus.json_bus import JsonBus
+from engine.errors import FlexcellError
+from engine.messages import FramePoses, RobotDescription, SceneDescription
+from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.skills.planning import PathPreview
+from engine.skills.planning_scene import PlanningSceneState
+from engine.skills.vision import Detections
+
+_log = logging.getLogger("flexcell.cell_view")
+# By type, not by name: what an arm or a camera is called is the cell's affair. Descriptions come first, they tell
+# which bodies of the scene are those of arms.
+_ALWAYS = (RobotDescription, SceneDescription, FramePoses, PlanningSceneState, PathPreview, CameraInfo)
+# Cameras take images only while somebody reads what is made of them.
+_WHILE_SHOWN: dict[str, LayerGroup] = {
+    OccupancyState.__name__: "voxels",
+    OccupancyGrid.__name__: "voxels",
+    DepthImage.__name__: "cameras",
+    Detections.__name__: "detections",
+}
+_RANK = {kind.__name__: rank for rank, kind in enumerate(_ALWAYS)}
+
+
+class TopicSource(Protocol):
+    """The part of the backend that the 3D view is drawn from."""
+
+    @property
+    def bus(self) -> JsonBus:
+        """For the listing of the topics."""
+        ...
+
+    def recording_files(self, run_id: str) -> Sequence[Path]:
+        """Return the recordings of a run, oldest first; of one that is named by its path too."""
+        ...
+
+    def subscribe_topic(self, topic: str, callback: Callable[[object], None]) -> Unsubscribe:
+        """Call back with every new message of a topic, the newest one first, at once."""
+        ...
+
+
+class TopicSubscriptions:
+    """Subscribes what is to be drawn; everything on the event loop's thread.
+
+    Args:
+        topics: Where the topics are.
+        newest: Gets every message.
+        shown: Returns the groups that are shown now.
+    """
+
+    def __init__(
+        self, topics: TopicSource, newest: LatestMessages, *, shown: Callable[[], frozenset[LayerGroup]]
+    ) -> None:
+        self._topics = topics
+        self._newest = newest
+        self._shown = shown
+        self._followed: dict[str, Unsubscribe] = {}
+        self._asked = asyncio.Event()
+        self._task: asyncio.Task[None] | None = None
+
+    async def open(self) -> None:
+        """Follow what there is now, and from now on what `ask` makes due."""
+        await self._follow()
+        self._task = asyncio.create_task(self._keep_up(), name="cell view topics")
+
+    async def close(self) -> None:
+        """Follow nothing more."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.wait({self._task})
+            self._task = None
+        for unsubscribe in self._followed.values():
+            unsubscribe()
+        self._followed = {}
+
+    def ask(self) -> None:
+        """Something may be due, or due no more."""
+        self._asked.set()
+
+    async def _keep_up(self) -> None:
+        while True:
+            await self._asked.wait()
+            self._asked.clear()
+            await self._follow()
+
+    async def _follow(self) -> None:
+        entries = [entry for entry in await self._topics.bus.listing() if entry.kind == "topic"]
+        shown = self._shown()
+        due = {
+            entry.name: _RANK.get(entry.type, len(_RANK))
+            for entry in entries
+            if entry.type in _RANK or _WHILE_SHOWN.get(entry.type) in shown
+        }
+        for topic in [name for name in self._followed if name not in due]:
+            self._followed.pop(topic)()
+        for topic in sorted(due, key=lambda name: (due[name], name)):
+            if topic not in self._followed:
+                self._subscribe(topic)
+
+    def _subscribe(self, topic: str) -> None:
+        name = topic.rpartition("/")[0]
+        try:
+            self._followed[topic] = self._topics.subscribe_topic(topic, lambda message: self._newest.put(name, message))
+        except FlexcellError as error:
+            _log.info("nothing to draw from %s: %s", topic, error)

@@ -1,0 +1,77 @@
+/** The handle at an arm in the 3D view of this page: over a connection of its own, with which it ends.
+ *
+ * The arm follows only while the mouse is down in the view and this page passes that on, every 50 ms: neither says so in
+ * the other's name, so an arm rests when either of them hangs.
+ */
+import { create } from 'zustand'
+import { PAGE } from './layerGroups'
+import { openSocket } from './socket'
+
+/** Whether the tool follows the handle, or an arm that floats is pushed towards it. */
+export type HandleMode = 'move' | 'push'
+
+interface Gripped {
+  readonly k: 'gripped'
+  readonly arm: string
+  readonly way: HandleMode
+  readonly pulled: boolean
+}
+
+interface Refused {
+  readonly k: 'refused'
+  readonly message: string
+  readonly hint: string
+}
+
+interface GripStore {
+  /** The arm that has a handle; empty for none. */
+  readonly arm: string
+  readonly way: HandleMode
+  readonly pulled: boolean
+  /** Why the last pull did nothing; empty where it did. */
+  readonly refused: string
+}
+
+const NONE: GripStore = { arm: '', way: 'move', pulled: false, refused: '' }
+export const useHandleDrag = create<GripStore>(() => NONE)
+
+let socket: WebSocket | undefined
+
+/** Show a handle at this arm's tool, for operators; empty takes it away. */
+export function showHandle(arm: string, way: HandleMode = 'move'): void {
+  if (!arm) {
+    socket?.close()
+    socket = undefined
+    useHandleDrag.setState(NONE)
+    return
+  }
+  const send = () => socket?.send(JSON.stringify({ k: 'take', arm, way }))
+  if (socket?.readyState === WebSocket.OPEN) send()
+  else open(send)
+}
+
+/** The view says that the mouse is down in it; it says so every 50 ms as long as that is so. */
+export function sendDragKeepAlive(): void {
+  if (socket?.readyState === WebSocket.OPEN) socket.send('{"k":"held"}')
+}
+
+function open(then: () => void): void {
+  socket?.close()
+  const opened = openSocket(`/cell/grip/${PAGE}`)
+  socket = opened
+  opened.onopen = then
+  opened.onmessage = (message: MessageEvent<string>) => {
+    const news = JSON.parse(message.data) as Gripped | Refused
+    if (news.k === 'refused') {
+      useHandleDrag.setState({ refused: news.hint ? `${news.message}: ${news.hint}` : news.message })
+      return
+    }
+    const { arm, way, pulled } = news
+    useHandleDrag.setState(pulled || arm !== useHandleDrag.getState().arm ? { arm, way, pulled, refused: '' } : { arm, way, pulled })
+  }
+  opened.onclose = () => {
+    if (socket !== opened) return
+    socket = undefined
+    useHandleDrag.setState(NONE)
+  }
+}

@@ -1,0 +1,32 @@
+/** What the 3D view of this page shows: kept in the browser, told to the server over the live connection. */
+import { create } from 'zustand'
+import type { ShowLayers } from './types'
+
+export type LayerGroup = ShowLayers['groups'][number]
+
+export const LAYER_GROUPS: readonly LayerGroup[] = ['voxels', 'ways', 'obstacles', 'people', 'cameras', 'detections', 'frames']
+const AT_FIRST: readonly LayerGroup[] = ['voxels', 'ways', 'obstacles', 'people', 'detections']
+const KEPT = 'flexcell.shown'
+
+/** What this page calls itself in the path of its 3D view; another page shows what it wants. */
+export const PAGE = Array.from(crypto.getRandomValues(new Uint32Array(3)), (part) => part.toString(36)).join('')
+
+export const useShownLayers = create<{ readonly groups: readonly LayerGroup[] }>(() => ({ groups: kept() }))
+
+/** Show or hide one group. */
+export function setLayerShown(group: LayerGroup, isShown: boolean): void {
+  const others = useShownLayers.getState().groups.filter((each) => each !== group)
+  const groups = isShown ? [...others, group] : others
+  localStorage.setItem(KEPT, JSON.stringify(groups))
+  useShownLayers.setState({ groups })
+}
+
+function kept(): readonly LayerGroup[] {
+  try {
+    const groups: unknown = JSON.parse(localStorage.getItem(KEPT) ?? 'null')
+    return Array.isArray(groups) ? LAYER_GROUPS.filter((group) => groups.includes(group)) : AT_FIRST
+  } catch {
+    // What somebody else has written there is no reason not to start.
+    return AT_FIRST
+  }
+}

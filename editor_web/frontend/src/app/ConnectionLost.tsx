@@ -1,0 +1,19 @@
+/** Says that the connection is gone, and what happens next. */
+import { Alert } from '@mantine/core'
+import { IconPlugConnectedX } from '@tabler/icons-react'
+import { useLive } from '../api/live'
+
+/** The kit's titles have the colour of the alert, which is too faint on its own light ground. */
+const READABLE = { title: { color: 'var(--text)' } }
+
+export function ConnectionLost() {
+  const connection = useLive((s) => s.connection)
+  if (connection === 'lost') {
+    return (
+      <Alert color="yellow" variant="light" radius={0} icon={<IconPlugConnectedX size={18} aria-hidden />} title="The server does not answer" styles={READABLE} role="alert">
+        What you see may be out of date. STOP still works. Trying again; the page goes on by itself once the server is back.
+      </Alert>
+    )
+  }
+  return null
+}

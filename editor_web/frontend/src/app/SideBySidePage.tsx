@@ -1,0 +1,187 @@
+/** Two runs beside one another, each with its commands, graph and log. */
+import { IconLayoutColumns } from '@tabler/icons-react'
+import { useEffect, useState, type ReactNode } from 'react'
+import { Group, Panel as Pane, Separator } from 'react-resizable-panels'
+import { useLive } from '../api/live'
+import { clearRefusal } from '../api/refusal'
+import type { RunOverview } from '../api/types'
+import { Elapsed } from '../components/Elapsed'
+import { Empty } from '../components/Empty'
+import { LiveOf } from '../components/LiveOf'
+import { PageLink } from '../components/PageLink'
+import { StatusBadge } from '../components/StatusBadge'
+import { ViewBoundary } from '../components/ViewBoundary'
+import { isActive } from '../document/live'
+import { nodeAt } from '../document/tree'
+import { duration, wallTime } from '../document/time'
+import { RefusalLine } from '../features/control/RefusalLine'
+import { Requests } from '../features/control/Requests'
+import { RunBar } from '../features/control/RunBar'
+import { StopRun } from '../features/control/RunButtons'
+import { useCommands } from '../features/control/useCommands'
+import { Graph, type Shown } from '../features/graph/Graph'
+import { EventLog } from '../features/log/EventLog'
+import { nameOf } from '../features/runs/RunList'
+import '../features/runs/runs.css'
+import { Breadcrumb } from './Breadcrumb'
+import { sideBySideHref, runHref } from './route'
+import { useBehaviorOf } from './useBehaviorOf'
+
+export interface SideBySidePageProps {
+  readonly left: string
+  readonly right: string
+  readonly isNarrow: boolean
+  readonly onOpen: (href: string) => void
+}
+
+export function SideBySidePage({ left, right, isNarrow, onOpen }: SideBySidePageProps) {
+  useEffect(clearRefusal, [left, right])
+  const column = (id: string, side: Side, other: string) => (
+    <Column
+      id={id}
+      side={side}
+      other={other}
+      onChange={(run) => onOpen(side === 'left' ? sideBySideHref(run, right) : sideBySideHref(left, run))}
+      onOpen={onOpen}
+    />
+  )
+  return (
+    <div className="beside-page">
+      <h1 className="visually-hidden">Two runs side by side</h1>
+      <RefusalLine />
+      {isNarrow ? (
+        <div className="beside-stack">
+          {column(left, 'left', right)}
+          {column(right, 'right', left)}
+        </div>
+      ) : (
+        <Group orientation="horizontal" className="work-space">
+          <Pane id="left-run" defaultSize="50%" minSize="25%">
+            {column(left, 'left', right)}
+          </Pane>
+          <Separator className="splitter" aria-label="Width of the left run" />
+          <Pane id="right-run" defaultSize="50%" minSize="25%">
+            {column(right, 'right', left)}
+          </Pane>
+        </Group>
+      )}
+    </div>
+  )
+}
+
+type Side = 'left' | 'right'
+
+interface ColumnProps {
+  readonly id: string
+  readonly side: Side
+  /** The run of the other column, which is not offered here. */
+  readonly other: string
+  readonly onChange: (run: string) => void
+  readonly onOpen: (href: string) => void
+}
+
+function Column({ id, side, other, onChange, onOpen }: ColumnProps) {
+  const runs = useLive((s) => s.runs)
+  const knowsRuns = useLive((s) => s.knowsRuns)
+  const run = runs.find((each) => each.id === id)
+  const choice = <RunChoice runs={runs.filter((each) => each.id !== other)} id={id} side={side} onChange={onChange} />
+  if (run) {
+    return (
+      <LiveOf key={run.id} run={run.id}>
+        <ViewBoundary name={`The run on the ${side}`}>
+          <RunColumn run={run} side={side} choice={choice} onOpen={() => onOpen(runHref(run.id))} />
+        </ViewBoundary>
+      </LiveOf>
+    )
+  }
+  return (
+    <section className="run-column" aria-label={`Run on the ${side}`}>
+      <header className="run-column-head">{choice}</header>
+      {knowsRuns && (
+        <Empty icon={<IconLayoutColumns size={26} stroke={1.4} aria-hidden />} title="No run is shown here">
+          {id ? 'This server knows no such run; choose another one.' : 'Choose one.'}
+        </Empty>
+      )}
+    </section>
+  )
+}
+
+interface RunChoiceProps {
+  readonly runs: readonly RunOverview[]
+  readonly id: string
+  readonly side: Side
+  readonly onChange: (run: string) => void
+}
+
+function RunChoice({ runs, id, side, onChange }: RunChoiceProps) {
+  const isKnown = runs.some((run) => run.id === id)
+  return (
+    <select className="run-choice" aria-label={`Which run on the ${side}`} value={isKnown ? id : ''} onChange={(event) => onChange(event.currentTarget.value)}>
+      {!isKnown && <option value="">Choose a run</option>}
+      {runs.map((run) => (
+        <option key={run.id} value={run.id}>
+          {nameOf(run.behavior)}, {wallTime(run.started_at_s)}
+          {isActive(run) ? '' : `, ${run.outcome ?? run.status}`}
+        </option>
+      ))}
+    </select>
+  )
+}
+
+interface RunColumnProps {
+  readonly run: RunOverview
+  readonly side: Side
+  readonly choice: ReactNode
+  readonly onOpen: () => void
+}
+
+function RunColumn({ run, side, choice, onOpen }: RunColumnProps) {
+  const [selected, setSelected] = useState<string>()
+  const [shown, setShown] = useState<Shown>()
+  const behavior = useBehaviorOf(run)
+  const root = behavior.value?.graph ?? null
+  const name = `${nameOf(run.behavior)} on the ${side}`
+  const commands = useCommands(run, root && selected ? nodeAt(root, selected)?.path : undefined, name)
+
+  function show(path: string): void {
+    setSelected(path)
+    setShown({ path })
+  }
+
+  return (
+    <section className="run-column" aria-label={`Run on the ${side}`}>
+      <header className="run-column-head">
+        {choice}
+        <StatusBadge status={run.status} outcome={run.outcome} success={run.success} />
+        {isActive(run) ? <Elapsed sinceS={0} /> : <span className="elapsed">{duration(run.duration_s)}</span>}
+        <span className="spacer" />
+        <PageLink href={runHref(run.id)} onOpen={onOpen}>
+          Whole page
+        </PageLink>
+        {isActive(run) && <StopRun commands={commands} />}
+      </header>
+      {isActive(run) && <RunBar run={run} commands={commands} of={name} onShow={show} />}
+      <Requests root={root} commands={commands} onShow={show} of={name} />
+      <Group orientation="vertical" className="run-column-body">
+        <Pane id={`${side}-graph`} defaultSize="60%" minSize="20%">
+          {root ? (
+            <Graph
+              root={root}
+              selected={selected}
+              onSelect={setSelected}
+              shown={shown}
+              of={name}
+              breadcrumb={<Breadcrumb selected={selected} onSelect={show} />}
+            />
+          ) : (
+            behavior.problem && <Empty title="This behavior cannot be shown">{behavior.problem}</Empty>
+          )}
+        </Pane>
+        <Separator className="splitter is-flat" aria-label={`Height of the graph on the ${side}`} />
+        <Pane id={`${side}-log`} defaultSize="40%" minSize="15%">
+          <EventLog of={name} />
+        </Pane>
+      </Group>
+    </section>
+  )
+}

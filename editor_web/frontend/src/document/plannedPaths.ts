@@ -1,0 +1,37 @@
+/** Planned ways in words: what a run that asks has planned, and which arms wait for a free way. Pure. */
+import type { Dict } from './dict'
+import type { NodeLive, PlanLive, RobotLive, PathLive } from '../api/types'
+import { duration } from './time'
+
+/** The ways that a node, or what lies inside it, has planned. */
+export function plansOf(nodes: Dict<NodeLive>, path: string): readonly PlanLive[] {
+  const inside = `${path}/`
+  return Object.entries(nodes).flatMap(([at, node]) => (node.plan && (at === path || at.startsWith(inside)) ? [node.plan] : []))
+}
+
+/** `3.20 s for 1.24 m of the tool's path, found by RRTConnect in 0.12 s`. */
+export function planWords(plan: PlanLive): string {
+  return `${duration(plan.duration_s)} for ${plan.length_m.toFixed(2)} m of the tool's path, found by ${plan.found_by} in ${duration(plan.planning_s)}`
+}
+
+/** Is the way that is shown for this arm one that nobody goes yet? */
+export function isProposed(robot: RobotLive | undefined): boolean {
+  return robot?.way?.state === 'proposed'
+}
+
+export interface BlockedPath {
+  readonly robot: string
+  readonly way: PathLive
+}
+
+/** The arms whose way is blocked, by name. */
+export function blockedPaths(robots: Dict<RobotLive>): readonly BlockedPath[] {
+  return Object.values(robots)
+    .flatMap(({ name, way }) => (way?.state === 'blocked' ? [{ robot: name, way }] : []))
+    .sort((a, b) => a.robot.localeCompare(b.robot))
+}
+
+/** `12 s`, `3:05 min`. */
+export function sinceWords(seconds: number): string {
+  return seconds < 60 ? `${Math.max(0, Math.floor(seconds))} s` : duration(seconds)
+}

@@ -1,0 +1,43 @@
+/** What clicks and wires on the canvas do. Not made anew with each drawing, or every node would be drawn again with it. */
+import type { Connection } from '@xyflow/react'
+import { isHolder, nameOfPath, parentPath } from '../../document/editing/model'
+import { chooseArrow, connect, enter, toggleOpen } from './actions'
+import { openReferred } from './pageActions'
+import type { CanvasEdge, CanvasNode } from './elements'
+import { setEditor } from './store'
+
+export function onEdgeClick(_event: unknown, edge: CanvasEdge): void {
+  if (edge.type === 'way') chooseArrow(edge.id)
+}
+
+export function onNodeClick(): void {
+  chooseArrow(undefined)
+}
+
+export function onConnect({ source, sourceHandle, target }: Connection): void {
+  if (!sourceHandle) return
+  void connect(
+    source,
+    sourceHandle,
+    target.includes('#') ? target.slice(target.indexOf('#') + 1) : nameOfPath(target),
+  )
+}
+
+export function onReconnect(edge: CanvasEdge, link: Connection): void {
+  if (edge.source === link.source && edge.sourceHandle === link.sourceHandle) onConnect(link)
+}
+
+export function isAllowed({ source, target }: { source: string; target: string }): boolean {
+  const machine = parentPath(source)
+  return target.startsWith(`${machine}#`) || parentPath(target) === machine
+}
+
+export function onDouble(_event: unknown, node: CanvasNode): void {
+  if (node.type === 'frame') enter(node.id)
+  else if (node.type === 'twig') toggleOpen(node.id, node.data.isOpen)
+  else if (node.type === 'leaf') {
+    if (node.data.node.document) openReferred(node.data.node.document, node.id)
+    else if (node.data.count > 0 || isHolder(node.data.node)) enter(node.id)
+    else setEditor({ renaming: node.id })
+  }
+}

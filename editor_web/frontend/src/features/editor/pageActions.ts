@@ -1,0 +1,32 @@
+/** What the page around the editor does for it, and going to other behaviors. */
+import { rememberReferrer } from './references'
+
+/** What the page does for the editor: running, fitting, showing. */
+export interface PageActions {
+  readonly run: () => void
+  readonly fit: () => void
+  readonly zoom: (factor: number) => void
+  /** Open another behavior in the editor. */
+  readonly open: (id: string, node: string) => void
+}
+
+let acts: PageActions = { run: () => undefined, fit: () => undefined, zoom: () => undefined, open: () => undefined }
+
+/** Open another behavior; the draft of this one is kept. */
+export function openOther(id: string, node = ''): void {
+  acts.open(id, node)
+}
+
+/** Open a behavior that a node here refers to; its page leads back to the node. */
+export function openReferred(id: string, from: string, node = ''): void {
+  rememberReferrer(id, from)
+  openOther(id, node)
+}
+
+export function setPageActions(given: PageActions): void {
+  acts = given
+}
+
+export function pageActions(): PageActions {
+  return acts
+}

@@ -1,8 +1,0 @@
-/** A list whose elements stay the same objects as long as they look the same. */
-import { useMemo, useRef } from 'react'
-import { keptAlike } from './alike'
-
-export function useKept<T extends { readonly id: string }>(now: readonly T[]): readonly T[] {
-  const before = useRef<readonly T[]>([])
-  return useMemo(() => (before.current = keptAlike(before.current, now)), [now])
-}

@@ -1,0 +1,40 @@
+/** Which arms wait because their way is blocked: by what, and for how long. */
+import { IconBarrierBlock } from '@tabler/icons-react'
+import { useEffect, useState } from 'react'
+import { serverNow, useLive } from '../../api/live'
+import { blockedPaths, sinceWords } from '../../document/plannedPaths'
+
+export function BlockedPaths() {
+  const robots = useLive((s) => s.robots)
+  const blocked = blockedPaths(robots)
+  return (
+    <div aria-live="polite" className="blocked-area">
+      {blocked.length > 0 && (
+        <ul className="plain-list" aria-label="Arms whose way is blocked">
+          {blocked.map(({ robot, way }) => (
+            <li key={robot} className="blocked-way">
+              <IconBarrierBlock size={18} aria-hidden />
+              <span>
+                <strong>{robot}</strong> waits: {way.reason || 'its way is blocked'}, since <Since sinceS={way.since_s} />
+              </span>
+            </li>
+          ))}
+        </ul>
+      )}
+    </div>
+  )
+}
+
+function Since({ sinceS }: { sinceS: number }) {
+  const [now, setNow] = useState(serverNow)
+  useEffect(() => {
+    const timer = setInterval(() => setNow(serverNow()), 500)
+    return () => clearInterval(timer)
+  }, [])
+  // The time is not announced again and again.
+  return (
+    <span role="timer" aria-live="off" className="elapsed">
+      {sinceWords(now - sinceS)}
+    </span>
+  )
+}

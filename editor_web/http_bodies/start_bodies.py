@@ -1,0 +1,40 @@
+"""The JSON by which runs are started over HTTP."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import Field
+
+from editor_web.http_bodies.common_bodies import HttpBody
+from editor_web.http_bodies.control_bodies import AutonomyLevel
+
+
+class RunPositionBody(HttpBody):
+    """An event of a run in the journal to begin at; at the state entered last unless `path` says otherwise."""
+
+    run: str
+    seq: int = Field(ge=1)
+    path: str | None = None
+
+
+class SupervisionBody(HttpBody):
+    """How a run is watched over; see `flexcell run --help` for the same options."""
+
+    autonomy: AutonomyLevel = "full"
+    demand_operator: bool = False
+    breakpoints: bool = False
+    start_paused: bool = False
+    loss_policy: Literal["hold", "continue", "stop"] = "hold"
+    loss_timeout_s: float = Field(default=5.0, ge=0)
+
+
+class StartBody(HttpBody):
+    """A request to start a run; without a seed the server draws one."""
+
+    behavior: str
+    parameters: dict[str, object] = {}
+    inputs: dict[str, object] = {}
+    seed: int | None = Field(default=None, ge=0, lt=2**31)
+    supervision: SupervisionBody = SupervisionBody()
+    begin: RunPositionBody | None = None

@@ -1,0 +1,169 @@
+"""The runs that are looked at: of this server, of the journal, of recordings; a few are kept open."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from editor_web.contracts.backend import Backend
+from editor_web.past.failure import RunFailure, failure_of
+from editor_web.past.state_history import PastRunState
+from editor_web.past.timeline import RunHistory, Timeline
+from editor_web.past.userdata_values import PastUserdata, UserdataCheckpoints
+from engine.archive import Archive, ArchivedRun
+from engine.errors import FlexcellError
+from engine.event import Event
+from engine.runtime.history.userdata_history import UserdataHistory
+
+MAX_OPEN_RUNS = 6
+"""Runs that are kept open; 100,000 events take some 100 MB."""
+_BREATH = 256
+"""Events that are folded without letting the engine's thread have its turn."""
+
+
+@dataclass(kw_only=True)
+class OpenRun:
+    """One run with its course, for any thread; `archived` is there where it is not a run of this server."""
+
+    course: RunHistory
+    books: UserdataCheckpoints
+    archived: ArchivedRun | None = None
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def follow(self, events: Iterable[Event]) -> None:
+        """Take further events."""
+        with self.lock:
+            for count, event in enumerate(events, 1):
+                self.course.follow(event)
+                if count % _BREATH == 0:
+                    # Runs on a thread beside the engine's: a long fold must not make it wait for its turn.
+                    time.sleep(0)
+
+    def timeline(self, *, from_s: float, until_s: float, after_seq: int) -> Timeline:
+        """Return its timeline; see `Course.timeline`."""
+        with self.lock:
+            return self.course.timeline(from_s=from_s, until_s=until_s, after_seq=after_seq)
+
+    def at(self, *, time_s: float | None, seq: int | None, known: int | None, lines: int) -> PastRunState | None:
+        """Return the run at a time of its clock, or after an event; its last moment where none is given.
+
+        None where that is after event `known`, which whoever asks has already.
+        """
+        with self.lock:
+            moments = self.course.moments
+            wanted = moments.last_seq if seq is None else min(seq, moments.last_seq)
+            wanted = wanted if time_s is None else moments.seq_at(time_s)
+            return None if wanted == known else moments.at(wanted, lines=lines)
+
+    def values(self, *, seq: int | None) -> PastUserdata:
+        """Return its userdata after an event, its last one where none is given."""
+        with self.lock:
+            moments = self.course.moments
+            return self.books.at(moments, moments.last_seq if seq is None else min(seq, moments.last_seq))
+
+    def failure(self, *, is_failed: bool) -> RunFailure | None:
+        """Return how it failed; None where it did not."""
+        with self.lock:
+            moments = self.course.moments
+            return failure_of(moments.events(1, moments.last_seq), is_failed=is_failed)
+
+
+class OpenRunCache:
+    """Opens runs to be looked at. A few are kept open.
+
+    Args:
+        backend: The engine.
+    """
+
+    def __init__(self, backend: Backend) -> None:
+        self._backend = backend
+        self._opened: OrderedDict[str, OpenRun] = OrderedDict()
+        self._lock = threading.Lock()
+
+    @property
+    def archive(self) -> Archive:
+        """The past runs and recordings of the project."""
+        return self._backend.archive
+
+    def of_server(self, run_id: str) -> tuple[OpenRun, list[Event]] | None:
+        """Return a run of this server and the events that it has still to follow; None where there is none.
+
+        Called on the event loop's thread; following may take a while and is done on another.
+        """
+        key = f"server {run_id}"
+        known = self._known(key)
+        after = known.course.moments.last_seq if known is not None else 0
+        try:
+            further = self._backend.events(run_id, after=after)
+        except FlexcellError:
+            return None
+        return known or self._entry(key, run_id, self._book(run_id)), further
+
+    def keeps(self, run_id: str) -> bool:
+        """Return whether a run of the journal is kept open."""
+        return self._known(_journal_key(run_id)) is not None
+
+    def of_journal(self, run_id: str, *, fresh: bool) -> OpenRun:
+        """Return a run of the journal; one without an end is read again where `fresh` is asked for.
+
+        Raises:
+            JournalError: there is no such run, or it cannot be read.
+        """
+        key = _journal_key(run_id)
+        known = self._known(key)
+        is_over = known is not None and known.archived is not None and known.archived.summary.status != "running"
+        if known is not None and (is_over or not fresh):
+            return known
+        return self._with(key, self._backend.archive.run(run_id))
+
+    def of_recording(self, path: str) -> OpenRun:
+        """Return a recording by its path in the project.
+
+        Raises:
+            RecordingError: there is none, or it cannot be read.
+        """
+        file = self._backend.archive.recording_file(path)
+        key = f"recording {path} {file.stat().st_mtime_ns}"
+        return self._known(key) or self._with(key, self._backend.archive.recording(path))
+
+    def _with(self, key: str, archived: ArchivedRun) -> OpenRun:
+        plan = archived.plan
+        book = UserdataHistory(lambda: plan) if plan is not None else None
+        opened = OpenRun(course=RunHistory(archived.summary.id), books=UserdataCheckpoints(book), archived=archived)
+        # Before others can find it, so that nobody sees a part of it.
+        opened.follow(archived.events)
+        with self._lock:
+            self._keep(key, opened)
+        return opened
+
+    def _known(self, key: str) -> OpenRun | None:
+        with self._lock:
+            known = self._opened.get(key)
+            if known is not None:
+                self._opened.move_to_end(key)
+            return known
+
+    def _book(self, run_id: str) -> UserdataHistory | None:
+        try:
+            return self._backend.userdata(run_id)
+        except FlexcellError:
+            return None
+
+    def _entry(self, key: str, run_id: str, book: UserdataHistory | None) -> OpenRun:
+        with self._lock:
+            opened = self._opened.get(key) or OpenRun(course=RunHistory(run_id), books=UserdataCheckpoints(book))
+            self._keep(key, opened)
+            return opened
+
+    def _keep(self, key: str, opened: OpenRun) -> None:
+        self._opened[key] = opened
+        self._opened.move_to_end(key)
+        while len(self._opened) > MAX_OPEN_RUNS:
+            self._opened.popitem(last=False)
+
+
+def _journal_key(run_id: str) -> str:
+    return f"journal {run_id}"

@@ -1,0 +1,87 @@
+"""The moments of a run: its events folded once, with checkpoints, so that each further moment is a short way off."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+
+import msgspec
+
+from editor_web.live.event_log import LogLine
+from editor_web.live.run_state import LOG_LINES, LiveRun, NodeLive
+from engine.event import Event
+
+CHECKPOINT_INTERVAL = 512
+"""Events between two checkpoints, at first."""
+MAX_CHECKPOINTS = 256
+
+
+class PastRunState(msgspec.Struct, frozen=True, kw_only=True):
+    """A run after event `seq`: its nodes, and the last lines of its log; `dropped` lines came before."""
+
+    seq: int
+    time_s: float
+    nodes: dict[str, NodeLive]
+    log: tuple[LogLine, ...]
+    dropped: int
+
+
+class RunStateHistory:
+    """The moments of one run; `follow` takes further events of one that is under way.
+
+    Not to be used by two threads at once.
+    """
+
+    def __init__(self, run_id: str) -> None:
+        self.now = LiveRun(run_id)
+        """The run after its last event."""
+        self._events: list[Event] = []
+        self._times_s: list[float] = []
+        self._every = CHECKPOINT_INTERVAL
+        self._checkpoints: list[LiveRun] = [LiveRun(run_id)]
+
+    @property
+    def last_seq(self) -> int:
+        """The number of the last event."""
+        return self.now.seq
+
+    def follow(self, event: Event) -> dict[str, NodeLive] | None:
+        """Take the next event; what it changes, None when it was taken already."""
+        changed = self.now.advance(event)
+        if changed is None:
+            return None
+        self._events.append(event)
+        self._times_s.append(event.time_s)
+        if len(self._events) % self._every == 0:
+            self._keep()
+        return changed
+
+    def seq_at(self, time_s: float) -> int:
+        """Return the number of the last event up to a time of the run's clock; 0 before the first."""
+        index = bisect_right(self._times_s, time_s)
+        return self._events[index - 1].seq if index else 0
+
+    def at(self, seq: int, *, lines: int = LOG_LINES) -> PastRunState:
+        """Return the run after event `seq`, with that many lines of its log at most."""
+        count = bisect_right(self._events, seq, key=lambda event: event.seq)
+        wanted = min(lines, LOG_LINES)
+        begin = max(0, count - wanted) // self._every
+        live = self._checkpoints[min(begin, len(self._checkpoints) - 1)].copy()
+        first = bisect_right(self._events, live.seq, key=lambda event: event.seq)
+        for event in self._events[first:count]:
+            live.apply(event)
+        log = tuple(live.log)[-wanted:] if wanted else ()
+        return PastRunState(seq=live.seq, time_s=live.time_s, nodes=live.nodes, log=log, dropped=count - len(log))
+
+    def events(self, first: int, last: int) -> Sequence[Event]:
+        """Return the events from number `first` to number `last`, both included."""
+        start = bisect_right(self._events, first - 1, key=lambda event: event.seq)
+        end = bisect_right(self._events, last, key=lambda event: event.seq)
+        return self._events[start:end]
+
+    def _keep(self) -> None:
+        self._checkpoints.append(self.now.copy())
+        if len(self._checkpoints) > MAX_CHECKPOINTS:
+            # Half as many, twice as far from one another.
+            self._checkpoints = self._checkpoints[::2]
+            self._every *= 2

@@ -1,0 +1,47 @@
+"""The userdata of a run at any moment of it, folded by what also tells it live, with checkpoints on the way."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+import msgspec
+
+from editor_web.past.state_history import RunStateHistory
+from editor_web.telemetry.data_frames import UserdataScope
+from editor_web.telemetry.page_subscriptions import userdata_scope
+from engine.runtime.history.userdata_history import UserdataHistory
+
+_EVERY = 1024
+"""Events between two checkpoints."""
+
+
+class PastUserdata(msgspec.Struct, frozen=True, kw_only=True):
+    """The scopes of a run after event `seq`, by the path of their container; `problem` says why there are none."""
+
+    seq: int
+    scopes: dict[str, UserdataScope]
+    problem: str = ""
+
+
+class UserdataCheckpoints:
+    """The userdata of one run; not to be used by two threads at once.
+
+    Args:
+        book: That of the run before its first event; None where nothing tells what it executed.
+    """
+
+    def __init__(self, book: UserdataHistory | None) -> None:
+        self._checkpoints = [book] if book is not None else []
+
+    def at(self, moments: RunStateHistory, seq: int) -> PastUserdata:
+        """Return the values after event `seq` of the run with these moments."""
+        if not self._checkpoints:
+            return PastUserdata(seq=seq, scopes={}, problem="nothing tells which behavior was executed")
+        index = bisect_right(self._checkpoints, seq, key=lambda book: book.seq) - 1
+        book = self._checkpoints[index].copy()
+        while book.seq + _EVERY < seq:
+            book.read(moments.events(book.seq + 1, book.seq + _EVERY))
+            if book.seq > self._checkpoints[-1].seq:
+                self._checkpoints.append(book.copy())
+        book.read(moments.events(book.seq + 1, seq))
+        return PastUserdata(seq=seq, scopes={path: userdata_scope(scope) for path, scope in book.scopes.items()})

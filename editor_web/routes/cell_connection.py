@@ -1,0 +1,23 @@
+"""Whether the devices of the cell are connected, and connecting again what is lost."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+
+from editor_web.http_bodies.common_bodies import ConnectBody, ConnectionBody, ErrorBody
+from editor_web.routes.services import ServicesOf
+
+router = APIRouter(prefix="/api/v1/cell", tags=["cell"])
+
+
+@router.get("/connection")
+async def get_connection(services: ServicesOf) -> ConnectionBody:
+    """Say whether every device is connected, and which is lost and why."""
+    return ConnectionBody.model_validate(services.backend.cell_connection)
+
+
+@router.post("/connect", status_code=204, responses={409: {"model": ErrorBody}, 422: {"model": ErrorBody}})
+async def connect_cell(body: ConnectBody, services: ServicesOf) -> None:
+    """Connect again what is lost; 409 while a run is under way, 422 where a device does not come back."""
+    del body
+    await services.backend.connect_cell()

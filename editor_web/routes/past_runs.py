@@ -1,0 +1,212 @@
+"""Looking at runs: the timeline, any moment and the failure of one; the past runs and recordings of the project."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Query, Request, Response
+
+from editor_web.http_bodies.common_bodies import BehaviorBody, ErrorBody
+from editor_web.http_bodies.past_bodies import OpenRunBody, PastRunBody, PastRunsBody, RecordingBody
+from editor_web.live.run_state import LOG_LINES
+from editor_web.past import OpenRun, OpenRunCache
+from editor_web.past.run_search import RUN_KINDS, PastRunQuery, RunKind, search_runs
+from editor_web.routes.responses import json_response
+from editor_web.routes.services import ServicesOf
+from engine.archive import ArchivedRun
+from engine.errors import FlexcellError, RecordingError
+
+_PROBLEMS: dict[int | str, dict[str, object]] = {404: {"model": ErrorBody}, 422: {"model": ErrorBody}}
+router = APIRouter(prefix="/api/v1", tags=["past"])
+_LATEST_S = 1e12
+
+FromS = Annotated[float, Query(ge=0, le=_LATEST_S, allow_inf_nan=False)]
+UntilS = Annotated[float | None, Query(ge=0, le=_LATEST_S, allow_inf_nan=False)]
+AfterSeq = Annotated[int, Query(ge=0, le=2**53)]
+Seq = Annotated[int | None, Query(ge=0, le=2**53)]
+Lines = Annotated[int, Query(ge=0, le=LOG_LINES)]
+Name = Annotated[str, Query(max_length=200)]
+
+
+@router.get("/past-runs")
+async def list_past_runs(
+    services: ServicesOf,
+    text: Name = "",
+    kind: Annotated[RunKind, Query()] = "all",
+    since_s: FromS = 0.0,
+    until_s: UntilS = None,
+    offset: AfterSeq = 0,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+) -> PastRunsBody:
+    """List the runs of the journal that match, newest first: by words, by how they ended, by when they began."""
+    backend = services.backend
+    here = {run.id for run in backend.runs()}
+    wanted = PastRunQuery(text=text, kind=kind, since_s=since_s, until_s=math.inf if until_s is None else until_s)
+    runs = await asyncio.to_thread(backend.archive.runs)
+    page, total, counts = search_runs(runs, wanted, offset=offset, limit=limit)
+    bodies = tuple(
+        PastRunBody.model_validate(run).model_copy(
+            update={"recording": backend.archive.recording_of(run.id), "here": run.id in here}
+        )
+        for run in page
+    )
+    return PastRunsBody(runs=bodies, total=total, counts={name: counts[name] for name in RUN_KINDS})
+
+
+@router.get("/runs/{run_id}/past", responses=_PROBLEMS)
+async def open_past_run(run_id: str, services: ServicesOf, request: Request) -> OpenRunBody:
+    """Open a run of the journal: what it was, and the behavior as it was then."""
+    opened = await asyncio.to_thread(_of_journal, _pasts(request), run_id, fresh=True)
+    recording = services.backend.archive.recording_of(run_id)
+    return _opened_body(opened, recording=recording)
+
+
+@router.get("/runs/{run_id}/timeline", responses=_PROBLEMS)
+async def run_timeline(
+    run_id: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
+) -> Response:
+    """Return when each node of a run was active, and what is marked; only what is new after event `after`."""
+    return await _of_run(request, run_id, _timeline(from_s, until_s, after), fresh=True)
+
+
+@router.get("/runs/{run_id}/at", responses=_PROBLEMS)
+async def run_moment(
+    run_id: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
+) -> Response:
+    """Return a run as it was at a time or after an event; no content where that is the moment after event `known`."""
+    return await _of_run(request, run_id, _moment(time_s, seq, known, lines))
+
+
+@router.get("/runs/{run_id}/failure", responses=_PROBLEMS)
+async def run_failure(run_id: str, services: ServicesOf, request: Request) -> Response:
+    """Return how a run failed; null where it did not."""
+    try:
+        here = services.backend.run(run_id)
+        is_failed: bool | None = here.status == "errored" or (here.status == "finished" and not here.success)
+    except FlexcellError:
+        is_failed = None
+    return await _of_run(request, run_id, _failure(is_failed))
+
+
+@router.get("/runs/{run_id}/userdata", responses=_PROBLEMS)
+async def run_values(run_id: str, request: Request, seq: Seq = None) -> Response:
+    """Return the userdata of a run after an event."""
+    return await _of_run(request, run_id, lambda opened: opened.values(seq=seq))
+
+
+@router.get("/recordings")
+async def list_recordings(services: ServicesOf) -> list[RecordingBody]:
+    """List the recordings of the project, newest first."""
+    files = await asyncio.to_thread(services.backend.archive.recordings)
+    return [RecordingBody.model_validate(file) for file in files]
+
+
+@router.get("/recordings/{path:path}/timeline", responses=_PROBLEMS)
+async def recording_timeline(
+    path: str, request: Request, from_s: FromS = 0.0, until_s: UntilS = None, after: AfterSeq = 0
+) -> Response:
+    """Return the timeline of a recording."""
+    return await asyncio.to_thread(_of_recording, _pasts(request), path, _timeline(from_s, until_s, after))
+
+
+@router.get("/recordings/{path:path}/at", responses=_PROBLEMS)
+async def recording_moment(
+    path: str, request: Request, time_s: UntilS = None, seq: Seq = None, known: Seq = None, lines: Lines = LOG_LINES
+) -> Response:
+    """Return a moment of a recording."""
+    return await asyncio.to_thread(_of_recording, _pasts(request), path, _moment(time_s, seq, known, lines))
+
+
+@router.get("/recordings/{path:path}/failure", responses=_PROBLEMS)
+async def recording_failure(path: str, request: Request) -> Response:
+    """Return how the run of a recording failed; null where it did not."""
+    return await asyncio.to_thread(_of_recording, _pasts(request), path, _failure(None))
+
+
+@router.get("/recordings/{path:path}/userdata", responses=_PROBLEMS)
+async def recording_values(path: str, request: Request, seq: Seq = None) -> Response:
+    """Return the userdata of a recorded run after an event."""
+    return await asyncio.to_thread(_of_recording, _pasts(request), path, lambda opened: opened.values(seq=seq))
+
+
+@router.get("/recordings/{path:path}", responses=_PROBLEMS)
+async def open_recording(path: str, request: Request) -> OpenRunBody:
+    """Open a recording: what it holds, and the behavior that is inside it."""
+    opened = await asyncio.to_thread(_recording, _pasts(request), path)
+    return _opened_body(opened, recording=path)
+
+
+RunReader = Callable[[OpenRun], object]
+
+
+def _timeline(from_s: float, until_s: float | None, after: int) -> RunReader:
+    until = math.inf if until_s is None else until_s
+    return lambda opened: opened.timeline(from_s=from_s, until_s=until, after_seq=after)
+
+
+def _moment(time_s: float | None, seq: int | None, known: int | None, lines: int) -> RunReader:
+    return lambda opened: opened.at(time_s=time_s, seq=seq, known=known, lines=lines) or Response(status_code=204)
+
+
+def _failure(is_failed: bool | None) -> RunReader:
+    """Without `is_failed`, what is archived says whether it did."""
+
+    def look(opened: OpenRun) -> object:
+        archived = opened.archived
+        failed = archived.summary.failed if is_failed is None and archived is not None else bool(is_failed)
+        return opened.failure(is_failed=failed)
+
+    return look
+
+
+def _pasts(request: Request) -> OpenRunCache:
+    return request.app.state.pasts
+
+
+async def _of_run(request: Request, run_id: str, look: RunReader, *, fresh: bool = False) -> Response:
+    """Look at a run of this server, else at one of the journal; where that takes a while, the engine does not wait."""
+    pasts = _pasts(request)
+    found = pasts.of_server(run_id)
+    if found is None:
+        return await asyncio.to_thread(lambda: _answer(look(_of_journal(pasts, run_id, fresh=fresh))))
+    opened, further = found
+
+    def followed() -> Response:
+        opened.follow(further)
+        return _answer(look(opened))
+
+    return await asyncio.to_thread(followed)
+
+
+def _of_journal(pasts: OpenRunCache, run_id: str, *, fresh: bool) -> OpenRun:
+    # A moment of a run that is open already asks nothing of the journal.
+    if (fresh or not pasts.keeps(run_id)) and not any(run.id == run_id for run in pasts.archive.runs()):
+        raise HTTPException(404, f"there is no run {run_id[:80]!r}, neither of this server nor in its journal")
+    return pasts.of_journal(run_id, fresh=fresh)
+
+
+def _of_recording(pasts: OpenRunCache, path: str, look: RunReader) -> Response:
+    return _answer(look(_recording(pasts, path)))
+
+
+def _recording(pasts: OpenRunCache, path: str) -> OpenRun:
+    try:
+        pasts.archive.recording_file(path)
+    except RecordingError as error:
+        raise HTTPException(404, error.message) from error
+    return pasts.of_recording(path)
+
+
+def _answer(found: object) -> Response:
+    return found if isinstance(found, Response) else json_response(found)
+
+
+def _opened_body(opened: OpenRun, *, recording: str) -> OpenRunBody:
+    archived: ArchivedRun | None = opened.archived
+    if archived is None:
+        raise HTTPException(404, "there is no such run")
+    run = PastRunBody.model_validate(archived.summary).model_copy(update={"recording": recording})
+    return OpenRunBody(run=run, behavior=BehaviorBody.model_validate(archived.behavior))

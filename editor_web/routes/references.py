@@ -1,0 +1,97 @@
+"""What stands around a document: fixes of its findings, who refers to it, moving, restoring, older texts drawn."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+import msgspec
+from fastapi import APIRouter
+
+from editor_web.http_bodies.common_bodies import ErrorBody
+from editor_web.http_bodies.document_bodies import DifferenceBody, DocumentBody, DraftResultBody, TextBody
+from editor_web.http_bodies.reference_bodies import (
+    CompareBody,
+    DeletedDocumentBody,
+    FixBody,
+    FixesBody,
+    MoveBody,
+    MoveResultBody,
+    ReferrerBody,
+)
+from editor_web.routes.document_route import DocumentRoute
+from editor_web.routes.services import ServicesOf
+from engine.editing.document_diff import compare_texts
+from engine.editing.fixes import Fix, fixes_of
+from engine.editing.references import move_with_references, referrers
+
+router = APIRouter(
+    prefix="/api/v1",
+    tags=["documents"],
+    route_class=DocumentRoute,
+    responses={404: {"model": ErrorBody}, 422: {"model": ErrorBody}},
+)
+
+
+@router.get("/deleted_documents")
+def list_deleted(services: ServicesOf) -> list[DeletedDocumentBody]:
+    """List the documents that were deleted and can be restored, those deleted last first."""
+    return [DeletedDocumentBody(id=each, saved_at=version.saved_at_s) for each, version in services.documents.deleted()]
+
+
+@router.post("/documents/{document_id:path}/fixes")
+def get_fixes(document_id: str, body: TextBody, services: ServicesOf) -> list[FixesBody]:
+    """Return edits that would mend findings of a text, for those findings that have some."""
+    documents = services.documents
+    findings = documents.findings(document_id, body.text)
+    found = fixes_of(body.text, findings, file=document_id, context=documents.context(document_id))
+    return [
+        FixesBody(
+            code=finding.code, path=finding.path, line=finding.line, message=finding.message,
+            fixes=tuple(map(_fix, fixes)),
+        )
+        for finding, fixes in zip(findings, found, strict=True)
+        if fixes
+    ]  # fmt: skip
+
+
+@router.get("/documents/{document_id:path}/referrers")
+def list_referrers(document_id: str, services: ServicesOf) -> list[ReferrerBody]:
+    """List the behaviors that refer to a document."""
+    return [ReferrerBody.model_validate(each) for each in referrers(services.documents, document_id)]
+
+
+@router.post("/documents/{document_id:path}/move")
+def move_document(document_id: str, body: MoveBody, services: ServicesOf) -> MoveResultBody:
+    """Give a document another id, and write the references to it anew where that is asked for."""
+    moved = move_with_references(services.documents, document_id, body.id, follow=body.follow)
+    opened = moved.opened
+    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
+    document = DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
+    return MoveResultBody(document=document, followed=moved.followed, left=moved.left)
+
+
+@router.post("/documents/{document_id:path}/restore", status_code=201)
+def restore_document(document_id: str, services: ServicesOf) -> DocumentBody:
+    """Write a deleted document again, as it was last."""
+    opened = services.documents.restore(document_id)
+    drafted = DraftResultBody.model_validate(services.documents.examine(opened.id, opened.text))
+    return DocumentBody(id=opened.id, text=opened.text, saved_at=opened.saved_at_s, **dict(drafted))
+
+
+@router.get("/documents/{document_id:path}/versions/{digest}/drawn")
+def get_drawn_version(document_id: str, digest: str, services: ServicesOf) -> DraftResultBody:
+    """Draw a version as if it were the document's text now."""
+    documents = services.documents
+    return DraftResultBody.model_validate(documents.draw(document_id, documents.version(document_id, digest)))
+
+
+@router.post("/documents/{document_id:path}/compare")
+def compare(document_id: str, body: CompareBody, services: ServicesOf) -> DifferenceBody:
+    """Compare two texts of a document node by node."""
+    services.documents.file_of(document_id)
+    return DifferenceBody.model_validate(compare_texts(body.before, body.after, file=document_id))
+
+
+def _fix(fix: Fix) -> FixBody:
+    plain = cast("list[dict[str, Any]]", msgspec.to_builtins(fix.edits))
+    return FixBody(title=fix.title, edits=tuple(plain))

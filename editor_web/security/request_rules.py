@@ -1,0 +1,106 @@
+"""What every request and websocket must be like, whoever sends it: well formed, and from our own page."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from starlette.types import Scope
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+MAX_HEADERS = 64
+MAX_HEADER_BYTES = 16_384
+# Two of one of these would let one part of a server believe the first, and another the second.
+_SINGLE = frozenset(
+    {
+        "authorization",
+        "content-length",
+        "content-type",
+        "cookie",
+        "host",
+        "origin",
+        "sec-fetch-site",
+        "transfer-encoding",
+    }
+)
+# Control characters, and what is left of bytes that are no UTF-8: no name of ours has any.
+_ODD = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffd\ud800-\udfff]")
+_OWN_SITES = ("same-origin", "none")
+VIEW_PATH = "/cell/"
+_DATA_PATHS = ("/api/", VIEW_PATH)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RequestRefusal:
+    """Why a request is turned away, and how."""
+
+    status: int
+    message: str
+    headers: Mapping[str, str] = field(default_factory=dict[str, str])
+
+
+def is_unsafe(scope: Scope) -> bool:
+    """Say whether a request may change something: a websocket, or any method but those that only read."""
+    return scope["type"] == "websocket" or scope["method"] not in SAFE_METHODS
+
+
+def refuse_malformed(scope: Scope) -> RequestRefusal | None:
+    """Refuse a request with too many headers, with two of a header that is read once, or with an odd address."""
+    headers: Sequence[tuple[bytes, bytes]] = scope["headers"]
+    if len(headers) > MAX_HEADERS or sum(len(name) + len(value) for name, value in headers) > MAX_HEADER_BYTES:
+        return RequestRefusal(
+            status=431, message=f"a request has at most {MAX_HEADERS} headers of {MAX_HEADER_BYTES} bytes together"
+        )
+    counts = Counter(name.decode("latin-1").lower() for name, _ in headers)
+    twice = sorted(name for name in _SINGLE if counts[name] > 1)
+    if twice:
+        return RequestRefusal(status=400, message=f"the header {twice[0]} is there more than once")
+    if _ODD.search(scope["path"]):
+        return RequestRefusal(status=400, message="the address has control characters, or bytes that are no UTF-8")
+    return None
+
+
+def refuse_cross_site(
+    scope: Scope, headers: Mapping[str, str], *, has_token: bool, is_framed: bool = False
+) -> RequestRefusal | None:
+    """Refuse what a page of another host or port, or of another site, makes a browser send.
+
+    A page of another port of this machine counts as another site: browsers send it our cookie. What `is_framed`, the
+    3D view, is opened by the page of another port, ours; who else frames it is told by its policy that it must not.
+    """
+    origin = headers.get("origin")
+    if origin is None and is_unsafe(scope) and not has_token:
+        return RequestRefusal(status=403, message="the Origin header is missing")
+    if origin is not None and origin.lower() != f"http://{headers.get('host', '').lower()}":
+        return RequestRefusal(status=403, message="requests from other pages are refused")
+    if headers.get("sec-fetch-site", "none") not in _OWN_SITES and not (
+        _opens_page(scope, headers) or (is_framed and _opens_frame(scope, headers))
+    ):
+        return RequestRefusal(status=403, message="requests from other sites are refused")
+    return None
+
+
+def refuse_unproven_cookie(scope: Scope, headers: Mapping[str, str]) -> RequestRefusal | None:
+    """Refuse a request for data with nothing but a cookie: the browser must say that our own page asks."""
+    if "origin" in headers or "sec-fetch-site" in headers or not scope["path"].startswith(_DATA_PATHS):
+        return None
+    return RequestRefusal(
+        status=403, message="the browser does not say which page asks: update it, or send the token instead of a cookie"
+    )
+
+
+def _opens_page(scope: Scope, headers: Mapping[str, str]) -> bool:
+    """Say whether somebody follows a link to the page itself; it holds no data, which it asks for on its own."""
+    return _navigates(scope, headers, to="document") and not scope["path"].startswith(_DATA_PATHS)
+
+
+def _opens_frame(scope: Scope, headers: Mapping[str, str]) -> bool:
+    """Say whether a page of this machine opens another one inside of it."""
+    return headers.get("sec-fetch-site") == "same-site" and _navigates(scope, headers, to="iframe")
+
+
+def _navigates(scope: Scope, headers: Mapping[str, str], *, to: str) -> bool:
+    is_meant = headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == to
+    return is_meant and not is_unsafe(scope)

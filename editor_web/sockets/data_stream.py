@@ -1,0 +1,60 @@
+"""The websocket `/api/v1/data`: `DataSubscription` comes in; what is looked at goes out, and nothing else."""
+
+from __future__ import annotations
+
+import asyncio
+
+import msgspec
+from fastapi import APIRouter, WebSocket
+
+from editor_web.routes.services import services_of
+from editor_web.sockets.page_socket import PageDisconnected, read_message, send_message
+from editor_web.telemetry.data_frames import DataSubscription, IdleFrame
+from editor_web.telemetry.page_subscriptions import SAMPLE_S, PageSubscriptions
+
+router = APIRouter()
+PING_S = 5.0
+_decoder = msgspec.json.Decoder(DataSubscription)
+
+
+@router.websocket("/api/v1/data")
+async def data(socket: WebSocket) -> None:
+    """Serve one view of a page until it goes or falls behind."""
+    services = services_of(socket)
+    await socket.accept()
+    looking = PageSubscriptions(services.backend)
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(_receive(socket, looking), name="data-receive")
+            tasks.create_task(_sample(looking), name="data-sample")
+            tasks.create_task(_stream(socket, looking), name="data-stream")
+    except* PageDisconnected:
+        pass
+
+
+async def _receive(socket: WebSocket, looking: PageSubscriptions) -> None:
+    while True:
+        looking.look(await read_message(socket, _decoder, expected="a look message"))
+
+
+async def _sample(looking: PageSubscriptions) -> None:
+    """Goes on while a slow page is being sent to, so that what it misses is the oldest."""
+    while True:
+        await looking.begun.wait()
+        if looking.samples:
+            looking.sample()
+        await asyncio.sleep(SAMPLE_S)
+
+
+async def _stream(socket: WebSocket, looking: PageSubscriptions) -> None:
+    silent_s = 0.0
+    while True:
+        await looking.begun.wait()
+        frames = looking.due()
+        for frame in frames:
+            await send_message(socket, frame)
+        silent_s = 0.0 if frames else silent_s + SAMPLE_S
+        if silent_s > PING_S:
+            await send_message(socket, IdleFrame())
+            silent_s = 0.0
+        await asyncio.sleep(SAMPLE_S)

@@ -1,0 +1,116 @@
+"""The websocket `/api/v1/live`: `WatchRun` comes in, snapshots and deltas go out, at most 20 a second."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+
+import msgspec
+from fastapi import APIRouter, WebSocket
+
+from editor_web.cell_view import CellView
+from editor_web.contracts.run_operations import OperatorAttachment, RunOperations
+from editor_web.live.hub import LiveClient
+from editor_web.live.live_frames import PROTOCOL_VERSION, Hello, OperateRun, Ping, Request, ShowLayers, WatchRun
+from editor_web.routes.services import role_of, services_of
+from editor_web.security.authentication import OPERATOR
+from editor_web.sockets.page_socket import PageDisconnected, disconnect_page, read_message, send_message
+from engine.errors import FlexcellError
+
+router = APIRouter()
+PERIOD_S = 0.05
+PING_S = 5.0
+SILENCE_S = 12.0
+"""A page answers each ping; one that is silent for longer is out of reach, whatever its socket says."""
+_decoder: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
+_log = logging.getLogger("flexcell.live")
+
+
+@router.websocket("/api/v1/live")
+async def live(socket: WebSocket) -> None:
+    """Serve one page until it goes, falls behind, or is silent for `SILENCE_S`."""
+    services = services_of(socket)
+    await socket.accept()
+    client = services.hub.join()
+    role = role_of(socket)
+    operator = _Operator(services.backend, allowed=role == OPERATOR)
+    hello = Hello(version=PROTOCOL_VERSION, epoch=services.hub.epoch, role=role, server_time_s=time.time())
+    try:
+        await send_message(socket, hello)
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(_receive(socket, client, operator, services.cell_view), name="live-receive")
+            tasks.create_task(_stream(socket, client), name="live-stream")
+    except* PageDisconnected:
+        pass
+    finally:
+        operator.lose()
+        services.hub.leave(client)
+
+
+class _Operator:
+    """What run the page of one connection operates."""
+
+    def __init__(self, operation: RunOperations, *, allowed: bool) -> None:
+        self._operation = operation
+        self._allowed = allowed
+        self._attached: OperatorAttachment | None = None
+
+    def operate(self, run_id: str) -> None:
+        """Leave the run before; operate this one where there is one that is under way."""
+        if self._attached is not None:
+            self._attached.detach()
+            self._attached = None
+        if not run_id or not self._allowed:
+            return
+        try:
+            self._attached = self._operation.operate(run_id)
+        except FlexcellError as error:
+            # The page learns from the run's events and control whether it operates it; it may be over by now.
+            _log.info("a page cannot operate a run: %s", error)
+
+    def lose(self) -> None:
+        """The connection has ended, for whatever reason."""
+        if self._attached is not None:
+            self._attached.lose()
+            self._attached = None
+
+
+async def _receive(socket: WebSocket, client: LiveClient, operator: _Operator, view: CellView | None) -> None:
+    while True:
+        try:
+            async with asyncio.timeout(SILENCE_S):
+                request = await read_message(socket, _decoder, expected="a watch or pong message")
+        except TimeoutError as error:
+            _log.warning("a page was silent for %.0f s; it counts as gone", SILENCE_S)
+            await disconnect_page(socket, "silent")
+            raise PageDisconnected from error
+        match request:
+            case WatchRun():
+                client.watch(request.run)
+            case OperateRun():
+                operator.operate(request.run)
+            case ShowLayers():
+                if view is not None:
+                    view.show(request.page, frozenset(request.groups))
+            case _:
+                pass
+
+
+async def _stream(socket: WebSocket, client: LiveClient) -> None:
+    clock = asyncio.get_running_loop()
+    ping_s = clock.time() + PING_S
+    while True:
+        if clock.time() >= ping_s:
+            await send_message(socket, Ping(server_time_s=time.time()))
+            ping_s = clock.time() + PING_S
+        try:
+            async with asyncio.timeout_at(ping_s):
+                await client.dirty.wait()
+        except TimeoutError:
+            continue
+        frame = client.frame()
+        if frame is not None:
+            await send_message(socket, frame)
+        # The frame rate's limit; what happens meanwhile is coalesced.
+        await asyncio.sleep(PERIOD_S)

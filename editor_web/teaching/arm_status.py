@@ -1,0 +1,113 @@
+"""The arms as the page for teaching shows them: what each is, and where it is just now."""
+
+from __future__ import annotations
+
+import json
+
+from editor_web.contracts.backend import Backend
+from editor_web.teaching.teaching_messages import ArmInfo, ArmInfoFrame, ArmLive, ToolLive
+from engine.errors import FlexcellError
+from engine.messages import FramePoses, GripperState, HandState, JointState, MagnetState, RobotDescription
+from engine.skills.arm_control import ArmStatus
+
+_TOOLS = (GripperState, HandState, MagnetState)
+_STILL_RAD = 1e-4
+_DIGITS = 6
+
+
+class ArmStatusReader:
+    """Looks at the arms of one cell for one page."""
+
+    def __init__(self, backend: Backend) -> None:
+        self._backend = backend
+        self._tools: dict[str, str] = {}
+        self._told: dict[str, ArmLive] = {}
+        self._names: tuple[str, ...] = ()
+
+    async def arms(self) -> ArmInfoFrame:
+        """Return the arms on the bus, by name."""
+        rows = await self._backend.bus.listing()
+        found = {row.name.rpartition("/")[0]: row.name for row in rows if row.type == RobotDescription.__name__}
+        skills = [row.name for row in rows if row.kind in ("action", "service")]
+        kinds = {kind.__name__ for kind in _TOOLS}
+        cards: list[ArmInfo] = []
+        for name, topic in sorted(found.items()):
+            said = self._backend.latest(topic)
+            if not isinstance(said, RobotDescription):
+                continue
+            start = f"{name}/"
+            tool = next((row.name for row in rows if row.name.startswith(start) and row.type in kinds), "")
+            if tool:
+                self._tools[name] = tool
+            cards.append(
+                ArmInfo(
+                    name=name,
+                    model=said.model,
+                    joint_names=said.joint_names,
+                    lower_rad=said.lower_rad,
+                    upper_rad=said.upper_rad,
+                    velocity_rad_s=said.velocity_rad_s,
+                    tool=said.tool,
+                    skills=tuple(sorted(each.removeprefix(start) for each in skills if each.startswith(start))),
+                )
+            )
+        self._names = tuple(card.name for card in cards)
+        frames = self._backend.latest("cell/frames")
+        return ArmInfoFrame(
+            arms=tuple(cards),
+            can_push="cell/push_body" in skills,
+            frames=tuple(sorted(frames.names)) if isinstance(frames, FramePoses) else (),
+        )
+
+    async def changed(self) -> dict[str, ArmLive]:
+        """Return the arms that are another than when asked last."""
+        news: dict[str, ArmLive] = {}
+        for name in self._names:
+            now = await self._look(name)
+            if now is not None and now != self._told.get(name):
+                news[name] = self._told[name] = now
+        return news
+
+    async def _look(self, name: str) -> ArmLive | None:
+        status = self._backend.latest(f"{name}/status")
+        if not isinstance(status, ArmStatus):
+            return None
+        before = self._told.get(name)
+        state = self._backend.latest(f"{name}/joint_state")
+        joints = tuple(round(q, _DIGITS) for q in state.position_rad) if isinstance(state, JointState) else ()
+        if before is not None and _still(before.joints, joints):
+            # A sensor trembles; that is no news.
+            joints, pose = before.joints, before.tool_pose
+        else:
+            pose = await self._pose(name)
+        return ArmLive(
+            mode=status.mode,
+            activity=status.activity,
+            error=status.error,
+            joints=joints,
+            tool_pose=pose,
+            tool=self._tool(name),
+        )
+
+    async def _pose(self, name: str) -> tuple[float, ...]:
+        try:
+            pose = json.loads(await self._backend.bus.call(f"{name}/forward_kinematics", {}))
+        except FlexcellError:
+            # An arm that is not connected has no pose; its mode says so.
+            return ()
+        return tuple(round(value, _DIGITS) for value in (*pose["xyz"], *pose["xyzw"]))
+
+    def _tool(self, name: str) -> ToolLive | None:
+        match self._backend.latest(self._tools[name]) if name in self._tools else None:
+            case GripperState() as state:
+                return ToolLive(width_m=round(state.width_m, 4), held=state.held)
+            case HandState() as state:
+                return ToolLive(closed_percent=round(state.closed_percent, 1), held=state.held)
+            case MagnetState() as state:
+                return ToolLive(held=state.held)
+            case _:
+                return None
+
+
+def _still(before: tuple[float, ...], now: tuple[float, ...]) -> bool:
+    return len(before) == len(now) and all(abs(a - b) < _STILL_RAD for a, b in zip(before, now, strict=True))

@@ -1,0 +1,13 @@
+"""Why a goal did not succeed, for the page."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from engine.bus.action import GoalEnd
+from engine.cause_chain import describe_cause
+
+
+def goal_failure_text(end: GoalEnd[Any]) -> str:
+    """Return the cause in one line; the status where there is none."""
+    return describe_cause(end.cause) if end.cause is not None else end.status.value

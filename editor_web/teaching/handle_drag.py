@@ -1,0 +1,219 @@
+"""An arm by its handle in the 3D view: its tool follows the handle, or is pushed towards it, while somebody holds it.
+
+Holding takes two things: that viser says so, and that the page says so again every few milliseconds. When either
+ends, however that comes, the arm comes to rest.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from editor_web.cell_view import CellView, DragHandle, HandlePull
+from editor_web.cell_view.rendering.transforms import WorldPose, poses_by_frame
+from editor_web.contracts.backend import Backend
+from editor_web.teaching.jogging import Jogger
+from editor_web.teaching.teaching_messages import JogStatus, PushToolBody, RefusedFrame, StartJog
+from editor_web.teaching.tool_push import push
+from engine.errors import FlexcellError
+from engine.messages import FramePoses, RobotDescription
+from engine.messages.pose_algebra import rotation_vector_between
+
+PERIOD_S = 0.05
+SILENCE_S = 0.2
+"""Longer than this unheard, the page does not hold any more."""
+MOST_M_S, MOST_RAD_S, GAIN_1_S = 0.1, 0.5, 2.0
+NEAR_M, NEAR_RAD = 0.001, 0.01
+MOST_N, SPRING_N_M, PUSH_S = 40.0, 200.0, 0.15
+
+HandleMode = Literal["move", "push"]
+Vector = NDArray[np.float64]
+
+
+class ShowHandle(msgspec.Struct, frozen=True, kw_only=True, tag="take", tag_field="k"):
+    """From the page: show the handle of this arm, none where empty; it moves the tool, or pushes at a floating arm."""
+
+    arm: Annotated[str, msgspec.Meta(max_length=200)] = ""
+    way: HandleMode = "move"
+
+
+class DragKeepAlive(msgspec.Struct, frozen=True, kw_only=True, tag="held", tag_field="k"):
+    """From the page, every 50 ms while the mouse is down on its 3D view."""
+
+
+class HandleStatus(msgspec.Struct, frozen=True, kw_only=True, tag="gripped", tag_field="k"):
+    """To the page: the arm whose handle it has, empty for none, and whether somebody pulls at it."""
+
+    arm: str
+    way: HandleMode
+    pulled: bool
+
+
+Tell = Callable[[HandleStatus | RefusedFrame], None]
+
+
+class HandleDrag:
+    """What one page holds in its 3D view; on the event loop.
+
+    Args:
+        backend: The engine.
+        view: The 3D view.
+        page: What the page calls itself there.
+        joggers: Who jogs which arm, of all pages.
+        tell: Takes what the page is to know.
+    """
+
+    def __init__(self, backend: Backend, view: CellView, page: str, *, joggers: dict[str, Jogger], tell: Tell) -> None:
+        self._backend = backend
+        self._view = view
+        self._page = page
+        self._tell = tell
+        self._jogger = Jogger(backend.bus, taken=joggers, tell=self._on_jog)
+        self._loop = asyncio.get_running_loop()
+        self._take = ShowHandle()
+        self._handle: DragHandle | None = None
+        self._target: WorldPose | None = None
+        self._held_s = -math.inf
+        self._is_refused = False
+        self._task: asyncio.Task[None] | None = None
+
+    async def take(self, take: ShowHandle) -> None:
+        """Show the handle of an arm, or none."""
+        await self._let_go()
+        self._take = take
+        description = self._backend.latest(f"{take.arm}/description") if take.arm else None
+        if isinstance(description, RobotDescription):
+            turns = take.way == "move"
+            self._handle = DragHandle(frame=description.tool_frame, turns=turns, pulled=self._on_pull(take))
+            self._view.give_handle(self._page, self._handle)
+        else:
+            self._take_away()
+            if take.arm:
+                self._refuse("there is no such arm", "choose one of the cell's")
+            self._take = ShowHandle()
+        self._told()
+
+    def held(self) -> None:
+        """The page says that the mouse is down."""
+        self._held_s = self._loop.time()
+
+    async def close(self) -> None:
+        """Bring the arm to rest and take the handle away."""
+        await self._let_go()
+        self._take_away()
+
+    def _take_away(self) -> None:
+        # By now the page may have a connection anew, with a handle of its own.
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            self._view.take_handle(self._page, handle)
+
+    async def _let_go(self) -> None:
+        # Nobody listens any more to the handle, which can be pulled at until it has gone from the page.
+        self._take = ShowHandle()
+        self._target = None
+        task, self._task = self._task, None
+        if task is not None:
+            task.cancel()
+            await asyncio.wait({task})
+        await self._jogger.rest()
+
+    def _on_pull(self, take: ShowHandle) -> Callable[[HandlePull], None]:
+        def pulled(pull: HandlePull) -> None:
+            # On viser's thread.
+            self._loop.call_soon_threadsafe(self._pulled, take, pull)
+
+        return pulled
+
+    def _pulled(self, take: ShowHandle, pull: HandlePull) -> None:
+        if take is not self._take:
+            return
+        if pull.phase == "end":
+            self._target = None
+            return
+        self._target = pull.pose
+        if pull.phase == "start" and (self._task is None or self._task.done()):
+            self._task = asyncio.create_task(self._follow(take), name=f"handle of {take.arm}")
+
+    async def _follow(self, take: ShowHandle) -> None:
+        self._is_refused = False
+        self._told()
+        try:
+            while self._target is not None and not self._is_refused:
+                if self._loop.time() - self._held_s < SILENCE_S:
+                    await self._step(take, self._target)
+                else:
+                    # It goes on where the page is heard again while the mouse is still down.
+                    await self._jogger.rest()
+                await asyncio.sleep(PERIOD_S)
+        except FlexcellError as error:
+            self._refuse(error.message, error.hint or "")
+        finally:
+            self._target = None
+            await self._rest(take)
+            self._told()
+
+    async def _step(self, take: ShowHandle, target: WorldPose) -> None:
+        now = self._now(take.arm)
+        if take.way == "push":
+            await self._push(take.arm, _force(now, target))
+            return
+        if not self._jogger.arm:
+            await self._jogger.begin(StartJog(arm=take.arm, space="tool", frame="world"))
+        await self._jogger.go(_velocity(now, target))
+
+    async def _rest(self, take: ShowHandle) -> None:
+        if take.way == "move":
+            await self._jogger.rest()
+            return
+        try:
+            await self._push(take.arm, (0.0, 0.0, 0.0))
+        except FlexcellError:
+            return  # it holds itself, or its world is gone; the last push ends by itself
+
+    async def _push(self, arm: str, force_n: tuple[float, float, float]) -> None:
+        await push(self._backend, PushToolBody(arm=arm, force_n=force_n, duration_s=PUSH_S))
+
+    def _now(self, arm: str) -> WorldPose:
+        description, poses = self._backend.latest(f"{arm}/description"), self._backend.latest("cell/frames")
+        if isinstance(description, RobotDescription) and isinstance(poses, FramePoses):
+            now = poses_by_frame(poses).get(description.tool_frame)
+            if now is not None:
+                return now
+        raise FlexcellError("the pose of the tool is unknown", where=arm)
+
+    def _on_jog(self, news: JogStatus | RefusedFrame) -> None:
+        if isinstance(news, RefusedFrame):
+            self._is_refused = True
+            self._tell(news)
+
+    def _refuse(self, message: str, hint: str) -> None:
+        self._tell(RefusedFrame(what="jog", message=message, hint=hint))
+
+    def _told(self) -> None:
+        self._tell(HandleStatus(arm=self._take.arm, way=self._take.way, pulled=self._target is not None))
+
+
+def _velocity(now: WorldPose, target: WorldPose) -> tuple[float, ...]:
+    """Return how fast the tool goes towards the handle, m/s and rad/s in the world."""
+    way = np.subtract(target.xyz, now.xyz)
+    turn = np.array(rotation_vector_between(now.xyzw, target.xyzw))
+    linear = _limited(way * GAIN_1_S, MOST_M_S) if np.linalg.norm(way) > NEAR_M else np.zeros(3)
+    angular = _limited(turn * GAIN_1_S, MOST_RAD_S) if np.linalg.norm(turn) > NEAR_RAD else np.zeros(3)
+    return tuple(float(value) for value in (*linear, *angular))
+
+
+def _force(now: WorldPose, target: WorldPose) -> tuple[float, float, float]:
+    x, y, z = _limited(np.subtract(target.xyz, now.xyz) * SPRING_N_M, MOST_N)
+    return (float(x), float(y), float(z))
+
+
+def _limited(vector: Vector, most: float) -> Vector:
+    length = float(np.linalg.norm(vector))
+    return vector if length <= most else vector * (most / length)

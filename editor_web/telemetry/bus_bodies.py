@@ -1,0 +1,74 @@
+"""What the page gets and sends of the skill bus: the board of what there is, forms, numbers, the course of a goal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+from pydantic import Field
+
+from editor_web.http_bodies.common_bodies import HttpBody
+from editor_web.telemetry.plot_signals import SignalField
+from engine.bus.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
+from engine.event import Cause
+
+
+class BusListing(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything on the bus but its traffic."""
+
+    shape: str
+    topics: tuple[TopicInfo, ...]
+    skills: tuple[SkillInfo, ...]
+    parameters: tuple[ParameterInfo, ...]
+
+
+class BusForm(msgspec.Struct, frozen=True, kw_only=True):
+    """The JSON Schema of a request or message."""
+
+    name: str
+    schema: dict[str, Any]
+
+
+class TopicFields(msgspec.Struct, frozen=True, kw_only=True):
+    """The numbers of the messages of one topic."""
+
+    topic: str
+    type: str
+    fields: tuple[SignalField, ...]
+
+
+class BusFields(msgspec.Struct, frozen=True, kw_only=True):
+    """The numbers of all topics."""
+
+    topics: tuple[TopicFields, ...]
+
+
+class GoalSentLine(msgspec.Struct, frozen=True, kw_only=True, tag="sent", tag_field="k"):
+    """First line: the goal's id, by which it is cancelled."""
+
+    goal: str
+
+
+class GoalProgressLine(msgspec.Struct, frozen=True, kw_only=True, tag="course", tag_field="k"):
+    """Where it stands, with the newest feedback; at most five a second."""
+
+    status: str
+    feedback: object = None
+
+
+class GoalEndLine(msgspec.Struct, frozen=True, kw_only=True, tag="end", tag_field="k"):
+    """Last line: how it ended; the device is at rest."""
+
+    status: str
+    result: object = None
+    cause: Cause | None = None
+
+
+GoalStreamLine = GoalSentLine | GoalProgressLine | GoalEndLine
+
+
+class BusParameterBody(HttpBody):
+    """A new value of a parameter."""
+
+    name: str = Field(max_length=200)
+    value: object

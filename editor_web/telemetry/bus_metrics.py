@@ -1,0 +1,70 @@
+"""Rates, ages, leases and goals of a bus, measured by looking at its counters once in a while."""
+
+from __future__ import annotations
+
+import zlib
+from collections import deque
+
+from editor_web.telemetry.data_frames import BusMetricsFrame, GoalMetrics, LeaseMetrics, TopicMetrics
+from engine.bus.bus_inspector import BusInspector, GoalInfo, TopicStatistics
+from engine.bus.lease import Lease
+
+WINDOW_S = 4.0
+
+
+class BusMetrics:
+    """Measures between its own looks; costs publishers nothing."""
+
+    def __init__(self, desk: BusInspector) -> None:
+        self._desk = desk
+        self._looks: deque[tuple[float, dict[str, TopicStatistics]]] = deque()
+
+    def frame(self) -> BusMetricsFrame:
+        """Look once more."""
+        now_s, traffic = self._desk.now_s, self._desk.traffic()
+        while len(self._looks) > 1 and now_s - self._looks[0][0] > WINDOW_S:
+            self._looks.popleft()
+        then_s, then = self._looks[0] if self._looks else (now_s, {})
+        self._looks.append((now_s, traffic))
+        goals = self._desk.goals()
+        return BusMetricsFrame(
+            shape=bus_fingerprint(self._desk),
+            topics={
+                name: _line(each, then.get(name), now_s=now_s, then_s=then_s) for name, each in sorted(traffic.items())
+            },
+            leases=tuple(_lease(each, goals, now_s) for each in self._desk.leases()),
+            goals=tuple(
+                GoalMetrics(id=goal.id, address=goal.address, run=goal.run, node=goal.node, status=goal.status)
+                for goal in goals
+            ),
+        )
+
+
+def bus_fingerprint(desk: BusInspector) -> str:
+    """Return a word that changes with the topics, skills and parameters that there are, and with parameters' values."""
+    return f"{zlib.crc32(chr(10).join(desk.shape()).encode()):08x}"
+
+
+def _line(now: TopicStatistics, then: TopicStatistics | None, *, now_s: float, then_s: float) -> TopicMetrics:
+    counted = now.count - then.count if then is not None else 0
+    return TopicMetrics(
+        rate_hz=counted / (now_s - then_s) if now_s > then_s else 0.0,
+        age_s=max(0.0, now_s - now.latest_at_s) if now.latest_at_s is not None else None,
+        on_demand=now.on_demand,
+        subscribers=now.subscribers,
+    )
+
+
+def _lease(lease: Lease, goals: tuple[GoalInfo, ...], now_s: float) -> LeaseMetrics:
+    mine = (
+        goal.id
+        for goal in goals
+        if (goal.run, goal.node) == (lease.run, lease.branch) and goal.address.rpartition("/")[0] == lease.resource
+    )
+    return LeaseMetrics(
+        resource=lease.resource,
+        run=lease.run,
+        node=lease.branch,
+        goal=next(mine, ""),
+        held_s=max(0.0, now_s - lease.since_s),
+    )

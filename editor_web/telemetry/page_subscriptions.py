@@ -1,0 +1,190 @@
+"""What one page looks at beside the run: traffic, one topic, curves, userdata; each sampled only while it is looked at.
+
+Nothing is subscribed: publishers and the engine do the same whether a page looks or not. A page that
+takes its frames too slowly loses the oldest samples, and the newest of everything else wins.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from collections.abc import Callable
+
+from editor_web.contracts.backend import Backend
+from editor_web.telemetry.bus_metrics import BusMetrics
+from editor_web.telemetry.data_frames import (
+    MAX_CURVES,
+    DataFrame,
+    DataSubscription,
+    GoalProgress,
+    GoalsFrame,
+    MessageFrame,
+    SamplesFrame,
+    UserdataFrame,
+    UserdataScope,
+    UserdataValue,
+)
+from editor_web.telemetry.goal_progress import progress_by_node
+from editor_web.telemetry.plot_signals import Path, number_at, path_of
+from editor_web.telemetry.truncate import truncate_value
+from engine.errors import FlexcellError
+from engine.runtime.history.userdata_history import ScopeView, UserdataHistory
+
+SAMPLE_S = 0.05
+MESSAGE_S = 0.2
+USERDATA_S = 0.2
+GOALS_S = 0.2
+TRAFFIC_S = 1.0
+KEPT_ROWS = 100
+"""Samples that wait for a slow page: five seconds."""
+_VALUE_LEAVES = 400
+_NOTHING = DataSubscription()
+
+
+class PageSubscriptions:
+    """What one page looks at; `due` takes what it is to be sent now.
+
+    Args:
+        backend: The engine.
+        unix_s: The server's clock.
+    """
+
+    def __init__(self, backend: Backend, *, unix_s: Callable[[], float] = time.time) -> None:
+        self._backend = backend
+        self._desk = backend.desk
+        self._unix_s = unix_s
+        self._look = _NOTHING
+        self._next_s: dict[str, float] = {}
+        self._meter = BusMetrics(self._desk)
+        self._curves: tuple[tuple[str, Path], ...] = ()
+        self._rows: deque[tuple[float, tuple[float | None, ...]]] = deque()
+        self._dropped = 0
+        self._seen: dict[str, tuple[str, int]] = {}
+        self._book: UserdataHistory | None = None
+        self._goals: dict[str, GoalProgress] | None = None
+        self.begun = asyncio.Event()
+        """Set while the page looks at something."""
+
+    @property
+    def samples(self) -> bool:
+        """Whether curves are drawn."""
+        return bool(self._curves)
+
+    def look(self, look: DataSubscription) -> None:
+        """Look at something else from now on."""
+        before, self._look = self._look, look
+        self._next_s = {}
+        self._curves = tuple(_curve(field) for field in look.fields[:MAX_CURVES])
+        if (look.number, look.fields) != (before.number, before.fields):
+            self._rows.clear()
+            self._dropped = 0
+        self._seen = {}
+        self._book = None
+        self._goals = None
+        if look.traffic or look.topic or look.fields or look.run or look.goals:
+            self.begun.set()
+        else:
+            self.begun.clear()
+
+    def sample(self) -> None:
+        """Read the present values of all curves; the oldest row gives way where too many wait."""
+        messages: dict[str, object] = {}
+        for topic, _ in self._curves:
+            if topic not in messages:
+                messages[topic] = self._desk.latest(topic)
+        if len(self._rows) >= KEPT_ROWS:
+            self._rows.popleft()
+            self._dropped += 1
+        self._rows.append((self._unix_s(), tuple(number_at(messages[topic], path) for topic, path in self._curves)))
+
+    def due(self) -> list[DataFrame]:
+        """Return the frames that the page is to get now."""
+        frames: list[DataFrame] = []
+        if self._rows:
+            frames.append(self._samples())
+        if self._look.topic and self._is_time("topic", MESSAGE_S):
+            frames += self._message(self._look.topic)
+        if self._look.run and self._is_time("run", USERDATA_S):
+            frames += self._userdata(self._look.run)
+        if self._look.goals and self._is_time("goals", GOALS_S):
+            frames += self._goals_of(self._look.goals)
+        if self._look.traffic and self._is_time("traffic", TRAFFIC_S):
+            frames.append(self._meter.frame())
+        return frames
+
+    def _is_time(self, what: str, period_s: float) -> bool:
+        now_s = self._desk.now_s
+        if now_s < self._next_s.get(what, 0.0):
+            return False
+        self._next_s[what] = now_s + period_s
+        return True
+
+    def _samples(self) -> SamplesFrame:
+        rows, self._rows = self._rows, deque()
+        dropped, self._dropped = self._dropped, 0
+        return SamplesFrame(
+            number=self._look.number,
+            times_s=tuple(at_s for at_s, _ in rows),
+            rows=tuple(row for _, row in rows),
+            dropped=dropped,
+        )
+
+    def _message(self, name: str) -> list[DataFrame]:
+        try:
+            topic = self._desk.topic(name)
+        except FlexcellError as error:
+            return self._once("topic", (name, -1), MessageFrame(topic=name, at_s=self._unix_s(), problem=error.message))
+        latest = self._desk.latest(name)
+        if latest is None:
+            told = MessageFrame(topic=name, at_s=self._unix_s(), problem="nothing was published on it yet")
+            return self._once("topic", (name, 0), told)
+        if not topic.is_made_on_demand and self._seen.get("topic") == (name, topic.count):
+            return []
+        self._seen["topic"] = (name, topic.count)
+        return [MessageFrame(topic=name, at_s=self._unix_s(), value=truncate_value(latest))]
+
+    def _once(self, what: str, seen: tuple[str, int], frame: DataFrame) -> list[DataFrame]:
+        if self._seen.get(what) == seen:
+            return []
+        self._seen[what] = seen
+        return [frame]
+
+    def _userdata(self, run: str) -> list[DataFrame]:
+        first = self._book is None
+        try:
+            book = self._book = self._book or self._backend.userdata(run)
+            book.read(self._backend.events(run, after=book.seq))
+        except FlexcellError as error:
+            return self._once("run", (run, -1), UserdataFrame(run=run, first=True, scopes={}, problem=error.message))
+        changes = book.changes()
+        if not changes and not first:
+            return []
+        scopes = {path: userdata_scope(scope) if scope is not None else None for path, scope in changes.items()}
+        return [UserdataFrame(run=run, first=first, scopes=scopes)]
+
+    def _goals_of(self, run: str) -> list[DataFrame]:
+        before, self._goals = self._goals, progress_by_node(self._desk.goals(run))
+        return [] if self._goals == before else [GoalsFrame(run=run, goals=self._goals)]
+
+
+def _curve(field: str) -> tuple[str, Path]:
+    topic, _, path = field.rpartition(":")
+    return topic, path_of(path)
+
+
+def userdata_scope(scope: ScopeView) -> UserdataScope:
+    """Return the values of a container as a page is sent them, large ones cut."""
+    return UserdataScope(
+        is_open=scope.is_open,
+        since_s=scope.since_s,
+        values={
+            key: UserdataValue(
+                value=truncate_value(entry.value, max_leaves=_VALUE_LEAVES),
+                by=entry.by,
+                at_s=entry.at_s,
+                writes=entry.writes,
+            )
+            for key, entry in scope.values.items()
+        },
+    )

@@ -1,0 +1,214 @@
+"""Connections on which what the peer owes comes in time, or which are closed; those that owe make room for others."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import OrderedDict
+from typing import Any
+
+import h11
+from uvicorn._types import ASGISendEvent
+from uvicorn.config import Config
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from uvicorn.server import ServerState
+
+from editor_web.transport import request_limits as bodies
+
+HEAD_LIMIT_S = 10.0
+WRITE_LIMIT_S = 30.0
+"""A peer that takes nothing of an answer for longer is gone."""
+BODY_GRACE_S = 1.0
+_CLOSE_GRACE_S = 1.0
+_BAD_HANDSHAKE = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
+_INVALID_TEXT = 1007
+
+
+class PendingConnections:
+    """The connections whose peer owes a request, or the rest of one; the longest waiting first."""
+
+    def __init__(self) -> None:
+        self._waiting: OrderedDict[TimedConnection, None] = OrderedDict()
+
+    def add(self, connection: TimedConnection) -> None:
+        """Note that a connection waits for its peer, unless it is noted already."""
+        self._waiting.setdefault(connection)
+
+    def discard(self, connection: TimedConnection) -> None:
+        """Note that a connection waits no longer."""
+        self._waiting.pop(connection, None)
+
+    def close_longest(self) -> bool:
+        """Close the connection that waits longest; False where none waits."""
+        if not self._waiting:
+            return False
+        connection, _ = self._waiting.popitem(last=False)
+        connection.transport.abort()
+        return True
+
+
+class TimedConnection(H11Protocol):
+    """uvicorn's HTTP connection, which itself would wait for the rest of a request for ever.
+
+    The head has to be there after `HEAD_LIMIT_S`, the body `bodies.BODY_LIMIT_S` after it, whether or not
+    anybody reads it: a refused request has one too.
+    """
+
+    _timer: asyncio.TimerHandle | None = None
+    _write_timer: asyncio.TimerHandle | None = None
+    _timed_state: type[h11.IDLE] | type[h11.SEND_BODY] | None = None
+
+    def __init__(
+        self,
+        config: Config,
+        server_state: ServerState,
+        app_state: dict[str, Any],
+        _loop: asyncio.AbstractEventLoop | None = None,
+        *,
+        waiting: PendingConnections,
+    ) -> None:
+        super().__init__(config, server_state, app_state, _loop)
+        self._waiting = waiting
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
+        """Begin to wait for the first request."""
+        if isinstance(transport, asyncio.Transport):
+            super().connection_made(transport)
+        self._follow()
+
+    def data_received(self, data: bytes) -> None:
+        """Take what came; each part of a request is timed from its first byte on."""
+        super().data_received(data)
+        self._follow()
+
+    def on_response_complete(self) -> None:
+        """Wait for the next request, or for the rest of one that was answered before it was read."""
+        super().on_response_complete()
+        self._follow()
+
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """Hand the transport over to a websocket."""
+        super().handle_websocket_upgrade(event)
+        self._release()
+
+    def pause_writing(self) -> None:
+        """Wait for a peer that takes nothing, but not for ever."""
+        super().pause_writing()
+        self._waiting.add(self)
+        self._write_timer = self.loop.call_later(WRITE_LIMIT_S, self.transport.abort)
+
+    def resume_writing(self) -> None:
+        """Go on answering."""
+        self._stop_write_timer()
+        super().resume_writing()
+        self._follow()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Stop waiting."""
+        self._release()
+        self._stop_write_timer()
+        super().connection_lost(exc)
+
+    def _follow(self) -> None:
+        """Time what the peer owes now."""
+        if self.transport.get_protocol() is not self or self.transport.is_closing():
+            self._release()
+            return
+        state = self.conn.their_state
+        owed = state if state in (h11.IDLE, h11.SEND_BODY) else None
+        if owed is None and self._is_answering:
+            self._waiting.discard(self)
+        else:
+            self._waiting.add(self)
+        if owed is not self._timed_state:
+            self._stop_timer()
+            self._timed_state = owed
+            if owed is not None:
+                limit_s = HEAD_LIMIT_S if owed is h11.IDLE else bodies.BODY_LIMIT_S + BODY_GRACE_S
+                self._timer = self.loop.call_later(limit_s, self.transport.close)
+
+    @property
+    def _is_answering(self) -> bool:
+        return self.cycle is not None and not self.cycle.response_complete  # pyright: ignore[reportUnnecessaryComparison] # None before the first
+
+    def _release(self) -> None:
+        self._waiting.discard(self)
+        self._stop_timer()
+        self._timed_state = None
+
+    def _stop_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _stop_write_timer(self) -> None:
+        if self._write_timer is not None:
+            self._write_timer.cancel()
+            self._write_timer = None
+
+
+class PageWebSocket(WebSocketsSansIOProtocol):
+    """uvicorn's websocket, which itself waits for ever for a peer that takes nothing, and logs all it sends wrong."""
+
+    _abort: asyncio.TimerHandle | None = None
+
+    def send_receive_event_to_app(self) -> None:
+        """Pass a message on; text that is no UTF-8 ends the connection."""
+        if self.curr_msg_data_type == "text" and not self.close_sent:
+            try:
+                b"".join(self.frames).decode()
+            except UnicodeDecodeError:
+                self.frames = []
+                self.conn.fail(_INVALID_TEXT, "text that is no UTF-8")
+                self.handle_parser_exception()
+                return
+        super().send_receive_event_to_app()
+
+    def data_received(self, data: bytes) -> None:
+        """Take what came; uvicorn itself would wait for ever where the handshake is none."""
+        super().data_received(data)
+        if not self.handshake_initiated and self.conn.handshake_exc is not None:
+            self.transport.write(_BAD_HANDSHAKE)
+            self.transport.close()
+
+    def handle_parser_exception(self) -> None:
+        """Close with the code of what is wrong, once."""
+        if not self.close_sent:
+            super().handle_parser_exception()
+            self._abort_soon()
+
+    def keepalive_timeout(self) -> None:
+        """Close on a peer that has answered no ping, whether or not it takes the close frame."""
+        super().keepalive_timeout()
+        self._abort_soon()
+
+    async def send(self, message: ASGISendEvent) -> None:
+        """Send a message; a peer that neither takes nor answers a close frame is closed on."""
+        await super().send(message)
+        if self.close_timer is not None:
+            self._abort_soon(self.close_timeout)
+
+    def pause_writing(self) -> None:
+        """Wait for a peer that takes nothing, but not for ever: its pings and its close would wait as well."""
+        super().pause_writing()
+        self._abort_soon(WRITE_LIMIT_S)
+
+    def resume_writing(self) -> None:
+        """Go on sending."""
+        self._stop_abort()
+        super().resume_writing()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Stop waiting."""
+        self._stop_abort()
+        super().connection_lost(exc)
+
+    def _abort_soon(self, after_s: float = 0.0) -> None:
+        # asyncio closes a transport only when the peer has taken all that was written.
+        self._stop_abort()
+        self._abort = self.loop.call_later(after_s + _CLOSE_GRACE_S, self.transport.abort)
+
+    def _stop_abort(self) -> None:
+        if self._abort is not None:
+            self._abort.cancel()
+            self._abort = None

@@ -1,0 +1,115 @@
+"""Makes a behavior out of steps: the same frozen models that a YAML document is read into."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from engine.authoring.expression_values import Param
+from engine.authoring.lowering import Lowering, new_source_location
+from engine.authoring.plain_data import to_plain_data
+from engine.authoring.source_location import calling_position
+from engine.authoring.steps import Step
+from engine.document.behavior import Behavior, BehaviorDocument
+from engine.document.decoding import decode_document
+from engine.document.loader import load_behavior
+from engine.document.semantic_hash import compute_semantic_hash
+from engine.document.structural_rules import require_structural_rules
+from engine.document.yaml_source import DocumentSource
+from engine.errors import DocumentError
+from engine.state_catalogue import loaded_class
+
+
+def behavior(
+    name: str,
+    *,
+    outcomes: Sequence[str],
+    root: Step,
+    success: Sequence[str] = (),
+    parameters: Iterable[Param[Any]] = (),
+    userdata: Mapping[str, object] | None = None,
+    cell: str | None = None,
+    description: str = "",
+    view: Mapping[str, tuple[float, float]] | None = None,
+    file: str | None = None,
+) -> Behavior:
+    """Make a behavior that can be checked, run, referred to and written as YAML.
+
+    Args:
+        name: What people call it.
+        outcomes: How it can end.
+        root: The outermost step.
+        success: The outcomes that mean success.
+        parameters: What a run may be given.
+        userdata: Initial values of the root scope.
+        cell: The cell it runs in, relative to the document.
+        description: What it does.
+        view: Canvas positions by node path.
+        file: Where its document belongs, relative to this Python file; after its name where not given.
+
+    Raises:
+        DocumentError: it is no valid behavior; `where` is the place in Python of the step it is about.
+    """
+    where = calling_position()
+    given: dict[str, object] = {
+        "flexcell": 1,
+        "name": name,
+        "description": description,
+        "outcomes": list(outcomes),
+        "success": list(success),
+        "userdata": to_plain_data(userdata or {}, what="`userdata`", where=where),
+        "view": to_plain_data(view or {}, what="`view`", where=where),
+        **({"cell": cell} if cell is not None else {}),
+    }
+    place = new_source_location(where)
+    lowering = Lowering(Path(where.file).parent / (file or f"{_file_name(name)}.yaml"))
+    data = lowering.lower({**given, "parameters": _by_name(parameters), "root": root}, place)
+    return _read(DocumentSource(file=where.file, data=data, place=place), lowering)
+
+
+def _by_name(parameters: Iterable[Param[Any]]) -> dict[str, object]:
+    found: dict[str, object] = {}
+    for parameter in parameters:
+        if parameter.name in found:
+            hint = "give each a name of its own"
+            raise DocumentError(f"two parameters are named `{parameter.name}`", where=parameter.place, hint=hint)
+        found[parameter.name] = parameter
+    return found
+
+
+def _read(source: DocumentSource, lowering: Lowering) -> Behavior:
+    """Do with plain data what the loader does with that of a file, so that both mean the same."""
+    document = decode_document(source, BehaviorDocument)
+    draft = Behavior(document=document, file=lowering.file, meaning="", source=source)
+    require_structural_rules(draft)
+    references = {**lowering.references, **_referred_files(draft, lowering.references)}
+    meanings = {written: target.meaning for written, target in references.items()}
+    meaning = compute_semantic_hash(document, meanings)
+    return replace(draft, references=references, meaning=meaning, classes=_loaded_classes(draft))
+
+
+def _loaded_classes(draft: Behavior) -> dict[str, type]:
+    """Return the classes of this process that nodes name: whoever makes a behavior here has imported them."""
+    names = (name for _, node in draft.nodes() for name in (node.state, node.behaviour) if name and ":" in name)
+    return {name: found for name in names if (found := loaded_class(name)) is not None}
+
+
+def _referred_files(draft: Behavior, known: Mapping[str, Behavior]) -> dict[str, Behavior]:
+    found: dict[str, Behavior] = {}
+    for path, node in draft.nodes():
+        written = node.behavior
+        if written is None or written in known or written in found:
+            continue
+        file = draft.file.parent / written
+        if not file.is_file():
+            where = draft.position(path, "behavior")
+            raise DocumentError(f"there is no behavior file `{written}`", where=where, hint=f"looked for {file}")
+        found[written] = load_behavior(file)
+    return found
+
+
+def _file_name(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_.-]+", "_", name).strip("_.") or "behavior"

@@ -1,0 +1,180 @@
+"""The names that a cell offers to behaviors, by kind, as far as its document and the models in it say.
+
+Checks compare with them and the editor's pick lists are made of them. Nothing is connected or simulated for it. A
+parameter of a state says which kind it takes: `Meta(extra_json_schema={"cell_name": "robot"})`. With `"of": "robot"`
+beside it, it is a name below what the parameter `robot` of the same state names: `panda_hand` is `left/panda_hand`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from engine.cell.robot_models import RobotModels, RobotSummary, ToolKind, robot_models
+from engine.document.cell import Cell, RobotSpec
+from engine.errors import FlexcellError
+from engine.suggestions import did_you_mean
+
+CellNameKind = Literal[
+    "robot", "gripper", "magnet", "hand", "tool", "link", "output", "part", "person", "camera", "detector", "label",
+    "frame", "arm_frame", "body", "obstacle", "scene_part", "planner",
+]  # fmt: skip
+"""`gripper`, `magnet` and `hand` are robots that carry one. `tool` (`left/gripper`), `link` (`left/panda_hand`) and
+`output` (`left/3`, `left/gripper`) are of a robot, `label` (`eye/plate`) is of a camera that detects. `arm_frame` is a
+frame in which an arm takes poses, `frame` one that the cell shows. `body`, `obstacle` and `scene_part` are what the
+planning scene has, to which behaviors add."""
+
+_WORDS: Mapping[str, str] = {
+    "gripper": "robot with a gripper",
+    "magnet": "robot with a magnet",
+    "hand": "robot with a hand",
+    "detector": "camera that detects",
+    "arm_frame": "frame for the poses of an arm",
+    "body": "body",
+    "scene_part": "part",
+}
+_OWNED = frozenset[CellNameKind](("tool", "link", "output", "label"))
+_GROWING = frozenset[CellNameKind](("body", "obstacle", "scene_part"))
+_WORLD, _OCCUPANCY = "world", "occupancy"
+_TOOLS: tuple[ToolKind, ...] = get_args(ToolKind)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellNames:
+    """What a cell offers; a kind that is absent from `by_kind` is not known, and everything passes for it.
+
+    `undescribed` are robots whose model cannot be read, and people, whose bodies only a world knows: what is below
+    them, `left/…`, passes too.
+    """
+
+    cell: str
+    by_kind: Mapping[CellNameKind, frozenset[str]]
+    undescribed: frozenset[str] = frozenset()
+    joints: Mapping[str, tuple[tuple[float, float], ...]] = field(
+        default_factory=dict[str, "tuple[tuple[float, float], ...]"]
+    )
+    """The least and the greatest angle of each joint of the robots that are described, radians."""
+
+    def has(self, kind: CellNameKind, name: str) -> bool:
+        """Tell whether the cell offers a name of a kind, or may do so."""
+        owner, slash, _ = name.partition("/")
+        return kind not in self.by_kind or name in self.by_kind[kind] or (bool(slash) and owner in self.undescribed)
+
+    def missing(self, kind: CellNameKind, name: str) -> str:
+        """Say that the cell does not offer a name."""
+        owner, _, below = name.partition("/")
+        if kind in _OWNED:
+            return f"`{owner}` of the cell {self.cell} has no {kind} `{below}`"
+        return f"the cell {self.cell} has no {_word(kind)} `{name}`"
+
+    def advice(self, kind: CellNameKind, name: str, *, more: Iterable[str] = ()) -> str:
+        """Return the names that a missing one may have meant, or what it is instead.
+
+        Args:
+            kind: What it should be.
+            name: What it is called.
+            more: Names that are there beside those of the cell.
+        """
+        other = next((of for of in _OTHERS.get(kind, ()) if name in self.by_kind.get(of, ())), None)
+        if other is not None:
+            return f"`{name}` is a {_word(other)}"
+        known = {*self.by_kind.get(kind, ()), *more}
+        if kind in _OWNED:
+            owner, _, below = name.partition("/")
+            return did_you_mean(below, {each.partition("/")[2] for each in known if each.startswith(f"{owner}/")})
+        return did_you_mean(name, known)
+
+    @staticmethod
+    def may_come(kind: CellNameKind, name: str) -> bool:
+        """Tell whether behaviors or people may add a name while the cell is open; links of arms never come."""
+        return kind in _GROWING and "/" not in name
+
+    def listed(self) -> dict[CellNameKind, tuple[str, ...]]:
+        """Return the names of every kind that is known, sorted."""
+        return {kind: tuple(sorted(names)) for kind, names in self.by_kind.items()}
+
+
+_OTHERS: Mapping[CellNameKind, tuple[CellNameKind, ...]] = {
+    "robot": ("person", "part", "camera"),
+    "gripper": ("magnet", "hand", "robot"),
+    "magnet": ("gripper", "hand", "robot"),
+    "hand": ("gripper", "magnet", "robot"),
+    "detector": ("camera",),
+    "arm_frame": ("part", "link"),
+    "part": ("obstacle",),
+}
+"""What else a name may be, that is worth telling, most telling first."""
+
+
+def _word(kind: str) -> str:
+    return _WORDS.get(kind, kind)
+
+
+def is_kind(found: object) -> CellNameKind | None:
+    """Return the kind of name that a JSON Schema marks, None for what is none."""
+    return next((kind for kind in get_args(CellNameKind) if kind == found), None)
+
+
+def cell_names(cell: Cell) -> CellNames:
+    """Return the names that a cell offers."""
+    document = cell.document
+    models = robot_models()
+    robots = document.robots
+    summaries = {name: _summary(models, cell, name) for name in robots}
+    links = frozenset(_links(summaries))
+    parts, fixtures, people = (frozenset(each) for each in (document.parts, document.fixtures, document.people))
+    detectors = {name: camera.detect for name, camera in document.cameras.items() if camera.detect is not None}
+    bases = {f"{name}/{summary.base_link}" for name, summary in summaries.items() if summary is not None}
+    found: dict[CellNameKind, frozenset[str]] = {
+        "robot": frozenset(robots),
+        "tool": frozenset(f"{name}/{kind}" for name in robots for kind in _tools(robots[name], summaries[name])),
+        "link": links,
+        "output": frozenset(_outputs(robots, summaries)),
+        "part": parts,
+        "person": people,
+        "camera": frozenset(document.cameras),
+        "detector": frozenset(detectors),
+        "label": frozenset(
+            f"{name}/{detector.labels.get(part, part)}" for name, detector in detectors.items() for part in parts
+        ),
+        "frame": links | parts | {_WORLD},
+        "arm_frame": frozenset((_WORLD, *bases)),
+        "body": links | parts | fixtures | frozenset(robots) | {_OCCUPANCY},
+        "obstacle": fixtures,
+        "scene_part": parts,
+    }
+    for kind in _TOOLS:
+        found[kind] = frozenset(name for name in robots if kind in _tools(robots[name], summaries[name]))
+    if models is not None:
+        found["planner"] = frozenset(models.planners())
+    undescribed = frozenset(name for name, summary in summaries.items() if summary is None)
+    joints = {name: summary.joints for name, summary in summaries.items() if summary is not None}
+    return CellNames(cell=cell.name, by_kind=found, undescribed=undescribed | people, joints=joints)
+
+
+def _summary(models: RobotModels | None, cell: Cell, robot: str) -> RobotSummary | None:
+    try:
+        return models.summary(cell, robot) if models is not None else None
+    except FlexcellError:
+        return None  # the check of the cell says what is wrong with it
+
+
+def _links(summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
+    for name, summary in summaries.items():
+        if summary is not None:
+            yield from (f"{name}/{link}" for link in summary.links)
+
+
+def _tools(robot: RobotSpec, summary: RobotSummary | None) -> tuple[ToolKind, ...]:
+    """Return what the tool of a robot may be: anything where its model is not known, or a driver may bring one."""
+    if summary is None or (summary.tool is None and not robot.simulated):
+        return _TOOLS if robot.gripper is not None or not robot.simulated else ()
+    return (summary.tool,) if summary.tool is not None else ()
+
+
+def _outputs(robots: Mapping[str, RobotSpec], summaries: Mapping[str, RobotSummary | None]) -> Iterator[str]:
+    for name, robot in robots.items():
+        summary = summaries[name]
+        yield from (f"{name}/{use}" for use in robot.outputs)
+        yield from (f"{name}/{number}" for number in range(summary.digital_outputs if summary is not None else 0))

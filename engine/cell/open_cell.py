@@ -1,0 +1,264 @@
+"""An open cell: its robots connected, its world running, its store and bus ready.
+
+`async with OpenCell(...)` opens store, world and robots in that order and closes them in reverse,
+bringing every robot to rest. It belongs to the event loop it is opened on.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Mapping
+from contextlib import AsyncExitStack, suppress
+from types import TracebackType
+from typing import Any, Self
+
+from engine.bus import SkillBus
+from engine.cell.cell_connection import CellConnection, CellConnectionMonitor
+from engine.cell.cell_store import open_cell_store, store_address
+from engine.clock import new_clock
+from engine.document.cell import Cell
+from engine.document.entries_document import load_entries
+from engine.errors import CellError, ControlError, FlexcellError, NotStopped, RobotError
+from engine.host.gc_pause import gc_paused
+from engine.preemption import OverduePolicy, preempt
+from engine.registry import DRIVERS, WORLDS, load_factory
+from engine.robot import Robot, World
+from engine.stop import StopRelay
+from engine.store import Store, publish_changes, register_store
+
+_PATIENCE_S = 10.0
+"""How long a robot may take to come to rest, and the goals' handlers to end."""
+
+_log = logging.getLogger("flexcell.cell")
+
+NewWorld = Callable[..., World]
+NewRobot = Callable[..., Robot]
+
+
+class OpenCell:
+    """A cell document brought to life; without one, a bus with nothing on it.
+
+    Args:
+        cell: The document, or None for behaviors that need no robot.
+        seed: Places the parts of a simulated world within their jitter; None exactly where they are drawn.
+        store_path: Replaces the store of the document: a file, or the address of a MongoDB server.
+        relay: Gives every process that moves something a stop line; without one, STOP needs the event loop.
+    """
+
+    def __init__(
+        self,
+        cell: Cell | None,
+        *,
+        seed: int | None = None,
+        store_path: str | None = None,
+        relay: StopRelay | None = None,
+    ) -> None:
+        self.document = cell
+        self.seed = seed
+        self.bus = SkillBus(new_clock())
+        self.store: Store | None = None
+        self.robots: Mapping[str, Robot] = {}
+        self._world: World | None = None
+        self._store_path = store_path
+        self.relay = relay
+        self._stack = AsyncExitStack()
+        self._connections = CellConnectionMonitor(self.bus)
+
+    @property
+    def name(self) -> str:
+        """The name of the cell, empty without a document."""
+        return self.document.name if self.document is not None else ""
+
+    @property
+    def world(self) -> World | None:
+        """The simulated world, once the cell is open; None without one."""
+        return self._world
+
+    @property
+    def has_world(self) -> bool:
+        """Whether there is a simulated world, which can be brought back to where it was."""
+        return self.document is not None and self.document.document.world is not None
+
+    @property
+    def store_path(self) -> str | None:
+        """The file or address of its store, without secrets; None without one."""
+        return store_address(self.document, self._store_path) if self.document is not None else None
+
+    @property
+    def connection(self) -> CellConnection:
+        """Whether every device is connected, and which is not."""
+        return self._connections.now
+
+    def require_connected(self) -> None:
+        """Raise RobotError, with what is lost and what to do, unless every device is connected."""
+        self._connections.require()
+
+    async def reconnect(self) -> None:
+        """Connect again what is lost, under the same names; does nothing where nothing is.
+
+        A simulated world goes on from its last instant, at rest.
+
+        Raises:
+            ControlError: a robot is commanded by a run.
+            RobotError: a device does not come back.
+        """
+        for robot in self.robots:
+            owner = self.bus.leases.owner(robot)
+            if owner is not None and not self.connection.connected:
+                raise ControlError(f"{robot} is commanded by run {owner}", where=self.name, hint="stop that run first")
+        await self._connections.reconnect()
+
+    async def __aenter__(self) -> Self:
+        try:
+            # Opening a world loads most of a thousand modules.
+            with gc_paused():
+                await self._open()
+        except BaseException:
+            # Whatever stopped the opening, what was opened so far must come to rest and close.
+            await self._stack.aclose()
+            raise
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        await self._stack.aclose()
+
+    async def stop(self) -> None:
+        """Cancel every goal and bring every robot to rest, whether or not the goals' handlers end.
+
+        Raises:
+            RobotError: one could not confirm it; the others were stopped all the same.
+        """
+        for goal in self.bus.goals():
+            goal.cancel()
+        devices: tuple[Robot, ...] = tuple(self.robots.values())
+        if self._world is not None:
+            devices += (self._world,)
+        stops = {asyncio.create_task(device.stop(), name=f"stop {device.name}"): device for device in devices}
+        await _carried_through(tuple(stops))
+        failures = [failure for task, device in stops.items() if (failure := _failure(task, device)) is not None]
+        if failures:
+            raise RobotError(
+                "; ".join(str(failure) for failure in failures), where=self.name, hint="use the emergency stop"
+            ) from failures[0]
+
+    async def snapshot(self) -> bytes | None:
+        """Return what `restore` needs to bring the world back to the present; None where there is none."""
+        return self._world.snapshot() if self._world is not None else None
+
+    async def restore(self, snapshot: bytes) -> None:
+        """Bring the world to where `snapshot` was made, at rest; before the first goal.
+
+        Raises:
+            CellError: this cell has no world that could be brought anywhere.
+            RobotError: something moves, or the snapshot is none of this very world.
+        """
+        if self._world is None:
+            raise CellError("the cell has no world to restore", where=self.name, hint="open the cell it was made in")
+        await self._world.restore(snapshot)
+
+    async def _open(self) -> None:
+        if self.document is None:
+            return
+        await self._open_store(self.document)
+        if self.relay is not None:
+            # Before the devices, which get their new lines from it when all are connected again.
+            self._connections.follow(self.relay)
+        world = await self._open_world(self.document)
+        await self._open_robots(self.document, world)
+        self._stack.push_async_callback(self._close_bus)
+
+    async def _close_bus(self) -> None:
+        """Cancel what still runs; a handler that does not end keeps no robot from coming to rest."""
+        closing = asyncio.create_task(self.bus.__aexit__(None, None, None), name="closing the bus")
+        await _carried_through((closing,))
+        if closing.done() and not closing.cancelled():
+            closing.result()
+        for goal in self.bus.goals():
+            _log.error("the handler of %s does not end; its robot is stopped without it", goal.address)
+
+    async def _open_store(self, cell: Cell) -> None:
+        if cell.document.store is None:
+            return
+        store = await open_cell_store(cell, self._store_path, inline=self.bus.clock.virtual)
+        self.store = await self._stack.enter_async_context(store)
+        if cell.seed_file is not None:
+            seed = load_entries(cell.seed_file).records()
+            await store.seed(seed, by=f"cell {cell.name}", reason=f"seed {cell.seed_file.name}")
+        register_store(self.bus, store)
+        await publish_changes(self.bus, store)
+
+    async def _open_world(self, cell: Cell) -> World | None:
+        if cell.document.world is None:
+            return None
+        new_world: NewWorld = load_factory(WORLDS, "mujoco")
+        world = await self._stack.enter_async_context(
+            new_world(
+                cell,
+                bus=self.bus,
+                virtual=self.bus.clock.virtual,
+                seed=self.seed,
+                new_stop_line=self.relay.new_line if self.relay is not None else None,
+            )
+        )
+        world.register(self.bus)
+        self._world = world
+        self._connections.follow(world)
+        return world
+
+    async def _open_robots(self, cell: Cell, world: World | None) -> None:
+        simulated = {robot.name: robot for robot in world.robots()} if world is not None else {}
+        robots: dict[str, Robot] = {}
+        for name, entry in cell.document.robots.items():
+            try:
+                made = simulated[name] if entry.simulated else self._new_robot(cell, name, entry.driver_kind)
+            except FlexcellError as error:
+                raise CellError(error.message, where=f"robot {name} of {cell.file}", hint=error.hint) from error
+            robot = await self._stack.enter_async_context(made)
+            robot.register(self.bus)
+            robots[name] = robot
+            self._connections.follow(robot)
+        self.robots = robots
+
+    def _new_robot(self, cell: Cell, name: str, kind: str) -> Robot:
+        maker: NewRobot = load_factory(DRIVERS, kind)
+        return maker(cell, name=name, bus=self.bus)
+
+
+async def _carried_through(tasks: tuple[asyncio.Task[None], ...]) -> None:
+    """Wait until the tasks have ended; cancel those that take too long.
+
+    Cancelling the caller does not interrupt them: once begun, a stop is carried through.
+    """
+    loop = asyncio.get_running_loop()
+    deadline_s = loop.time() + _PATIENCE_S
+    cancelled: asyncio.CancelledError | None = None
+    left = set(tasks)
+    while left and loop.time() < deadline_s:
+        try:
+            _, left = await asyncio.wait(left, timeout=deadline_s - loop.time())
+        except asyncio.CancelledError as error:
+            cancelled = error
+    # One that lets no cancel pass is left behind and named in the log.
+    with suppress(NotStopped):
+        late = [task for task in tasks if task in left]
+        await preempt(late, OverduePolicy(tell=_say_overdue, abandon=_say_abandoned, abandon_after_s=_PATIENCE_S))
+    if cancelled is not None:
+        raise cancelled
+
+
+def _failure(stop: asyncio.Task[None], device: Robot) -> BaseException | None:
+    """Return why a device is not known to rest; None when it is."""
+    if stop.done() and not stop.cancelled():
+        return stop.exception()
+    return RobotError(f"it does not confirm that it rests within {_PATIENCE_S:g} s", where=device.name)
+
+
+def _say_overdue(name: str, waited_s: float) -> None:
+    _log.error("%s has not ended %g s after it was cancelled", name, waited_s)
+
+
+def _say_abandoned(task: asyncio.Task[Any], waited_s: float) -> None:
+    _log.error("%s was abandoned %g s after it was cancelled", task.get_name(), waited_s)

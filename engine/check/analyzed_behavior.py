@@ -1,0 +1,344 @@
+"""One behavior under check: its nodes, the signatures of its states, and how each node can end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from engine.check.end_statuses import BOTH, Status, Statuses, closed_statuses, end_statuses
+from engine.check.finding import Finding, new_finding
+from engine.check.gaps import DocumentGaps
+from engine.document.behavior import Behavior
+from engine.document.concurrency_condition import deciding
+from engine.document.expression import Template, compile_template
+from engine.document.node_spec import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, NodeSpec
+from engine.document.signature import StateSignature, read_signature
+from engine.errors import ExpressionError, FlexcellError, RegistryError, StateError
+from engine.state_catalogue import Catalogue, find_state
+
+GivenValues = Mapping[str, Template | ExpressionError]
+_PARTS = frozenset((*TREE_KINDS, *WRAPPERS))
+_NOTHING_GIVEN: GivenValues = {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class NodeAt:
+    """A node with its path inside its own document and the path of the container around it."""
+
+    path: str
+    name: str
+    kind: str
+    node: NodeSpec
+    parent: str | None
+    container: NodeSpec | None
+    in_tree: bool
+    """Whether it is a part of a tree: directly inside `tree`, a composite or a decorator."""
+
+    @property
+    def is_part(self) -> bool:
+        """True for composites, decorators and py_trees behaviours, which stand only in trees."""
+        return self.kind in _PARTS
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnalyzedBehavior:
+    """A behavior with what the checks need to know about it, worked out once.
+
+    `base` is the path of its root in the run: `root`, or that of the reference that uses it.
+    """
+
+    behavior: Behavior
+    base: str
+    nodes: Mapping[str, NodeAt]
+    inside: Mapping[str, tuple[NodeAt, ...]]
+    """The nodes directly inside each container, by its path."""
+    signatures: Mapping[str, StateSignature]
+    """By state name; states that are unknown are absent."""
+    unknown: Mapping[str, FlexcellError]
+    """What is wrong with the states that are absent, by state name."""
+    catalogue: Catalogue
+    """What a document may name."""
+    references: Mapping[str, AnalyzedBehavior]
+    """The behaviors referred to, by the path as written."""
+    gaps: DocumentGaps
+    """What could not be read of it."""
+    given: Mapping[str, GivenValues]
+    """The values under `with`, compiled, by path and name; nodes without are absent."""
+    outcomes: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
+    """The outcomes of each node by path, as its container sees them; nodes of unknown states are absent."""
+    nominal: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
+    """The outcomes of each node that mean that nothing went wrong, by path."""
+    statuses: Mapping[str, Statuses] = field(default_factory=dict[str, Statuses])
+    """How each part and leaf of a tree can end, by path."""
+
+    @property
+    def incomplete(self) -> bool:
+        """True when a state or a reference is missing, so that nobody knows which keys it writes."""
+        refers = (placed.node.behavior for placed in self.nodes.values())
+        return (
+            bool(self.unknown)
+            or self.gaps.hides_values
+            or any(name is not None and name not in self.references for name in refers)
+        )
+
+    @property
+    def postorder(self) -> Iterator[NodeAt]:
+        """The nodes, children before their containers."""
+        return reversed(tuple(self.nodes.values()))
+
+    def finding(
+        self, code: str, message: str, path: str, *keys: str | int, hint: str = "", at_key: bool = False
+    ) -> Finding:
+        """Make a finding about the node at `path`, or about the value (or key) at `keys` inside it."""
+        locate = self.behavior.key_position if at_key else self.behavior.position
+        return new_finding(code, message, path=self.run_path(path), position=locate(path, *keys), hint=hint)
+
+    def run_path(self, path: str) -> str:
+        """Return the path in a run of the node at `path` of this document."""
+        return self.base + path.removeprefix("root")
+
+    def signature(self, node: NodeSpec) -> StateSignature | None:
+        """Return what the class of a state node declares, None for other nodes and unknown states."""
+        return self.signatures.get(node.state) if node.state is not None else None
+
+    def referred(self, node: NodeSpec) -> AnalyzedBehavior | None:
+        """Return the behavior that a node refers to, None for other nodes and references left open."""
+        return self.references.get(node.behavior) if node.behavior is not None else None
+
+    def possible(self, placed: NodeAt) -> tuple[str, ...] | None:
+        """Return the outcomes that a node can end with; of a tree it may be known that one never occurs."""
+        outcomes = self.outcomes.get(placed.path)
+        if placed.node.tree is None or outcomes is None:
+            return outcomes
+        ends = self.statuses[self.inside[placed.path][0].path]
+        # A tree whose root is skipped has nothing to do, and succeeds.
+        seen = {"success" if end == "skipped" else end for end in ends}
+        return tuple(outcome for outcome in outcomes if outcome not in TREE_OUTCOMES or outcome in seen)
+
+    def children(self, placed: NodeAt) -> tuple[NodeAt, ...]:
+        """Return the nodes directly inside a container."""
+        return self.inside.get(placed.path, ())
+
+    def given_to(self, placed: NodeAt) -> GivenValues:
+        """Return the values under `with` of a node, compiled."""
+        return self.given.get(placed.path, _NOTHING_GIVEN)
+
+
+def analyze_behaviors(behavior: Behavior, catalogue: Catalogue) -> tuple[AnalyzedBehavior, ...]:
+    """Return the behavior and those it refers to, each once, in the order in which they are first referred to."""
+    bases: dict[int, str] = {}
+    order: list[Behavior] = []
+    due = [(behavior, "root")]
+    for current, base in due:
+        if id(current) in bases:
+            continue
+        bases[id(current)] = base
+        order.append(current)
+        for path, node in current.nodes() if current.references else ():
+            if node.behavior is not None and node.behavior in current.references:
+                below = f"{base}{path.removeprefix('root')}/root"
+                due.append((current.references[node.behavior], below))
+    made: dict[int, AnalyzedBehavior] = {}
+    return tuple(_make(current, catalogue, bases, made) for current in order)
+
+
+def targets(node: NodeSpec) -> dict[tuple[str, ...], str]:
+    """Return where a node in a machine can lead, by the keys inside the node that say so."""
+    found: dict[tuple[str, ...], str] = {("transitions", outcome): to for outcome, to in node.transitions.items()}
+    if node.guard is not None or node.timeout is not None or node.on_error is not None:
+        found.update(diversions(node))
+    return found
+
+
+def diversions(node: NodeSpec) -> dict[tuple[str, ...], str]:
+    """Return where guard, timeout and on_error of a node lead, by the keys inside the node that say so."""
+    found: dict[tuple[str, ...], str] = {}
+    if node.guard is not None and node.guard.to is not None:
+        found["guard", "to"] = node.guard.to
+    if node.timeout is not None and node.timeout.to is not None:
+        found["timeout", "to"] = node.timeout.to
+    if node.on_error is not None:
+        found["on_error",] = node.on_error
+    return found
+
+
+def template(value: object) -> Template | ExpressionError:
+    """Compile a value of a document, or return what is wrong with it."""
+    try:
+        return compile_template(value)
+    except ExpressionError as error:
+        # Without its traceback, whose frames would keep all that is being looked at.
+        return ExpressionError(error.message, where=error.where, hint=error.hint)
+
+
+def leaf_success(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
+    """Return the outcomes of a leaf of a tree that mean SUCCESS there."""
+    return frozenset(placed.node.success) or subject.nominal[placed.path]
+
+
+def _make(
+    behavior: Behavior, catalogue: Catalogue, bases: Mapping[int, str], made: dict[int, AnalyzedBehavior]
+) -> AnalyzedBehavior:
+    known = made.get(id(behavior))
+    if known is not None:
+        return known
+    references = {name: _make(other, catalogue, bases, made) for name, other in behavior.references.items()}
+    nodes, inside = _placed(behavior)
+    signatures, unknown = _signatures(behavior, nodes, catalogue)
+    outcomes: dict[str, tuple[str, ...]] = {}
+    nominal: dict[str, frozenset[str]] = {}
+    statuses: dict[str, Statuses] = {}
+    subject = AnalyzedBehavior(
+        behavior=behavior,
+        base=bases[id(behavior)],
+        nodes=nodes,
+        inside=inside,
+        signatures=signatures,
+        unknown=unknown,
+        catalogue=catalogue,
+        references=references,
+        gaps=DocumentGaps(behavior),
+        given={
+            path: {name: template(value) for name, value in placed.node.parameters.items()}
+            for path, placed in nodes.items()
+            if placed.node.parameters
+        },
+        outcomes=outcomes,
+        nominal=nominal,
+        statuses=statuses,
+    )
+    # Children before containers: how a container can end follows from those inside it.
+    for placed in subject.postorder:
+        path = placed.path
+        own = _own_outcomes(placed, subject)
+        if own is not None and not (subject.gaps.hides_course(path) and _sees_diversions(placed.container)):
+            outcomes[path] = _seen_outside(placed, own)
+        nominal[path] = _nominal(placed, subject)
+        if placed.in_tree:
+            statuses[path] = _statuses(placed, subject)
+    made[id(behavior)] = subject
+    return subject
+
+
+def _placed(behavior: Behavior) -> tuple[dict[str, NodeAt], dict[str, tuple[NodeAt, ...]]]:
+    nodes: dict[str, NodeAt] = {}
+    inside: dict[str, list[NodeAt]] = {}
+    for path, node in behavior.nodes():
+        parent, _, name = path.rpartition("/")
+        around = nodes[parent] if parent else None
+        nodes[path] = placed = NodeAt(
+            path=path,
+            name=name,
+            kind=node.kind,
+            node=node,
+            parent=parent or None,
+            container=around.node if around is not None else None,
+            in_tree=around is not None and (around.is_part or around.kind == "tree"),
+        )
+        if parent:
+            inside.setdefault(parent, []).append(placed)
+    return nodes, {path: tuple(children) for path, children in inside.items()}
+
+
+def _signatures(
+    behavior: Behavior, nodes: Mapping[str, NodeAt], catalogue: Catalogue
+) -> tuple[dict[str, StateSignature], dict[str, FlexcellError]]:
+    signatures: dict[str, StateSignature] = {}
+    unknown: dict[str, FlexcellError] = {}
+    for placed in nodes.values():
+        name = placed.node.state
+        if name is None or name in signatures or name in unknown:
+            continue
+        try:
+            signatures[name] = read_signature(find_state(catalogue, name, behavior.classes))
+        except (RegistryError, StateError) as error:
+            unknown[name] = error
+    return signatures, unknown
+
+
+def _seen_outside(placed: NodeAt, own: tuple[str, ...]) -> tuple[str, ...]:
+    if not _sees_diversions(placed.container):
+        return own
+    # In a concurrency or foreach container a guard, timeout or error gives the child an outcome that it sees.
+    leading = diversions(placed.node).values()
+    return tuple(dict.fromkeys((*own, *leading))) if leading else own
+
+
+def _sees_diversions(container: NodeSpec | None) -> bool:
+    return container is not None and (container.concurrency is not None or container.foreach is not None)
+
+
+def _own_outcomes(placed: NodeAt, subject: AnalyzedBehavior) -> tuple[str, ...] | None:
+    node = placed.node
+    if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_inside(placed.path):
+        return None
+    if node.state is not None:
+        signature = subject.signatures.get(node.state)
+        return signature.outcomes if signature is not None else None
+    if node.behavior is not None:
+        referred = subject.behavior.references.get(node.behavior)
+        return referred.outcomes if referred is not None else None
+    if node.concurrency is not None:
+        named = [rule.outcome for rule in deciding(node.concurrency.rules)]
+        return tuple(dict.fromkeys([*named, *([node.concurrency.otherwise] if node.concurrency.otherwise else [])]))
+    if node.foreach is not None:
+        return FOREACH_OUTCOMES
+    if node.sequential is None:
+        return TREE_OUTCOMES
+    leading = [target for child in node.children.values() for target in targets(child).values()]
+    return tuple(dict.fromkeys(target for target in leading if target not in node.children))
+
+
+def _nominal(placed: NodeAt, subject: AnalyzedBehavior) -> frozenset[str]:
+    """Return what the engine takes for a good end of a node: what a class or document calls success, or follows."""
+    node = placed.node
+    if node.state is not None:
+        signature = subject.signatures.get(node.state)
+        return frozenset(signature.success or signature.outcomes) if signature is not None else frozenset()
+    if node.behavior is not None:
+        referred = subject.behavior.references.get(node.behavior)
+        return frozenset(referred.success or referred.outcomes) if referred is not None else frozenset()
+    if node.concurrency is not None:
+        good = {child.name: subject.nominal[child.path] for child in subject.children(placed)}
+        rules = deciding(node.concurrency.rules)
+        return frozenset(
+            rule.outcome for rule in rules if rule.asks_only_for(lambda name, due: due in good.get(name, ()))
+        )
+    if node.foreach is not None:
+        return frozenset(FOREACH_OUTCOMES[:1])
+    if node.sequential is None:
+        return frozenset(TREE_OUTCOMES[:1])
+    return _reached_nominally(placed, node.sequential.initial, subject)
+
+
+def _reached_nominally(placed: NodeAt, initial: str, subject: AnalyzedBehavior) -> frozenset[str]:
+    reached: set[str] = set()
+    due = [initial]
+    children = placed.node.children
+    while due:
+        name = due.pop()
+        if name in reached:
+            continue
+        reached.add(name)
+        child = children.get(name)
+        if child is not None:
+            good = subject.nominal[f"{placed.path}/{name}"]
+            due += [target for outcome, target in child.transitions.items() if outcome in good]
+            due += [child.guard.to] if child.guard is not None and child.guard.to is not None else []
+    return frozenset(reached.difference(children))
+
+
+def _statuses(placed: NodeAt, subject: AnalyzedBehavior) -> Statuses:
+    children = subject.children(placed)
+    if subject.gaps.hides_ends(placed.path) or subject.gaps.hides_course(placed.path):
+        return BOTH
+    if placed.is_part:
+        ends = end_statuses(placed.node, [(child.name, subject.statuses[child.path]) for child in children])
+        return ends | closed_statuses(placed.node)
+    outcomes = subject.outcomes.get(placed.path)
+    if not outcomes:
+        return BOTH
+    good = leaf_success(placed, subject)
+    led = diversions(placed.node).values()
+    found: set[Status] = {"success" if outcome in good else "failure" for outcome in outcomes}
+    return frozenset([*found, *(status for status in GUARD_TARGETS if status in led)])

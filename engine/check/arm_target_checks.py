@@ -1,0 +1,132 @@
+"""Checks that arms can be where a behavior takes them: in reach, and free in their cell as it is drawn.
+
+Parts are left out, as they are there to be touched; what arms hold is not known. Entries count with the values that the
+store is seeded with, but for those that the behavior itself writes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+
+from engine.cell.robot_models import robot_models
+from engine.check.analyzed_behavior import AnalyzedBehavior, Catalogue, analyze_behaviors
+from engine.check.behavior_check import MAX_CHECK_STEPS
+from engine.check.cell_context import CellContext, cell_context
+from engine.check.entry_references import entries_written
+from engine.check.finding import Finding, finding_sort_key, new_finding
+from engine.check.parameter_checks import default_values
+from engine.check.state_instances import UNKNOWN_PLACEHOLDER, given_values, try_make_state
+from engine.document.behavior import Behavior
+from engine.document.cell import Cell
+from engine.document.entries_document import EntriesDocument, NamedAngles
+from engine.document.step_meter import METER
+from engine.errors import CellError
+from engine.host.gc_pause import pause_gc
+from engine.messages import Pose
+from engine.skills.arm_target import ArmTarget, StaticCell, ToolChange
+
+_CODES = {"unreachable": "unreachable-target", "collision": "target-in-collision"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Seeded:
+    """The entries of a seed; `written` are those that only a run knows, as kind and name."""
+
+    document: EntriesDocument | None
+    written: Collection[tuple[str, str]]
+
+    def joints(self, name: str) -> tuple[float, ...] | None:
+        """Return an entry of kind `joints`."""
+        if self.document is None or ("joints", name) in self.written:
+            return None
+        found = self.document.joints.get(name)
+        return found.joints if isinstance(found, NamedAngles) else found
+
+    def pose(self, name: str) -> Pose | None:
+        """Return an entry of kind `pose`."""
+        if self.document is None or ("pose", name) in self.written:
+            return None
+        return self.document.poses.get(name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Named:
+    """A target, and the node that names it."""
+
+    subject: AnalyzedBehavior
+    path: str
+    target: ArmTarget
+
+
+@pause_gc
+def check_targets(
+    behavior: Behavior, catalogue: Catalogue, *, cell: Cell | CellContext | None = None
+) -> tuple[Finding, ...]:
+    """Return the targets in a behavior, and in those it refers to, that an arm of its cell cannot be at.
+
+    Args:
+        behavior: The behavior as loaded.
+        catalogue: The states by name.
+        cell: The cell that it is to run in, also as it was read before; by default the one that it names. Without any,
+            nothing is looked at.
+    """
+    context = cell if isinstance(cell, CellContext) else cell_context(behavior, cell)
+    if context.cell is None or (models := robot_models()) is None:
+        return ()
+    subjects = analyze_behaviors(behavior, catalogue)
+    seed = context.seed.document if context.seed is not None else None
+    stored = _Seeded(document=seed, written=frozenset(entries_written(subjects)))
+    with METER.limited(MAX_CHECK_STEPS, "this check"):
+        targets = list(_targets(subjects, stored))
+    if not targets:
+        return ()
+    drawn = models.drawn(context.cell)
+    try:
+        found = [_finding(each, drawn) for each in targets]
+    except CellError as error:
+        position = behavior.source.position(("cell",))
+        return (new_finding("invalid-cell", f"the cell cannot be built: {error}", path="root", position=position),)
+    return tuple(sorted((each for each in found if each is not None), key=finding_sort_key))
+
+
+def _targets(subjects: tuple[AnalyzedBehavior, ...], stored: _Seeded) -> Iterator[_Named]:
+    known = default_values(subjects[0])
+    found = [(subject, path, each) for subject in subjects for path, each in _asked(subject, subjects, stored, known)]
+    # Poses of an arm whose tool is put elsewhere mean a place that only the run knows.
+    changed = {each.robot for _, _, each in found if isinstance(each, ToolChange)}
+    for subject, path, each in found:
+        if (
+            isinstance(each, ArmTarget)
+            and each.robot != UNKNOWN_PLACEHOLDER
+            and (each.pose is None or each.robot not in changed)
+        ):
+            yield _Named(subject=subject, path=path, target=each)
+
+
+def _asked(
+    subject: AnalyzedBehavior, subjects: tuple[AnalyzedBehavior, ...], stored: _Seeded, known: Mapping[str, object]
+) -> Iterator[tuple[str, ArmTarget | ToolChange]]:
+    # A behavior that is referred to is given its parameters by each reference: only constants are known.
+    given = known if subject is subjects[0] else dict.fromkeys(subject.behavior.parameters, UNKNOWN_PLACEHOLDER)
+    for placed in subject.nodes.values():
+        signature = subject.signature(placed.node)
+        if signature is None or not signature.has_arm_targets:
+            continue
+        state = try_make_state(signature, given_values(subject, placed, given))
+        if state is None:
+            continue
+        try:
+            yield from [(placed.path, each) for each in state.arm_targets(stored)]
+        except Exception:
+            # With stand-ins for unknown values it may fail in any way: then nothing is known of it.
+            continue
+
+
+def _finding(named: _Named, drawn: StaticCell) -> Finding | None:
+    target, subject = named.target, named.subject
+    fault = drawn.fault(target)
+    if fault is None:
+        return None
+    message = f"`{target.parameter}`: {fault.message}"
+    return subject.finding(_CODES[fault.kind], message, named.path, "with", target.parameter, hint=fault.hint)

@@ -1,0 +1,113 @@
+"""How a part of a behavior tree can end, worked out from how its children can."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from engine.document.node_spec import GUARD_TARGETS, NodeSpec, ParallelSpec, RemapSpec
+
+Status = Literal["success", "failure", "skipped"]
+Statuses = frozenset[Status]
+
+BOTH: Statuses = frozenset(("success", "failure"))
+SUCCESS: Statuses = frozenset(("success",))
+FAILURE: Statuses = frozenset(("failure",))
+SKIPPED: Statuses = frozenset(("skipped",))
+NEVER: Statuses = frozenset()
+
+
+def end_statuses(node: NodeSpec, children: Sequence[tuple[str, Statuses]]) -> Statuses:
+    """Return with which statuses a composite or decorator can end; empty when it cannot end at all.
+
+    Args:
+        node: The composite or decorator.
+        children: Name and statuses of each child, in order.
+    """
+    ends = [statuses for _, statuses in children]
+    if node.sequence is not None:
+        return _until(ends, "success")
+    if node.selector is not None:
+        return _until(ends, "failure")
+    if node.parallel is not None:
+        return _parallel(node.parallel, children)
+    if node.behaviour is not None:
+        return BOTH
+    if node.if_then_else is not None or node.while_do_else is not None:
+        return _branched(ends)
+    child = ends[0]
+    if node.inverter is not None:
+        return frozenset(_OPPOSITE[status] for status in child)
+    if node.remap is not None:
+        return _remapped(node.remap, child)
+    if node.condition is not None:
+        waited = node.condition.status
+        return (SUCCESS if waited == "running" or waited in child else NEVER) | (child & SKIPPED)
+    if node.retry is not None or node.repeat is not None or node.one_shot is not None:
+        return child
+    if node.guard is not None and node.guard.to is not None:
+        return child | closed_statuses(node)
+    # What is left can fail by itself: timeout, guard, cooldown.
+    return child | FAILURE
+
+
+def closed_statuses(node: NodeSpec) -> Statuses:
+    """Return the status with which a node ends at once when its guard is closed."""
+    return frozenset(status for status in GUARD_TARGETS if node.guard is not None and node.guard.to == status)
+
+
+_OPPOSITE: dict[Status, Status] = {"success": "failure", "failure": "success", "skipped": "skipped"}
+
+
+def _until(ends: Sequence[Statuses], onward: Status) -> Statuses:
+    """A sequence goes on after success, a selector after failure, both after what was skipped."""
+    found: set[Status] = set()
+    for statuses in ends:
+        found |= statuses - {onward, "skipped"}
+        if onward not in statuses and "skipped" not in statuses:
+            return frozenset(found)
+    found |= {onward} if any(onward in statuses for statuses in ends) else set()
+    return frozenset(found) | _all_skipped(ends)
+
+
+def _all_skipped(ends: Sequence[Statuses]) -> Statuses:
+    return SKIPPED if all("skipped" in statuses for statuses in ends) else NEVER
+
+
+def _branched(ends: Sequence[Statuses]) -> Statuses:
+    """The first says which of the others is run; where there is no third, it fails."""
+    condition, then, *otherwise = ends
+    found: Statuses = then if "success" in condition else NEVER
+    return found | ((otherwise[0] if otherwise else FAILURE) if condition - SUCCESS else NEVER)
+
+
+def _parallel(group: tuple[NodeSpec, ...] | ParallelSpec, children: Sequence[tuple[str, Statuses]]) -> Statuses:
+    if isinstance(group, ParallelSpec) and group.counts:
+        return _counted(group, [statuses for _, statuses in children])
+    policy = "all" if isinstance(group, tuple) else group.policy
+    failing: Statuses = FAILURE if any("failure" in statuses for _, statuses in children) else NEVER
+    due = children if isinstance(policy, str) else [child for child in children if child[0] in policy]
+    can = ["success" in statuses for _, statuses in due]
+    passed = ["success" in statuses or "skipped" in statuses for _, statuses in due]
+    succeeds = any(can) if policy == "one" else all(passed) and any("success" in ends for _, ends in children)
+    return failing | (SUCCESS if succeeds else NEVER) | _all_skipped([ends for _, ends in children])
+
+
+def _counted(group: ParallelSpec, ends: Sequence[Statuses]) -> Statuses:
+    needed = group.success_count or len(ends)
+    able = sum("success" in statuses for statuses in ends)
+    failing = sum("failure" in statuses for statuses in ends)
+    fails = failing >= min(group.failure_count or 1, len(ends) - needed + 1)
+    skipped = sum("skipped" in statuses for statuses in ends)
+    if group.success_count is None:
+        succeeds = able > 0 and all(statuses & {"success", "skipped"} for statuses in ends)
+    else:
+        succeeds = able >= needed
+        fails = fails or (skipped > 0 and failing + skipped > len(ends) - needed and able + failing > 0)
+    return (SUCCESS if succeeds else NEVER) | (FAILURE if fails else NEVER) | _all_skipped(ends)
+
+
+def _remapped(remap: RemapSpec, child: Statuses) -> Statuses:
+    shown = {remap.success if status == "success" else remap.failure for status in child - SKIPPED} | {remap.running}
+    ends: Statuses = frozenset(status for status in BOTH if status in shown)
+    return ends | (child & SKIPPED)

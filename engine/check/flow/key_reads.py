@@ -1,0 +1,112 @@
+"""The userdata keys and parameters that the nodes of a behavior read, and where the document says so."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt, template
+from engine.document.cel_expression import Expression
+from engine.document.expression import Template, split_text
+from engine.document.signature import KeySignature
+from engine.errors import ExpressionError
+
+ReadOrigin = Literal["input", "mapped", "expression", "collect", "shared", "post"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyRead:
+    """One key that a node reads.
+
+    `input`: the state's input key of the same name. `mapped`: through `in:`. `expression`: a name
+    in a `${…}`. `collect`: at the end of a round of a foreach. `shared`: by the branches of a concurrency
+    container. `post`: in a `${…}` of a post-condition. `keys` lead to the value in the
+    document, from the node inward. A read that is not `required` is left out where there is no value.
+    """
+
+    placed: NodeAt
+    key: str
+    by: ReadOrigin
+    name: str
+    keys: tuple[str | int, ...]
+    required: bool = True
+
+
+def key_reads(subject: AnalyzedBehavior) -> Iterator[KeyRead]:
+    """Go through everything that is read, in document order."""
+    for placed in subject.nodes.values():
+        yield from _inputs(subject, placed)
+        for keys, found in expressions(subject, placed):
+            for name in sorted(found.names):
+                yield KeyRead(placed=placed, key=name, by="expression", name=name, keys=keys)
+        for keys, assigned in assignments(placed).items():
+            for name in sorted(assigned.names) if isinstance(assigned, Template) else ():
+                yield KeyRead(placed=placed, key=name, by="post", name=name, keys=keys)
+        if placed.node.foreach is not None:
+            for key in placed.node.foreach.collect:
+                yield KeyRead(placed=placed, key=key, by="collect", name=key, keys=("foreach", "collect", key))
+        if placed.node.concurrency is not None:
+            for index, key in enumerate(placed.node.concurrency.shared):
+                yield KeyRead(placed=placed, key=key, by="shared", name=key, keys=("concurrency", "shared", index))
+
+
+def expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[tuple[tuple[str | int, ...], Template]]:
+    """Go through the values of a node that hold expressions, with the keys that lead to them."""
+    for name, found in subject.given_to(placed).items():
+        if isinstance(found, Template) and not found.constant:
+            yield ("with", name), found
+    for keys, found in conditions(placed).items():
+        # Without names it is the same in every run, which is told elsewhere.
+        if isinstance(found, Template) and found.names:
+            yield keys, found
+
+
+def conditions(placed: NodeAt) -> dict[tuple[str, ...], Template | ExpressionError]:
+    """Return what guard and foreach of a node evaluate, compiled, by the keys that lead to it."""
+    node = placed.node
+    found: dict[tuple[str, ...], Template | ExpressionError] = {}
+    if node.guard is not None:
+        found["guard", "when"] = template(node.guard.when)
+    if node.foreach is not None:
+        key = "items" if node.foreach.items is not None else "times"
+        found["foreach", key] = template(getattr(node.foreach, key))
+    return found
+
+
+def assignments(placed: NodeAt) -> dict[tuple[str, str, str], Template | ExpressionError]:
+    """Return what post-conditions assign, compiled: by `post`, when, and the userdata key, in the order of a run."""
+    post = placed.node.post
+    sections = (
+        ()
+        if post is None
+        else (("on_success", post.on_success), ("on_failure", post.on_failure), ("on_halted", post.on_halted))
+    )
+    always = (("always", post.always),) if post is not None else ()
+    return {
+        ("post", when, key): template(value)
+        for when, assigned in (*sections, *always)
+        for key, value in assigned.items()
+    }
+
+
+def only_name(found: Template | ExpressionError) -> str | None:
+    """Return the name that a value is, where it is nothing but one, `${name}`."""
+    if not isinstance(found, Template) or found.constant or not isinstance(found.value, str):
+        return None
+    pieces = split_text(found.value)
+    only = pieces[0]
+    return only.text if len(pieces) == 1 and isinstance(only, Expression) and only.bare else None
+
+
+def _inputs(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[KeyRead]:
+    node = placed.node
+    signature = subject.signature(node)
+    declared: Mapping[str, KeySignature] = signature.inputs if signature is not None else {}
+    for name, source in node.inputs.items():
+        # A py_trees behaviour is shown what there is; everything else must find what is mapped to it.
+        required = node.behavior is not None or (name in declared and declared[name].required)
+        yield KeyRead(placed=placed, key=source, by="mapped", name=name, keys=("in", name), required=required)
+    for name, key in declared.items():
+        if name not in node.inputs:
+            yield KeyRead(placed=placed, key=name, by="input", name=name, keys=(), required=key.required)

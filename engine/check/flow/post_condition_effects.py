@@ -1,0 +1,86 @@
+"""What post-conditions of a part of a tree write, and what is known where one of them is evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from engine.check.analyzed_behavior import NodeAt
+from engine.check.flow.definition_sites import DefinitionSites
+from engine.check.flow.effect import NO_EFFECT, Effect, combine_effects, write_effect
+from engine.check.flow.flow_graph import FlowEdge
+from engine.check.flow.key_reads import KeyRead, assignments
+
+_AFTER = {"success": ("on_success", "always"), "failure": ("on_failure", "always")}
+_HALTED = ("on_halted",)
+
+
+class PostConditionEffects:
+    """The writes of the post-conditions of one part, in the order in which they are made."""
+
+    def __init__(self, placed: NodeAt, sites: DefinitionSites) -> None:
+        self.writes: list[tuple[str, str, Effect]] = []
+        """When, which key, and the effect; keys that nobody reads have none."""
+        for _, when, key in assignments(placed):
+            site = sites.add(key, "post", placed.path, f"{when} {key}")
+            self.writes.append((when, key, write_effect(key, site, sites)))
+
+    def at(self, label: str) -> Effect:
+        """Return the effect behind an end that is called so."""
+        return self._joined(_AFTER.get(label, ()))
+
+    @property
+    def halted(self) -> Effect:
+        """The effect of being halted."""
+        return self._joined(_HALTED)
+
+    @property
+    def anywhere(self) -> Effect:
+        """What may be written at all."""
+        return combine_effects(effect.perhaps() for _, _, effect in self.writes)
+
+    def _joined(self, due: Sequence[str]) -> Effect:
+        found = NO_EFFECT
+        for when, _, effect in self.writes:
+            found = found.then(effect) if when in due else found
+        return found
+
+
+def post_condition_fact(
+    read: KeyRead,
+    before: int | None,
+    ways: Sequence[FlowEdge],
+    halted: Effect,
+    post: PostConditionEffects,
+    sites: DefinitionSites,
+) -> int | None:
+    """Return what holds where a post-condition is evaluated; None where the part is never entered.
+
+    Args:
+        read: What it reads; its keys say which one it is.
+        before: What holds before the part.
+        ways: The ways out of the part, before its post-conditions.
+        halted: What may be written when it is halted.
+        post: All its post-conditions.
+        sites: The places.
+    """
+    if before is None:
+        return None
+    _, when, key = read.keys
+    found = 0
+    for label, due in _AFTER.items():
+        for way in ways if when in due else ():
+            if way.label == label:
+                found |= _until(way.effect.after(before, sites), str(when), str(key), due, post, sites)
+    if when in _HALTED:
+        found |= _until(halted.after(before, sites), str(when), str(key), _HALTED, post, sites)
+    return found
+
+
+def _until(
+    fact: int, when: str, key: str, due: Sequence[str], post: PostConditionEffects, sites: DefinitionSites
+) -> int:
+    for other, written, effect in post.writes:
+        if (other, written) == (when, key):
+            break
+        fact = effect.after(fact, sites) if other in due else fact
+    return fact

@@ -1,0 +1,181 @@
+"""Checks for loops in which no time passes and nothing happens that could end them.
+
+A state says of itself that it is `instant`. A container ends at once where a way through instant
+states leads to that end. A loop of such ways is an error when nothing in it writes what it decides
+on: it goes round for ever. A loop that counts is left alone; a run has a bound for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.finding import Finding
+from engine.check.flow.key_reads import KeyRead, assignments
+from engine.check.graph_components import strong_components
+from engine.document.concurrency_condition import deciding
+from engine.document.node_spec import FOREACH_OUTCOMES, ConcurrencySpec, NodeSpec
+
+_SHOWN = 6
+
+
+def check_loops(subject: AnalyzedBehavior, read: Iterable[KeyRead]) -> Iterator[Finding]:
+    """Find loops of a machine through states that end at once, which nothing can end."""
+    instant = InstantOutcomes(subject)
+    if not instant.any:
+        return
+    keys: dict[str, set[str]] = {}
+    for each in read:
+        keys.setdefault(each.placed.path, set()).add(each.key)
+    for placed in subject.nodes.values():
+        if placed.node.sequential is not None:
+            yield from _check_machine(subject, placed, instant, keys)
+
+
+class InstantOutcomes:
+    """With which outcomes each node can end in the instant in which it was entered."""
+
+    def __init__(self, subject: AnalyzedBehavior, others: dict[int, InstantOutcomes] | None = None) -> None:
+        self._subject = subject
+        self._others = others if others is not None else {}
+        self.ends: dict[str, frozenset[str]] = {}
+        self.any = False
+        for placed in subject.postorder:
+            found = self.ends[placed.path] = self._own(placed)
+            self.any = self.any or bool(found) or placed.node.guard is not None
+
+    def ways(self, placed: NodeAt) -> tuple[str, ...]:
+        """Return where a child of a machine can lead at once."""
+        node = placed.node
+        found = [to for outcome, to in node.transitions.items() if outcome in self.ends[placed.path]]
+        if node.guard is not None and node.guard.to is not None:
+            found.append(node.guard.to)
+        return tuple(found)
+
+    def _own(self, placed: NodeAt) -> frozenset[str]:
+        node = placed.node
+        children = self._subject.children(placed)
+        signature = self._subject.signature(node)
+        if signature is not None:
+            return frozenset(signature.outcomes) if signature.instant and not _waits(node) else frozenset()
+        referred = self._subject.referred(node)
+        if referred is not None:
+            return self._referred(referred)
+        if node.sequential is not None:
+            return self._through(children, node.sequential.initial)
+        if node.foreach is not None:
+            ends = self._seen(children[0])
+            onward = frozenset(node.foreach.next) or self._subject.nominal[children[0].path]
+            exhausted, broken = FOREACH_OUTCOMES
+            if not node.foreach.items and not node.foreach.times:
+                return frozenset((exhausted,))
+            return frozenset(([exhausted] if ends & onward else []) + ([broken] if ends - onward else []))
+        if node.concurrency is not None:
+            return self._of_branches(node.concurrency, children)
+        return self._of_tree(placed, children)
+
+    def _referred(self, referred: AnalyzedBehavior) -> frozenset[str]:
+        known = self._others.get(id(referred))
+        if known is None:
+            known = self._others[id(referred)] = InstantOutcomes(referred, self._others)
+        return known.ends["root"]
+
+    def _through(self, children: Sequence[NodeAt], initial: str) -> frozenset[str]:
+        by_name = {child.name: child for child in children}
+        reached: set[str] = set()
+        due = [initial]
+        while due:
+            name = due.pop()
+            if name not in reached:
+                reached.add(name)
+                due += self.ways(by_name[name]) if name in by_name else ()
+        return frozenset(reached - set(by_name))
+
+    def _of_branches(self, container: ConcurrencySpec, children: Sequence[NodeAt]) -> frozenset[str]:
+        seen = {child.name: self._seen(child) for child in children}
+        found = {
+            rule.outcome
+            for rule in deciding(container.rules)
+            if rule.holds(lambda name, outcome: outcome in seen.get(name, ()))
+        }
+        if container.otherwise is not None and all(seen.values()):
+            found.add(container.otherwise)
+        return frozenset(found)
+
+    def _of_tree(self, placed: NodeAt, children: Sequence[NodeAt]) -> frozenset[str]:
+        """A tree ends at once when each of its leaves does; anything else is left to the run."""
+        for child in children:
+            due = self._subject.statuses[child.path] if child.is_part else self._subject.outcomes.get(child.path, ("",))
+            if not self.ends[child.path].issuperset(due):
+                return frozenset()
+        if not children:
+            return frozenset()
+        found = self._subject.statuses.get(placed.path) or self._subject.statuses[children[0].path]
+        return found if placed.is_part else frozenset("success" if end == "skipped" else end for end in found)
+
+    def _seen(self, child: NodeAt) -> frozenset[str]:
+        guard = child.node.guard
+        closed = [guard.to] if guard is not None and guard.to is not None else []
+        return self.ends[child.path].union(closed)
+
+
+def _waits(node: NodeSpec) -> bool:
+    """Tell whether a node may wait before it is run again."""
+    return node.retry is not None and node.retry.child is None and node.retry.backoff_s > 0
+
+
+def _check_machine(
+    subject: AnalyzedBehavior, placed: NodeAt, instant: InstantOutcomes, keys: Mapping[str, set[str]]
+) -> Iterator[Finding]:
+    children = subject.children(placed)
+    by_name = {child.name: child for child in children}
+    ranks = {child.name: rank for rank, child in enumerate(children)}
+    leads = {child.name: [to for to in instant.ways(child) if to in by_name] for child in children}
+    for loop in _loops(leads):
+        inside = [by_name[name] for name in loop]
+        if _can_change(subject, inside, keys):
+            continue
+        first = min(inside, key=lambda child: ranks[child.name])
+        start = loop.index(first.name)
+        shown = [*loop[start:], *loop[:start]]
+        names = shown if len(shown) <= _SHOWN else [*shown[: _SHOWN - 1], "…"]
+        message = f"no time passes in the loop {' → '.join([*names, first.name])}, and nothing in it changes its course"
+        hint = "let one of these states wait for something, or write what the loop decides on"
+        yield subject.finding("instant-loop", message, first.path, hint=hint)
+
+
+def _can_change(subject: AnalyzedBehavior, loop: Sequence[NodeAt], keys: Mapping[str, set[str]]) -> bool:
+    """Tell whether something in the loop writes what something in it reads."""
+    read: set[str] = set()
+    written: set[str] = set()
+    due = list(loop)
+    while due:
+        placed = due.pop()
+        due += subject.children(placed)
+        read |= keys.get(placed.path, set())
+        signature = subject.signature(placed.node)
+        written |= set(placed.node.outputs.values())
+        if signature is not None:
+            written |= {key for key in signature.outputs if key not in placed.node.outputs}
+        written |= {key for _, _, key in assignments(placed)}
+        if placed.node.foreach is not None:
+            written |= set(placed.node.foreach.collect.values())
+    return bool(read & written)
+
+
+def _loops(leads: Mapping[str, Sequence[str]]) -> Iterator[list[str]]:
+    """Go through the strongly connected parts that have a loop, each as one way round or, failing that, its members."""
+    for part in strong_components(leads):
+        members = set(part)
+        if len(part) == 1 and part[0] not in leads[part[0]]:
+            continue
+        yield _way_round(part, members, leads)
+
+
+def _way_round(part: Sequence[str], members: set[str], leads: Mapping[str, Sequence[str]]) -> list[str]:
+    trail = [part[0]]
+    while True:
+        onward = next((to for to in leads[trail[-1]] if to in members), trail[0])
+        if onward in trail:
+            return trail[trail.index(onward) :]
+        trail.append(onward)

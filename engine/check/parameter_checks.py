@@ -1,0 +1,180 @@
+"""Checks what nodes are given under `with`, `in` and `out`: names, types, ranges, well-formed expressions."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import Any, cast
+
+import msgspec
+
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.finding import Finding
+from engine.check.flow.key_reads import assignments, conditions
+from engine.document.decoding import explain_validation_error
+from engine.document.expression import Template
+from engine.document.parameter_spec import ParameterSpec
+from engine.document.signature import StateSignature
+from engine.errors import ExpressionError
+from engine.suggestions import did_you_mean
+
+
+def check_parameters(subject: AnalyzedBehavior) -> Iterator[Finding]:
+    """Find parameters and keys that do not exist, values that do not fit, and expressions that are not well formed."""
+    defaults = default_values(subject)
+    for placed in subject.nodes.values():
+        yield from _check_expressions(subject, placed)
+        signature = subject.signature(placed.node)
+        referred = subject.referred(placed.node)
+        if signature is not None:
+            required = [name for name, parameter in signature.parameters.items() if parameter.required]
+            names = list(_check_names(subject, placed, signature.parameters, required))
+            yield from names
+            yield from _check_state(subject, placed, signature, defaults, complete=not names)
+            yield from _check_keys(subject, placed, signature.inputs, signature.outputs)
+        elif referred is not None:
+            parameters = referred.behavior.parameters
+            required = [name for name, parameter in parameters.items() if parameter.required]
+            yield from _check_names(subject, placed, parameters, required)
+            yield from _check_behavior(subject, placed, parameters, defaults)
+            userdata = referred.behavior.document.userdata
+            yield from _check_keys(subject, placed, userdata, userdata)
+
+
+def default_values(subject: AnalyzedBehavior) -> dict[str, object]:
+    """Return the parameters of a behavior that have a default, as a run that is given nothing sees them."""
+    declared = subject.behavior.parameters.items()
+    return {
+        name: parameter.normal(parameter.default)
+        for name, parameter in declared
+        if not parameter.required and parameter.problem(parameter.default) is None
+    }
+
+
+def value_by_default(found: Template | ExpressionError, defaults: Mapping[str, object]) -> tuple[bool, object]:
+    """Return whether a value is known when all parameters have their defaults, and which it is."""
+    if isinstance(found, ExpressionError) or not found.names <= defaults.keys():
+        return False, None
+    try:
+        return True, found.evaluate(defaults)
+    except ExpressionError:
+        return False, None  # told where kinds are compared, or at the latest by a run
+
+
+def _check_expressions(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
+    given = {("with", name): found for name, found in subject.given_to(placed).items()}
+    for keys, found in {**given, **conditions(placed), **assignments(placed)}.items():
+        if isinstance(found, ExpressionError):
+            yield subject.finding("bad-expression", found.message, placed.path, *keys, hint=found.hint or "")
+
+
+def _check_names(
+    subject: AnalyzedBehavior, placed: NodeAt, declared: Collection[str], required: Collection[str]
+) -> Iterator[Finding]:
+    what = placed.node.state or placed.node.behavior
+    given = placed.node.parameters
+    for name in given:
+        if name not in declared:
+            message = f"`{what}` has no parameter `{name}`"
+            hint = did_you_mean(name, declared)
+            yield subject.finding("unknown-parameter", message, placed.path, "with", name, hint=hint, at_key=True)
+    for name in required:
+        if name not in given:
+            message = f"`{what}` needs the parameter `{name}`"
+            yield subject.finding("missing-parameter", message, placed.path, hint=f"add `{name}: …` to `with`")
+
+
+def _check_state(
+    subject: AnalyzedBehavior,
+    placed: NodeAt,
+    signature: StateSignature,
+    defaults: Mapping[str, object],
+    *,
+    complete: bool,
+) -> Iterator[Finding]:
+    values: dict[str, object] = {}
+    faults = 0
+    given = subject.given_to(placed)
+    for name, found in given.items():
+        known, value = value_by_default(found, defaults)
+        if not known or name not in signature.parameters:
+            continue
+        values[name] = value
+        declared = signature.parameters[name]
+        complaint = _complaint(value, declared.type)
+        if complaint is not None:
+            faults += 1
+            what, steps = complaint
+            constant = isinstance(found, Template) and found.constant
+            hint = str(declared.schema.get("description", "")) if constant else _DEFAULTS
+            shown = what if constant else f"{value!r}: {what}"
+            keys = ("with", name, *(steps if constant else ()))
+            yield subject.finding("bad-parameter", f"parameter `{name}`: {shown}", placed.path, *keys, hint=hint)
+    if complete and not faults and len(values) == len(given):
+        yield from _check_together(subject, placed, signature, values)
+
+
+_DEFAULTS = "this is what it is when the parameters of the behavior have their defaults"
+
+
+def _check_together(
+    subject: AnalyzedBehavior, placed: NodeAt, signature: StateSignature, values: Mapping[str, object]
+) -> Iterator[Finding]:
+    """Find values that fit one by one and not together, such as two of which only one may be given."""
+    complaint = _complaint(dict(values), signature.state, words=str)
+    if complaint is not None:
+        hint = f"see `flexcell states show {signature.name}`"
+        yield subject.finding("bad-parameter", complaint[0], placed.path, "with", hint=hint, at_key=True)
+
+
+def _complaint(
+    value: object, kind: Any, *, words: Callable[[str], str] = explain_validation_error
+) -> tuple[str, tuple[str | int, ...]] | None:
+    """Return what is wrong with a value and where inside it; None when it fits."""
+    try:
+        msgspec.convert(value, cast("type[Any]", kind))
+    except msgspec.ValidationError as error:
+        what, _, inner = str(error).partition(" - at ")
+        return words(what), _steps(inner)
+    except Exception:
+        # A check of a custom state may raise anything when it is made; a run tells what.
+        return None
+    return None
+
+
+def _steps(inner: str) -> tuple[str | int, ...]:
+    """Return the keys that a msgspec path such as `$.xyz[1]` names, as far as it names them."""
+    found: list[str | int] = []
+    for name, index in re.findall(r"\.([^.\[\]`]+)|\[(\d+|\.\.\.)\]", inner):
+        if index == "...":
+            break
+        found.append(name or int(index))
+    return tuple(found)
+
+
+def _check_behavior(
+    subject: AnalyzedBehavior, placed: NodeAt, declared: Mapping[str, ParameterSpec], defaults: Mapping[str, object]
+) -> Iterator[Finding]:
+    for name, found in subject.given_to(placed).items():
+        known, value = value_by_default(found, defaults)
+        problem = declared[name].problem(value) if known and name in declared else None
+        if problem:
+            constant = isinstance(found, Template) and found.constant
+            hint = declared[name].description if constant else _DEFAULTS
+            message = f"parameter `{name}`: {problem}"
+            yield subject.finding("bad-parameter", message, placed.path, "with", name, hint=hint)
+
+
+def _check_keys(
+    subject: AnalyzedBehavior, placed: NodeAt, inputs: Collection[str], outputs: Collection[str]
+) -> Iterator[Finding]:
+    what = placed.node.state or placed.node.behavior
+    for section, code, given, declared in (
+        ("in", "unknown-input", placed.node.inputs, inputs),
+        ("out", "unknown-output", placed.node.outputs, outputs),
+    ):
+        for key in given:
+            if key not in declared:
+                message = f"`{what}` has no {'input' if section == 'in' else 'output'} key `{key}`"
+                hint = did_you_mean(key, declared)
+                yield subject.finding(code, message, placed.path, section, key, hint=hint, at_key=True)

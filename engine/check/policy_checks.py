@@ -1,0 +1,74 @@
+"""Checks the policies of nodes: retry, autonomy, resume, guard and rounds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from engine.check.analyzed_behavior import AnalyzedBehavior, NodeAt
+from engine.check.finding import Finding
+from engine.check.flow.key_reads import conditions
+from engine.document.count import whole_number
+from engine.document.expression import Template
+from engine.errors import ExpressionError
+from engine.suggestions import did_you_mean
+
+_RESUME = ("rerun", "ask")
+
+
+def check_policies(subject: AnalyzedBehavior) -> Iterator[Finding]:
+    """Find settings that can have no effect, never let a run go on, or are no such thing."""
+    for placed in subject.nodes.values():
+        node = placed.node
+        if node.retry is not None and node.retry.child is None and not node.retry.errors and not node.retry.outcomes:
+            message = "this `retry` never happens: it names no `outcomes`, and `errors` is false"
+            yield subject.finding("idle-retry", message, placed.path, "retry", at_key=True)
+        for outcome, level in node.autonomy.items():
+            if level == "full":
+                message = f"`{outcome}` requires `full`, which no run has more of: it never passes by itself"
+                hint = "require `high` at most, unless an operator is to be asked in every run"
+                yield subject.finding(
+                    "autonomy-never-passes", message, placed.path, "autonomy", outcome, hint=hint, at_key=True
+                )
+        yield from _check_resume(subject, placed)
+        for keys, found in conditions(placed).items():
+            if isinstance(found, Template) and not found.names:
+                yield from _check_constant(subject, placed, keys, found)
+
+
+def _check_resume(subject: AnalyzedBehavior, placed: NodeAt) -> Iterator[Finding]:
+    resume = placed.node.resume
+    outcomes = subject.outcomes.get(placed.path)
+    if resume is None or outcomes is None or resume in (*_RESUME, *outcomes):
+        return
+    message = f"`{resume}` is no way to resume `{placed.name}`"
+    hint = did_you_mean(resume, (*_RESUME, *outcomes))
+    yield subject.finding("bad-resume", message, placed.path, "resume", hint=hint)
+
+
+def _check_constant(
+    subject: AnalyzedBehavior, placed: NodeAt, keys: tuple[str, ...], found: Template
+) -> Iterator[Finding]:
+    """Check what does not depend on a run: a guard that is always the same, items that are no list."""
+    try:
+        value = found.evaluate({})
+    except ExpressionError as error:
+        yield subject.finding("type-mismatch", error.message, placed.path, *keys, hint=error.hint or "")
+        return
+    key = keys[-1]
+    if key == "when":
+        if not isinstance(value, bool):
+            message = f"the guard takes true or false, and gets {value!r}"
+            hint = f"write `${{{value}}}`" if isinstance(value, str) else "compare it"
+            yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
+            return
+        message = f"this guard is always {'open' if value else 'closed'}"
+        hint = "remove it" if value else "let it depend on a parameter or a userdata key"
+        yield subject.finding("constant-guard", message, placed.path, *keys, hint=hint)
+    elif key == "times" and whole_number(value) is None:
+        message = f"`times` takes a whole number, 0 or more, and gets {value!r}"
+        hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
+        yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)
+    elif key == "items" and not isinstance(value, list):
+        message = f"`items` takes a list, and gets {value!r}"
+        hint = f"write `${{{value}}}`" if isinstance(value, str) else ""
+        yield subject.finding("type-mismatch", message, placed.path, *keys, hint=hint)

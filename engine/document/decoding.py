@@ -1,0 +1,185 @@
+"""Plain data to typed models; what does not fit is reported at its line and column."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from typing import TypeVar, cast
+
+import msgspec
+import msgspec.inspect as inspect
+
+from engine.document.mistakes import DocumentMistake, MistakeCollector, with_corrected_keys
+from engine.document.yaml_source import DataPath, DocumentSource
+from engine.errors import DocumentError
+from engine.suggestions import did_you_mean
+
+T = TypeVar("T")
+
+_AT = re.compile(r"^(?P<what>.*?)(?: - at (?:`key` in )?`(?P<path>\$.*)`)?$", re.DOTALL)
+_NO_CHOICE = re.compile(r"Invalid enum value '(.*)'", re.DOTALL)
+_MISSING = re.compile(r"Object missing required field `(.*)`")
+_TYPES = {"object": "mapping", "array": "list", "str": "text", "float": "number", "int": "integer", "bool": "boolean"}
+
+
+class StrictModel(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """Root of the models of a document: a key that is not a field is an error."""
+
+
+def decode_document(source: DocumentSource, kind: type[T], *, refused: Mapping[str, str] | None = None) -> T:
+    """Return the document as a `kind`.
+
+    Args:
+        source: What was read.
+        kind: A model, usually a `StrictModel` one.
+        refused: For keys that are known and not supported, what to say about them.
+
+    Raises:
+        DocumentError: the data does not fit; `where` is the position of the first mistake, `others` are the others.
+    """
+    try:
+        return msgspec.convert(source.data, kind)
+    except msgspec.ValidationError as complaint:
+        sifting = MistakeCollector()
+        sifting.sift(source.data, kind)
+        found = mistake_errors(source, kind, sifting.mistakes, refused=refused) or [
+            _refusal(source, kind, (), str(complaint))
+        ]
+        raise combine_mistakes(found) from None
+
+
+def combine_mistakes(mistakes: Sequence[DocumentError]) -> DocumentError:
+    """Return the first mistake of a document, with the others as its `others`."""
+    first, *others = mistakes
+    first.others = tuple(others)
+    return first
+
+
+def mistake_errors(
+    source: DocumentSource,
+    kind: object,
+    mistakes: Iterable[DocumentMistake],
+    *,
+    refused: Mapping[str, str] | None = None,
+) -> list[DocumentError]:
+    """Return what to say about the mistakes of a document that is to be a `kind`."""
+    known = list(mistakes)
+    meant = with_corrected_keys(source, known)
+    return [_of_mistake(meant, kind, mistake, refused or {}) for mistake in known]
+
+
+def _of_mistake(
+    source: DocumentSource, kind: object, mistake: DocumentMistake, refused: Mapping[str, str]
+) -> DocumentError:
+    path = mistake.path
+    match mistake.fault:
+        case "unknown":
+            name = str(path[-1])
+            where = source.position(path, of_key=True)
+            if name in refused:
+                return DocumentError(f"this version does not run `{name}`", where=where, hint=refused[name])
+            hint = did_you_mean(name, field_names(kind, path[:-1]))
+            return DocumentError(f"unknown key `{name}`", where=where, hint=hint)
+        case "missing":
+            return DocumentError(f"the key `{path[-1]}` is missing", where=source.position(path[:-1], of_key=True))
+        case "key":
+            return _refusal(source, kind, path, mistake.complaint, of_key=True)
+        case "value":
+            return _refusal(source, kind, path, mistake.complaint)
+
+
+def _refusal(
+    source: DocumentSource, kind: object, path: DataPath, complaint: str, *, of_key: bool = False
+) -> DocumentError:
+    match = cast("re.Match[str]", _AT.match(complaint))
+    steps = re.findall(r"\.([^.\[\]]+)|\[(\d+)\]", match["path"] or "$")
+    path = (*path, *(name or int(index) for name, index in steps))
+    missing = _MISSING.fullmatch(match["what"])
+    if missing:
+        return DocumentError(f"the key `{missing[1]}` is missing", where=source.position(path, of_key=True))
+    where = source.position(path, of_key=of_key)
+    name = next((step for step in reversed(path) if isinstance(step, str)), None)
+    subject = f"`{name}`: " if name is not None else ""
+    choice = _NO_CHOICE.fullmatch(match["what"])
+    hint = _advice(kind, path, of_key=of_key, given=choice[1] if choice else "")
+    return DocumentError(f"{subject}{explain_validation_error(match['what'])}", where=where, hint=hint)
+
+
+def explain_validation_error(what: str) -> str:
+    """Say what msgspec complains of with the type names that authors of YAML know."""
+
+    def types(match: re.Match[str]) -> str:
+        names = [_TYPES.get(name, name) for name in match[1].split(" | ")]
+        return " or ".join("nothing" if name == "null" else name for name in names)
+
+    said = re.sub(r"expected `str` matching regex .*", "not in the allowed form", what, flags=re.IGNORECASE | re.DOTALL)
+    said = re.sub(r"^Invalid enum value (.*)", r"there is no choice \1", said)
+    said = re.sub(r"`([a-z |]+)`", types, said)
+    return f"{said[:1].lower()}{said[1:]}"
+
+
+@cache
+def _type_of(kind: object) -> inspect.Type:
+    return inspect.type_info(kind)
+
+
+def field_names(kind: object, path: DataPath) -> tuple[str, ...]:
+    """Return the keys that a mapping at `path` of a document of this kind may have."""
+    return tuple(name for struct in _structs_at(kind, path) for name in (f.encode_name for f in struct.fields))
+
+
+def _advice(kind: object, path: DataPath, *, of_key: bool, given: str) -> str | None:
+    """Return what the model says about the value (or the key) at `path`: its description, or the choices."""
+    if of_key:
+        mappings = [option for option in _types_at(kind, path[:-1]) if isinstance(option, inspect.DictType)]
+        return next((found for option in mappings if (found := _description([option.key_type]))), None)
+    described = _declared_at(kind, path)
+    choices = [str(v) for option in described if isinstance(option, inspect.LiteralType) for v in option.values]
+    return _description(described) or (did_you_mean(given, choices) if choices else None)
+
+
+def _declared_at(kind: object, path: DataPath) -> list[inspect.Type]:
+    """Return the types declared at `path`, with their annotations."""
+    if not path:
+        return []
+    declared = [inner for container in _types_at(kind, path[:-1]) for inner in _inside(container, path[-1])]
+    return [t for found in declared for t in (found.types if isinstance(found, inspect.UnionType) else (found,))]
+
+
+def _description(options: Iterable[inspect.Type]) -> str | None:
+    for option in options:
+        if isinstance(option, inspect.Metadata):
+            extra = cast("Mapping[str, object] | None", option.extra_json_schema)  # pyright: ignore[reportUnknownMemberType]
+            return str(extra["description"]) if extra and "description" in extra else None
+    return None
+
+
+def _structs_at(kind: object, path: DataPath) -> list[inspect.StructType]:
+    return [option for option in _types_at(kind, path) if isinstance(option, inspect.StructType)]
+
+
+def _types_at(kind: object, path: DataPath) -> list[inspect.Type]:
+    here: list[inspect.Type] = list(_options(_type_of(kind)))
+    for step in path:
+        here = [option for container in here for inner in _inside(container, step) for option in _options(inner)]
+    return here
+
+
+def _options(kind: inspect.Type) -> Iterator[inspect.Type]:
+    if isinstance(kind, inspect.Metadata):
+        yield from _options(kind.type)
+    elif isinstance(kind, inspect.UnionType):
+        for option in kind.types:
+            yield from _options(option)
+    else:
+        yield kind
+
+
+def _inside(kind: inspect.Type, step: str | int) -> Iterator[inspect.Type]:
+    if isinstance(kind, inspect.StructType):
+        yield from (f.type for f in kind.fields if f.encode_name == step)
+    elif isinstance(kind, inspect.DictType):
+        yield kind.value_type
+    elif isinstance(kind, inspect.VarTupleType | inspect.ListType):
+        yield kind.item_type

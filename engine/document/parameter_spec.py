@@ -1,0 +1,147 @@
+"""Parameters of a behavior: what a run may be given, of which type and within which limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import UNSET, Meta
+
+from engine.document.decoding import StrictModel
+from engine.errors import DocumentError
+from engine.messages import Pose
+from engine.suggestions import did_you_mean
+
+ParameterType = Literal["number", "integer", "string", "boolean", "pose", "joints", "list", "mapping"]
+
+_KINDS: Mapping[str, object] = {
+    "number": float,
+    "integer": int,
+    "string": str,
+    "boolean": bool,
+    "pose": Pose,
+    "joints": tuple[float, ...],
+    "list": list[object],
+    "mapping": dict[str, object],
+}
+_WORDS: Mapping[str, str] = {
+    "number": "a number",
+    "integer": "an integer",
+    "string": "text",
+    "boolean": "true or false",
+    "pose": "a pose {xyz: [x, y, z], xyzw: [x, y, z, w], frame: NAME}",
+    "joints": "a list of joint angles in radians",
+    "list": "a list",
+    "mapping": "a mapping",
+}
+
+
+class ParameterSpec(StrictModel, frozen=True, kw_only=True):
+    """One parameter; without a default it must be given for each run. Limits include their ends."""
+
+    type: ParameterType
+    default: object = UNSET
+    minimum: float | None = None
+    maximum: float | None = None
+    unit: Annotated[str, Meta(description="SI unit, shown beside the value")] = ""
+    choices: tuple[object, ...] = ()
+    label: Annotated[str, Meta(description="What the form calls it; the name when empty")] = ""
+    description: str = ""
+
+    @property
+    def required(self) -> bool:
+        """True when a run cannot start without a value for it."""
+        return self.default is UNSET
+
+    @property
+    def value_type(self) -> object:
+        """The Python type that values are converted to."""
+        return _KINDS[self.type]
+
+    def problem(self, value: object) -> str | None:
+        """Return what is wrong with a value, None when it is acceptable."""
+        if not _fits(self.type, value):
+            return f"{value!r} is not {_WORDS[self.type]}"
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            if self.minimum is not None and value < self.minimum:
+                return f"{value} is below the minimum {self.minimum:g}{self._unit()}"
+            if self.maximum is not None and value > self.maximum:
+                return f"{value} is above the maximum {self.maximum:g}{self._unit()}"
+        if self.choices and value not in self.choices:
+            return f"{value!r} is none of {', '.join(repr(choice) for choice in self.choices)}"
+        return None
+
+    def normal(self, value: object) -> object:
+        """Return an acceptable value as a run sees it: numbers as float, lists and mappings as they are."""
+        return float(value) if self.type == "number" and isinstance(value, int | float) else value
+
+    def from_text(self, text: str) -> object:
+        """Return the value that command-line text means: text as it is, everything else as JSON.
+
+        Raises:
+            DocumentError: the text is not JSON of this type.
+        """
+        if self.type == "string":
+            return text
+        try:
+            return msgspec.json.decode(text)
+        except msgspec.DecodeError as error:
+            raise DocumentError(f"{text!r} is not {_WORDS[self.type]}") from error
+
+    def json_schema(self) -> dict[str, object]:
+        """Return the parameter as JSON Schema for a form, with `unit` beside the standard keys."""
+        schema: dict[str, object] = dict(msgspec.json.schema(_KINDS[self.type], schema_hook=any_value))
+        schema |= {"minimum": self.minimum} if self.minimum is not None else {}
+        schema |= {"maximum": self.maximum} if self.maximum is not None else {}
+        schema |= {"enum": list(self.choices)} if self.choices else {}
+        schema |= {"default": self.default} if not self.required else {}
+        texts = {"title": self.label, "description": self.description, "unit": self.unit}
+        return schema | {key: text for key, text in texts.items() if text}
+
+    def _unit(self) -> str:
+        return f" {self.unit}" if self.unit else ""
+
+
+def bind_parameters(
+    parameters: Mapping[str, ParameterSpec], given: Mapping[str, object], *, where: object | None = None
+) -> dict[str, object]:
+    """Return a value for every parameter: the given one or the default.
+
+    Raises:
+        DocumentError: an unknown name, a missing or an unacceptable value; `where` is passed on.
+    """
+    for name in given:
+        if name not in parameters:
+            raise DocumentError(f"there is no parameter `{name}`", where=where, hint=did_you_mean(name, parameters))
+    values: dict[str, object] = {}
+    for name, parameter in parameters.items():
+        if name not in given and parameter.required:
+            raise DocumentError(
+                f"the parameter `{name}` is missing", where=where, hint=f"give {_WORDS[parameter.type]}"
+            )
+        value = given.get(name, parameter.default)
+        problem = parameter.problem(value)
+        if problem:
+            raise DocumentError(f"parameter `{name}`: {problem}", where=where, hint=parameter.description or None)
+        values[name] = parameter.normal(value)
+    return values
+
+
+def any_value(kind: type) -> dict[str, object]:
+    """Describe `object` to the JSON Schema generator: anything is allowed.
+
+    Raises:
+        NotImplementedError: for every other type that the generator does not know.
+    """
+    if kind is object:
+        return {"description": "any value"}
+    raise NotImplementedError(f"no JSON Schema is known for {kind!r}")
+
+
+def _fits(kind: ParameterType, value: object) -> bool:
+    try:
+        msgspec.convert(value, _KINDS[kind])
+    except msgspec.ValidationError:
+        return False
+    return True

@@ -1,0 +1,329 @@
+"""Structural rules of behavior documents that types cannot express; each violation is an error with its position."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import cast
+
+from engine.document.behavior import Behavior
+from engine.document.cel_expression import RESERVED
+from engine.document.concurrency_condition import AT_LEAST, PREEMPT, WHEN
+from engine.document.decoding import combine_mistakes
+from engine.document.duration import seconds
+from engine.document.mistakes import MAX_MISTAKES
+from engine.document.node_spec import (
+    GUARD_TARGETS,
+    KINDS,
+    TREE_KINDS,
+    TREE_OUTCOMES,
+    WRAPPERS,
+    ConcurrencySpec,
+    NodeSpec,
+    ParallelSpec,
+)
+from engine.errors import DocumentError
+from engine.suggestions import did_you_mean
+
+_SHORTEST_EVERY_S = 1e-3
+_CONTAINER_KEYS = {
+    "with": "parameters go to states and behavior references",
+    "in": "the children of a container read the keys around it directly",
+    "out": "the children of a container write the keys around it directly",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RuleViolation:
+    """A rule that is broken: at the node `path`, or by what the behavior itself declares where that is empty.
+
+    Without what stands at `excess`, keys from the node inward, the rule is kept; None where the node cannot be
+    understood at all. What comes before in a list, or stands around another, is told first.
+    """
+
+    path: str
+    error: DocumentError
+    excess: tuple[str | int, ...] | None = ()
+
+
+def require_structural_rules(behavior: Behavior) -> None:
+    """Check kinds, places of keys and names.
+
+    Raises:
+        DocumentError: the first breach; `where` is its position, `others` are the others.
+    """
+    errors = [breach.error for breach in rule_violations(behavior)]
+    if errors:
+        raise combine_mistakes(errors[:MAX_MISTAKES])
+
+
+def rule_violations(behavior: Behavior) -> Iterator[RuleViolation]:
+    """Go through all breaches; what is inside a node that cannot be understood is left out."""
+    yield from _names(behavior)
+    if behavior.root.transitions:
+        where = behavior.key_position("root", "transitions")
+        error = DocumentError("the root has no transitions", where=where, hint="its outcomes are those of the behavior")
+        yield RuleViolation(path="root", error=error, excess=("transitions",))
+    in_tree: dict[str, bool] = {"": False}
+    for path, node in behavior.nodes():
+        parent = path.rpartition("/")[0]
+        if parent not in in_tree:
+            continue
+        kinds = _one_kind(behavior, path, node)
+        found = [kinds] if kinds is not None else list(_of_node(behavior, path, node, in_tree=in_tree[parent]))
+        yield from found
+        if all(breach.excess is not None for breach in found):
+            # Inside a machine that is a leaf of a tree, machine rules hold again.
+            in_tree[path] = node.tree is not None or (in_tree[parent] and node.kind in (*TREE_KINDS, *WRAPPERS))
+
+
+def _of_node(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:
+    if node.children:
+        yield from _container_keys(behavior, path, node)
+    if node.concurrency is not None or node.foreach is not None:
+        yield from _no_transitions(behavior, path, node)
+    if node.concurrency is not None:
+        yield from _conditions(behavior, path, node.concurrency)
+    yield from _tree_part(behavior, path, node) if in_tree else _no_tree_part(behavior, path, node)
+    yield from _rounds(behavior, path, node)
+    yield from _every(behavior, path, node, in_tree=in_tree)
+
+
+def _every(behavior: Behavior, path: str, node: NodeSpec, *, in_tree: bool) -> Iterator[RuleViolation]:
+    if node.every is None:
+        return
+    where = behavior.key_position(path, "every")
+    if not in_tree or (node.behaviour is None and node.kind not in KINDS):
+        hint = "a `remap` or `condition` has its own inside it"
+        error = DocumentError("`every` goes with a check or a `behaviour` in a tree", where=where, hint=hint)
+        yield RuleViolation(path=path, error=error, excess=("every",))
+    elif seconds(node.every) < _SHORTEST_EVERY_S:
+        error = DocumentError("`every` is at least 1 ms", where=where, hint="100 ms is the usual")
+        yield RuleViolation(path=path, error=error, excess=("every",))
+
+
+def _names(behavior: Behavior) -> Iterator[RuleViolation]:
+    document = behavior.document
+    for key in ("parameters", "userdata"):
+        for name in getattr(document, key):
+            if name in RESERVED:
+                where = behavior.source.position((key, name), of_key=True)
+                error = DocumentError(f"`{name}` is a word of the expression language", where=where, hint="rename it")
+                yield RuleViolation(path="", error=error, excess=(key, name))
+    for name in document.userdata:
+        if name in document.parameters:
+            where = behavior.source.position(("userdata", name), of_key=True)
+            error = DocumentError(f"`{name}` is a parameter and a userdata key", where=where, hint="rename one of them")
+            yield RuleViolation(path="", error=error, excess=("userdata", name))
+    for key in ("outcomes", "success"):
+        names: tuple[str, ...] = getattr(document, key)
+        known: set[str] = set()
+        for index, name in enumerate(names):
+            if name in known:
+                where = behavior.source.position((key, index))
+                error = DocumentError(f"`{name}` is repeated in `{key}`", where=where, hint="remove it")
+                yield RuleViolation(path="", error=error)
+            known.add(name)
+
+
+def _one_kind(behavior: Behavior, path: str, node: NodeSpec) -> RuleViolation | None:
+    kinds = node.kinds
+    if len(kinds) == 1:
+        return None
+    if kinds:
+        where = behavior.key_position(path, kinds[1])
+        error = DocumentError(f"this node is {_list(kinds)} at once", where=where, hint="keep one of them")
+    else:
+        where = behavior.key_position(path)
+        error = DocumentError("this node has no kind", where=where, hint=f"add one of {_list(KINDS)}")
+    return RuleViolation(path=path, error=error, excess=None)
+
+
+def _tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    """Inside a tree nothing has transitions, and a target is a status."""
+    for key in ("transitions", "autonomy"):
+        if getattr(node, key) and (key == "transitions" or node.kind in TREE_KINDS):
+            where = behavior.key_position(path, key)
+            hint = "trees know success and failure"
+            error = DocumentError(f"a part of a tree has no `{key}`", where=where, hint=hint)
+            yield RuleViolation(path=path, error=error, excess=(key,))
+    for key in WRAPPERS[1:]:
+        wrapper = getattr(node, key)
+        if wrapper is None:
+            continue
+        statuses = GUARD_TARGETS if key == "guard" else TREE_OUTCOMES
+        if wrapper.child is not None and wrapper.to is not None and key != "guard":
+            where = behavior.key_position(path, key, "to")
+            error = DocumentError(f"`{key}` with a `child` has no `to`", where=where, hint="it fails; remove `to`")
+            yield RuleViolation(path=path, error=error, excess=(key, "to"))
+        if wrapper.to not in statuses and not (wrapper.child is not None and wrapper.to is None):
+            where = behavior.position(path, key)
+            hint = f"add `to: failure`, or give it a `child` to make it a decorator; it may be {_list(statuses)}"
+            error = DocumentError(f"`{key}` inside a tree needs a `to` that is a status", where=where, hint=hint)
+            yield RuleViolation(path=path, error=error, excess=(key,))
+    if node.on_error is not None and node.on_error not in TREE_OUTCOMES:
+        where = behavior.position(path, "on_error")
+        error = DocumentError(
+            f"inside a tree there is no `{node.on_error}` to go to", where=where, hint=f"use {_list(TREE_OUTCOMES)}"
+        )
+        yield RuleViolation(path=path, error=error, excess=("on_error",))
+    if node.kind in (*TREE_KINDS, *WRAPPERS):
+        yield from _bare(behavior, path, node)
+    yield from _policy(behavior, path, node)
+
+
+def _policy(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    """A policy of a parallel names its children."""
+    policy = node.parallel.policy if isinstance(node.parallel, ParallelSpec) else ()
+    if isinstance(node.parallel, ParallelSpec) and node.parallel.counts:
+        yield from _thresholds(behavior, path, node.parallel)
+    for index, name in enumerate(() if isinstance(policy, str) else policy):
+        if name not in node.children:
+            where = behavior.position(path, "parallel", "policy", index)
+            error = DocumentError(
+                f"there is no child `{name}` here", where=where, hint=did_you_mean(name, node.children)
+            )
+            yield RuleViolation(path=path, error=error, excess=("parallel", "policy"))
+
+
+def _thresholds(behavior: Behavior, path: str, group: ParallelSpec) -> Iterator[RuleViolation]:
+    """Thresholds can be reached, and stand in place of a policy."""
+    for key in ("success_count", "failure_count"):
+        count: int | None = getattr(group, key)
+        if count is not None and count > len(group.children):
+            where = behavior.position(path, "parallel", key)
+            hint = f"lower `{key}`"
+            error = DocumentError(f"there are only {len(group.children)} children", where=where, hint=hint)
+            yield RuleViolation(path=path, error=error, excess=("parallel", key))
+    if group.policy != "all" or not group.synchronise:
+        key = "synchronise" if group.policy == "all" else "policy"
+        where = behavior.key_position(path, "parallel", key)
+        hint = "what has ended is not run again, and the counts say whose success is whose"
+        error = DocumentError(f"`{key}` does not go with thresholds", where=where, hint=hint)
+        yield RuleViolation(path=path, error=error, excess=("parallel", key))
+
+
+def _conditions(behavior: Behavior, path: str, container: ConcurrencySpec) -> Iterator[RuleViolation]:
+    """A condition has one outcome, or says whom it preempts and when; a number in it is `at_least`."""
+    for index, entry in enumerate(container.conditions):
+        keys = ("concurrency", "conditions", index)
+        found = _misshapen(entry)
+        if found is None:
+            yield from _counts(behavior, path, keys, entry)
+        else:
+            key, message, hint = found
+            error = DocumentError(message, where=behavior.key_position(path, *keys, key), hint=hint)
+            yield RuleViolation(path=path, error=error, excess=keys)
+
+
+def _misshapen(entry: Mapping[str, object]) -> tuple[str, str, str] | None:
+    """Return the key that makes an entry no condition, what is wrong with it, and what to do."""
+    preempted = entry.get(PREEMPT)
+    if isinstance(preempted, tuple):
+        named = cast("tuple[str, ...]", preempted)
+        if len(entry) == 1:
+            return PREEMPT, f"a condition with `{PREEMPT}` says when", f"add `{WHEN}: {{child: outcome}}`"
+        other = next(key for key in entry if key != PREEMPT)
+        if other != WHEN:
+            hint = f"write `{WHEN}` here, and `{other}` in a condition of its own"
+            return other, f"a condition decides an outcome or has `{PREEMPT}`, not both", hint
+        repeated = next((name for name in named if named.count(name) > 1), None)
+        if repeated is not None:
+            return PREEMPT, f"`{repeated}` is repeated in `{PREEMPT}`", "remove it"
+    elif len(entry) > 1:
+        outcome = list(entry)[1]
+        return outcome, "a condition has one outcome", f"put `{outcome}` in a condition of its own"
+    no_mapping = next((key for key, value in entry.items() if isinstance(value, tuple) and key != PREEMPT), None)
+    if no_mapping is None:
+        return None
+    return no_mapping, f"`{no_mapping}`: a list, expected a mapping", "write `{child: outcome}`"
+
+
+def _counts(
+    behavior: Behavior, path: str, keys: tuple[str | int, ...], entry: Mapping[str, object]
+) -> Iterator[RuleViolation]:
+    """A number in a condition is `at_least`, and no more than the children beside it."""
+    for key, written in entry.items():
+        if not isinstance(written, dict):
+            continue
+        when = cast("dict[str, str | int]", written)
+        children = sum(isinstance(due, str) for due in when.values())
+        excess = keys if not children else None
+        for name, due in when.items():
+            if isinstance(due, str) or (name == AT_LEAST and due <= children):
+                continue
+            where = behavior.position(path, *keys, key, name)
+            if name == AT_LEAST:
+                message, hint = f"there are only {children} children in this condition", f"lower `{AT_LEAST}`"
+            else:
+                message, hint = f"`{name}`: {due} is no outcome", f"write an outcome; only `{AT_LEAST}` is a number"
+            # Of a condition without children nothing is left, and it goes with the first that is wrong in it.
+            error = DocumentError(message, where=where, hint=hint)
+            yield RuleViolation(path=path, error=error, excess=excess or (*keys, key, name))
+            excess = None
+
+
+def _bare(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    """A composite or decorator has nothing beside its kind, except for a guard."""
+    for key in (*WRAPPERS, "on_error", "resume", "success"):
+        if key not in (node.kind, "guard") and getattr(node, key):
+            where = behavior.key_position(path, key)
+            hint = f"wrap it: `{key}: {{…, child: …}}`" if key in WRAPPERS else "remove it"
+            error = DocumentError(f"a `{node.kind}` of a tree has no `{key}`", where=where, hint=hint)
+            yield RuleViolation(path=path, error=error, excess=(key,))
+    if node.kind == "retry" and node.retry is not None and node.retry.outcomes:
+        where = behavior.key_position(path, "retry", "outcomes")
+        hint = "it tries again after FAILURE"
+        error = DocumentError("`retry` with a `child` has no `outcomes`", where=where, hint=hint)
+        yield RuleViolation(path=path, error=error, excess=("retry", "outcomes"))
+
+
+def _no_tree_part(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    if node.kind in (*TREE_KINDS, *WRAPPERS):
+        where = behavior.key_position(path, node.kind)
+        hint = f"put it inside `tree:`, or use one of {_list(KINDS)}"
+        error = DocumentError(f"`{node.kind}` stands only inside a tree", where=where, hint=hint)
+        yield RuleViolation(path=path, error=error, excess=None)
+        return
+    for key in ("name", "success", "post"):
+        if getattr(node, key):
+            where = behavior.key_position(path, key)
+            error = DocumentError(f"`{key}` of a node stands only inside a tree", where=where, hint="remove it")
+            yield RuleViolation(path=path, error=error, excess=(key,))
+    for key in WRAPPERS[1:]:
+        wrapper = getattr(node, key)
+        if wrapper is not None and wrapper.to is None:
+            where = behavior.position(path, key)
+            error = DocumentError("the key `to` is missing", where=where, hint=f"say where `{key}` leads")
+            yield RuleViolation(path=path, error=error, excess=(key,))
+
+
+def _rounds(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    rounds = node.foreach
+    if rounds is not None and (rounds.items is None) == (rounds.times is None):
+        where = behavior.key_position(path, "foreach")
+        error = DocumentError("a foreach has either `items` or `times`", where=where, hint="give one of them")
+        yield RuleViolation(path=path, error=error, excess=("foreach", "times") if rounds.times is not None else ())
+
+
+def _container_keys(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    for key, value in (("with", node.parameters), ("in", node.inputs), ("out", node.outputs)):
+        if value:
+            where = behavior.key_position(path, key)
+            error = DocumentError(f"a {node.kind} container has no `{key}`", where=where, hint=_CONTAINER_KEYS[key])
+            yield RuleViolation(path=path, error=error, excess=(key,))
+
+
+def _no_transitions(behavior: Behavior, path: str, node: NodeSpec) -> Iterator[RuleViolation]:
+    for name, child in node.children.items():
+        if child.transitions:
+            where = behavior.key_position(f"{path}/{name}", "transitions")
+            rounds = node.foreach is not None
+            hint = "its outcomes are used in `next`" if rounds else "its outcomes are used in `conditions`"
+            beside = "is run round after round" if rounds else "runs side by side with others"
+            error = DocumentError(f"`{name}` {beside} and has no transitions", where=where, hint=hint)
+            yield RuleViolation(path=f"{path}/{name}", error=error, excess=("transitions",))
+
+
+def _list(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)

@@ -1,0 +1,169 @@
+"""Looks at a text as it is being edited: what it draws, and everything that is wrong with it."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import msgspec
+
+from engine.check import Finding, check_survey
+from engine.document.loader import survey_behavior
+from engine.editing.document_graph import DocumentInfo, DocumentNode, document_graph, info_of
+from engine.editing.draft import Draft
+from engine.editing.outline import Outline, Plain
+from engine.editing.project_context import ProjectContext
+from engine.errors import DocumentError, Position
+from engine.library.behavior_library import FindingView
+
+
+@dataclass(frozen=True, kw_only=True)
+class DocumentAnalysis:
+    """What is known of a text; `graph` and `document` are None where it cannot be read.
+
+    `with_findings` is False where it was drawn, and nobody has looked yet for what is wrong with it.
+    """
+
+    hash: str
+    graph: DocumentNode | None
+    document: DocumentInfo | None
+    findings: tuple[FindingView, ...]
+    checked: bool
+
+
+def text_hash(text: str) -> str:
+    """Return the SHA-256 of a text as it stands in a file."""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def analyze_text(text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
+    """Draw and check a text as if it stood in `file`."""
+    try:
+        draft = Draft(text, file=str(file))
+    except DocumentError as error:
+        return analyze_unreadable_text(text, error, file=file, context=context)
+    return with_findings(draw_document(draft, file=file, context=context), text, file=file, context=context)
+
+
+def analyze_unreadable_text(
+    text: str, error: DocumentError, *, file: Path, context: ProjectContext
+) -> DocumentAnalysis:
+    """Return what is known of a text that cannot be drawn: what is wrong with it, this error at least."""
+    found = findings_of(text, file=file, context=context)
+    told = found if any(each.severity == "error" for each in found) else (_invalid(error), *found)
+    return DocumentAnalysis(hash=text_hash(text), graph=None, document=None, findings=told, checked=True)
+
+
+def draw_document(draft: Draft, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
+    """Draw a text as if it stood in `file`; one that leads out of the project is not looked at any further."""
+    graph = document_graph(draft, context)
+    out = sorted_findings(find_external_references(draft, context, file), graph)
+    return DocumentAnalysis(
+        hash=text_hash(draft.given), graph=graph, document=info_of(draft), findings=out, checked=bool(out)
+    )
+
+
+def with_findings(drawn: DocumentAnalysis, text: str, *, file: Path, context: ProjectContext) -> DocumentAnalysis:
+    """Return what is known of a text that was drawn, and what is wrong with it."""
+    if drawn.checked:
+        return drawn
+    return replace(drawn, findings=sorted_findings(_check(text, file, context), drawn.graph), checked=True)
+
+
+def sorted_findings(found: list[FindingView], graph: DocumentNode | None) -> tuple[FindingView, ...]:
+    """Return findings in the order of the text, each with its line and its node as far as one tells the other."""
+    nodes = _by_line(graph) if found and graph is not None else []
+    return tuple(sorted((_placed(each, nodes) for each in found), key=lambda each: (each.line, each.column)))
+
+
+def findings_of(text: str, *, file: Path, context: ProjectContext) -> tuple[FindingView, ...]:
+    """Return what is wrong with a text as if it stood in `file`, in its order, without drawing it."""
+    found = _check(text, file, context)
+    return tuple(sorted(found, key=lambda each: (each.line, each.column)))
+
+
+def _check(text: str, file: Path, context: ProjectContext) -> list[FindingView]:
+    survey = survey_behavior(file, text, within=context.project)
+    cell = survey.behavior.cell_file if survey.behavior is not None else None
+    entries = context.stored(cell) if cell is not None else None
+    return [finding_view(finding, file) for finding in check_survey(survey, file, context.catalogue, entries)]
+
+
+def find_external_references(draft: Draft, context: ProjectContext, file: Path) -> list[FindingView]:
+    """Return where a text names files outside of the project, which nobody is to look at."""
+    named: list[tuple[str, Plain, str]] = [
+        (path, ref.data, "behavior") for path, ref in Outline(draft.data).refs.items() if "behavior" in ref.data
+    ]
+    named += [("", draft.data, "cell")] if isinstance(draft.data.get("cell"), str) else []
+    found: list[FindingView] = []
+    for path, data, key in named:
+        written = data[key]
+        if isinstance(written, str) and not _is_inside(file.parent, written, context.project):
+            source = draft.source_of(data)
+            member = (
+                next((m for m in source.members if m.key is not None and m.key.value == key), None) if source else None
+            )
+            at = member.value.start if member is not None else 0
+            before = draft.origin.text[:at]
+            found.append(
+                FindingView(
+                    severity="error",
+                    code="invalid-document",
+                    message=f"`{written}` leads out of the project",
+                    path=path,
+                    line=before.count("\n") + 1,
+                    column=at - before.rfind("\n"),
+                    hint="name a file of this project, relative to this document",
+                )
+            )
+    return found
+
+
+def _is_inside(folder: Path, written: str, project: Path) -> bool:
+    try:
+        return (folder / written).resolve().is_relative_to(project.resolve())
+    except (OSError, ValueError):
+        return False
+
+
+def _invalid(error: DocumentError) -> FindingView:
+    here = error.where if isinstance(error.where, Position) else Position(file="", line=1, column=1)
+    return FindingView(
+        severity="error", code="invalid-document", message=error.message, path="",
+        line=here.line, column=here.column, hint=error.hint or "",
+    )  # fmt: skip
+
+
+def finding_view(finding: Finding, file: Path) -> FindingView:
+    """Return a finding as the editor shows it in `file`: one of another behavior, at the node that refers to that."""
+    position, message, path = finding.position, finding.message, finding.path
+    if position.file != str(file):
+        # Of a behavior that is referred to: the node that refers to it is what can be shown here.
+        path = path.partition("/root")[0] or "root"
+        message = f"{Path(position.file).name}:{position.line}: {message}"
+        line = 0 if finding.path else 1
+        path, position = path if finding.path else "", Position(file=str(file), line=line, column=line)
+    return FindingView(
+        severity=finding.severity, code=finding.code, message=message, path=path,
+        line=position.line, column=position.column, hint=finding.hint or "",
+    )  # fmt: skip
+
+
+def _by_line(graph: DocumentNode) -> list[DocumentNode]:
+    found = [graph]
+    for node in found:
+        found += node.children
+    return found
+
+
+def _placed(finding: FindingView, nodes: list[DocumentNode]) -> FindingView:
+    """Give a finding the line of its node, or the node of its line, where it has only one of them."""
+    if finding.line == 0:
+        node = next((each for each in nodes if each.path == finding.path), None)
+        line, column = (node.line, node.column) if node is not None else (1, 1)
+        return msgspec.structs.replace(finding, line=line, column=column)
+    if finding.path:
+        return finding
+    around = [node for node in nodes if node.line <= finding.line <= node.end_line]
+    return msgspec.structs.replace(finding, path=around[-1].path) if around else finding

@@ -1,0 +1,411 @@
+"""The behaviors of a project as files to be edited: opened, saved without overwriting anybody, renamed, deleted."""
+
+from __future__ import annotations
+
+import json
+import logging
+import re
+import threading
+import time
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+from engine.cell.cell_names import CellNameKind, cell_names
+from engine.check.analyzed_behavior import Catalogue
+from engine.document.cell import Cell, load_cell
+from engine.document.loader import parse_behavior
+from engine.document.yaml_source import MAX_BYTES, parse_source
+from engine.editing.apply import EditResult
+from engine.editing.catalogue import BehaviorReferenceView, behavior_reference_views
+from engine.editing.data_flow import KeyFlow, data_flow
+from engine.editing.diagnostics import DocumentAnalysis, find_external_references, text_hash
+from engine.editing.draft import Draft
+from engine.editing.draft_cache import DraftCache
+from engine.editing.edit import AnyEdit
+from engine.editing.project_context import ProjectContext, StoredEntryNames
+from engine.editing.templates import new_text
+from engine.editing.three_way_merge import MergeConflict, merge_texts
+from engine.editing.versions import DocumentVersion, VersionHistory, write_atomically
+from engine.errors import DocumentError, Position
+from engine.host.state_folder_names import STATE_FOLDER
+from engine.library.behavior_library import FindingView, Library
+
+_ID = re.compile(r"behaviors(?:/[A-Za-z0-9_][A-Za-z0-9_. -]{0,79}){1,8}\.(?:yaml|yml|json)")
+_LATER = re.compile(r"\.breakpoints\.ya?ml$")
+_log = logging.getLogger("flexcell.documents")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoredDocument:
+    """A document as it is on disk."""
+
+    id: str
+    text: str
+    hash: str
+    saved_at_s: float
+
+
+class NoSuchDocument(DocumentError):
+    """No document of the project has this id, or no version this hash."""
+
+
+class DocumentConflict(DocumentError):
+    """A document is not what the writer has read; `merged` has both changes where they do not contradict each other."""
+
+    def __init__(self, theirs: StoredDocument, merged: str | None, conflicts: tuple[MergeConflict, ...]) -> None:
+        hint = "look at both and save again" if merged is None else "save the merged text, or choose one of the two"
+        super().__init__("the document has changed on disk meanwhile", where=theirs.id, hint=hint)
+        self.theirs = theirs
+        self.merged = merged
+        self.conflicts = conflicts
+
+
+class DocumentRepository:
+    """The documents under `project/behaviors`; may be used from any thread.
+
+    Args:
+        project: The folder of the project.
+        catalogue: The states by name.
+        now_s: The wall clock, seconds since 1970.
+        stored: The entries of open cells, by the file of the cell; where it knows none the seed counts.
+        cell: The cell that is open, of which names are offered.
+    """
+
+    def __init__(
+        self,
+        project: Path,
+        catalogue: Catalogue,
+        *,
+        now_s: Callable[[], float] = time.time,
+        stored: StoredEntryNames = lambda _: None,
+        cell: Cell | None = None,
+    ) -> None:
+        self.catalogue = catalogue
+        self._stored = stored
+        self._cell = cell
+        self._project = project.resolve()
+        self._versions = VersionHistory(self._project / STATE_FOLDER / "versions", now_s=now_s)
+        self._writing = threading.Lock()
+        self._desk = DraftCache()
+        self._library = Library(self._project, catalogue)
+
+    @property
+    def project(self) -> Path:
+        """The folder of the project."""
+        return self._project
+
+    def referable(self) -> tuple[BehaviorReferenceView, ...]:
+        """Return the behaviors of the project as others may refer to them, sorted by id."""
+        with self._writing:
+            return behavior_reference_views(self._library)
+
+    def offered(self) -> dict[CellNameKind, tuple[str, ...]]:
+        """Return the names that the open cell offers by kind, those that the check knows; none without a cell."""
+        return cell_names(self._cell).listed() if self._cell is not None else {}
+
+    def offered_to(self, document_id: str, text: str) -> dict[CellNameKind, tuple[str, ...]]:
+        """Return the names that the cell of a text offers by kind; those of the open one where it names none.
+
+        None where that cell cannot be read, of which the check tells, or is none of this project.
+        """
+        drawn = self.draw(document_id, text)
+        written = drawn.document.cell if drawn.document is not None else None
+        if written is None:
+            return self.offered()
+        try:
+            file = (self.file_of(document_id).parent / written).resolve()
+            return cell_names(load_cell(file)).listed() if file.is_relative_to(self._project) else {}
+        except (DocumentError, OSError, ValueError):
+            return {}  # the check says what is wrong with it
+
+    def file_of(self, document_id: str) -> Path:
+        """Return where a document is, or would be.
+
+        Raises:
+            DocumentError: this is no id of a document, or leads out of the project.
+        """
+        parts = document_id.split("/")
+        if not _ID.fullmatch(document_id) or any(part.endswith(".") or ".." in part for part in parts):
+            hint = "an id is a path such as `behaviors/folder/name.yaml`"
+            raise NoSuchDocument("this is no id of a document", where=document_id[:200], hint=hint)
+        file = (self._project / document_id).resolve()
+        if not file.is_relative_to(self._project / "behaviors"):
+            raise NoSuchDocument("this leads out of the project", where=document_id)
+        if _LATER.search(document_id):
+            raise NoSuchDocument("breakpoints are no behavior", where=document_id)
+        return file
+
+    def context(self, document_id: str) -> ProjectContext:
+        """Return what is known around a document."""
+        return ProjectContext(self.catalogue, self.file_of(document_id).parent, self._project, self._stored)
+
+    def open(self, document_id: str) -> StoredDocument:
+        """Return a document and keep its text as a version, for whoever saves it later.
+
+        Raises:
+            NoSuchDocument: there is none.
+            DocumentError: it cannot be read as text, or is no behavior.
+        """
+        file = self.file_of(document_id)
+        opened = self._read(document_id, file)
+        _require_behavior(opened.text, document_id)
+        with self._writing:
+            self._remember(document_id, opened.text)
+        return opened
+
+    def examine(self, document_id: str, text: str) -> DocumentAnalysis:
+        """Draw and check a text as if it were the document's."""
+        return self._desk.examine(text, file=self.file_of(document_id), context=self.context(document_id))
+
+    def draw(self, document_id: str, text: str) -> DocumentAnalysis:
+        """Draw a text as if it were the document's; what is wrong with it is looked for by `examine`."""
+        return self._desk.draw(text, file=self.file_of(document_id), context=self.context(document_id))
+
+    def findings(self, document_id: str, text: str) -> tuple[FindingView, ...]:
+        """Check a text as if it were the document's, without drawing it again."""
+        return self._desk.findings(text, file=self.file_of(document_id), context=self.context(document_id))
+
+    def edit(self, document_id: str, text: str, edits: Sequence[AnyEdit]) -> tuple[EditResult, DocumentAnalysis]:
+        """Make edits in a text, all or none, and draw what comes of it; nothing is saved."""
+        context = self.context(document_id)
+        return self._desk.edit(text, edits, file=self.file_of(document_id), context=context)
+
+    def data_flow(self, document_id: str, text: str) -> tuple[KeyFlow, ...]:
+        """Return who writes and who reads each key of a text.
+
+        Raises:
+            DocumentError: it is no valid behavior, or leads out of the project.
+        """
+        file, context = self.file_of(document_id), self.context(document_id)
+        stray = next(iter(find_external_references(Draft(text, file=str(file)), context, file)), None)
+        if stray is not None:
+            where = Position(file=document_id, line=stray.line, column=stray.column)
+            raise DocumentError(stray.message, where=where, hint=stray.hint)
+        return data_flow(parse_behavior(text, file=file), self.catalogue)
+
+    def save(self, document_id: str, text: str, *, base_hash: str) -> StoredDocument:
+        """Write a document that is as it was when it was opened.
+
+        Args:
+            document_id: Which.
+            text: The new text.
+            base_hash: The hash of the text that it was made from.
+
+        Raises:
+            DocumentConflict: it has another text by now.
+            NoSuchDocument: there is none any more.
+            DocumentError: the text is no document.
+        """
+        file = self.file_of(document_id)
+        _require_document(text, document_id)
+        with self._changing(document_id):
+            there = self._read(document_id, file)
+            if there.hash == text_hash(text):
+                return there
+            self._versions.keep(document_id, there.text)
+            if there.hash != base_hash:
+                raise self._conflict(there, text, base_hash)
+            write_atomically(file, text)
+            self._versions.keep(document_id, text, by="editor")
+        return self._read(document_id, file)
+
+    def create(self, document_id: str, *, template: str = "machine", name: str = "") -> StoredDocument:
+        """Make a document from a template.
+
+        Raises:
+            DocumentError: the id is taken, or there is no such template.
+        """
+        file = self.file_of(document_id)
+        text = new_text(template, name=name or file.stem)
+        if file.suffix == ".json":
+            text = json.dumps(parse_source(text, file=document_id).data, indent=2, ensure_ascii=False) + "\n"
+        return self._put(document_id, file, text)
+
+    def add(self, document_id: str, text: str) -> StoredDocument:
+        """Make a document of a text.
+
+        Raises:
+            DocumentError: the id is taken, or the text is no behavior.
+        """
+        _require_document(text, document_id)
+        return self._put(document_id, self.file_of(document_id), text)
+
+    def duplicate(self, document_id: str, new_id: str) -> StoredDocument:
+        """Make a copy of a document; raises DocumentError where the new id is taken."""
+        return self._put(new_id, self.file_of(new_id), self._read(document_id, self.file_of(document_id)).text)
+
+    def rename(self, document_id: str, new_id: str) -> StoredDocument:
+        """Give a document another id; its versions go along. References to it in other documents stay as they are.
+
+        Raises:
+            DocumentError: there is none, the new id is taken, or it is of another format.
+        """
+        file, new = self.file_of(document_id), self.file_of(new_id)
+        if (file.suffix == ".json") != (new.suffix == ".json"):
+            raise DocumentError("a rename does not turn YAML into JSON", where=new_id, hint="keep the ending")
+        with self._changing(document_id):
+            there = self._read(document_id, file)
+            _require_free(new, new_id)
+            self._versions.keep(document_id, there.text)
+            new.parent.mkdir(parents=True, exist_ok=True)
+            file.rename(new)
+            self._versions.rename(document_id, new_id)
+        return self._read(new_id, new)
+
+    def delete(self, document_id: str) -> None:
+        """Remove a document; its text stays among its versions.
+
+        Raises:
+            NoSuchDocument: there is none.
+        """
+        file = self.file_of(document_id)
+        with self._changing(document_id):
+            self._versions.keep(document_id, self._read(document_id, file).text)
+            file.unlink()
+
+    def versions(self, document_id: str) -> tuple[DocumentVersion, ...]:
+        """Return the versions of a document, newest first, also of a deleted one.
+
+        Raises:
+            NoSuchDocument: there never was one.
+        """
+        file = self.file_of(document_id)
+        with self._writing:
+            if file.is_file():
+                self._remember(document_id, self._read(document_id, file).text)
+            found = self._versions.all(document_id)
+        if not found:
+            raise NoSuchDocument("there is no such document", where=document_id)
+        return found
+
+    def version(self, document_id: str, digest: str) -> str:
+        """Return the text of a version; raises DocumentError where it is not kept."""
+        self.file_of(document_id)
+        return self._versions.text(document_id, digest)
+
+    def deleted(self) -> tuple[tuple[str, DocumentVersion], ...]:
+        """Return the documents that have gone and of which a version is kept: id and newest version, newest first."""
+        with self._writing:
+            gone = [each for each in self._versions.ids() if not (self._project / each).exists()]
+            found = [(each, self._versions.all(each)[0]) for each in gone if _ID.fullmatch(each)]
+        return tuple(sorted(found, key=lambda each: -each[1].saved_at_s))
+
+    def restore(self, document_id: str) -> StoredDocument:
+        """Write a document that was deleted again, as it was last.
+
+        Raises:
+            NoSuchDocument: no version of it is kept.
+            DocumentError: there is one under its id.
+        """
+        file, newest = self.file_of(document_id), self.versions(document_id)[0]
+        return self._put(document_id, file, self.version(document_id, newest.hash))
+
+    def stamps(self) -> dict[str, tuple[int, int]]:
+        """Return time of change (ns) and size of every document, by id; cheap enough to be asked each second."""
+        found: dict[str, tuple[int, int]] = {}
+        folder = self._project / "behaviors"
+        for file in folder.rglob("*"):
+            if file.suffix in (".yaml", ".yml", ".json"):
+                try:
+                    status = file.stat()
+                except OSError:
+                    continue  # it went while we looked
+                found[file.relative_to(self._project).as_posix()] = (status.st_mtime_ns, status.st_size)
+        return found
+
+    def hash_on_disk(self, document_id: str) -> str | None:
+        """Return the hash of a document as it is on disk; None where there is none."""
+        try:
+            return self._read(document_id, self.file_of(document_id)).hash
+        except DocumentError:
+            return None  # deleted, or no text: either way nothing to compare with
+
+    @contextmanager
+    def _changing(self, document_id: str) -> Generator[None]:
+        """Hold the files of the project; what the system refuses is told with the document and what to do."""
+        with self._writing:
+            try:
+                yield
+            except OSError as error:
+                raise DocumentError(
+                    f"the document cannot be written: {error.strerror}",
+                    where=document_id,
+                    hint="let this server write in the folder of the project, or make room on its disk",
+                ) from error
+
+    def _remember(self, document_id: str, text: str) -> None:
+        """Keep what was found in a file as a version; a project that cannot be written is read all the same."""
+        try:
+            self._versions.keep(document_id, text)
+        except OSError as error:
+            _log.warning("no version of %s can be kept: %s", document_id, error)
+
+    def _conflict(self, there: StoredDocument, text: str, base_hash: str) -> DocumentConflict:
+        try:
+            base = self._versions.text(there.id, base_hash)
+        except DocumentError:
+            # Nobody knows what it was made from: only a person can tell what is to stay.
+            line = MergeConflict(line=1, base="", ours=text, theirs=there.text)
+            return DocumentConflict(there, None, (line,))
+        merged = merge_texts(base, text, there.text)
+        if merged.text is not None:
+            try:
+                _require_document(merged.text, there.id)
+            except DocumentError:
+                return DocumentConflict(there, None, (MergeConflict(line=1, base=base, ours=text, theirs=there.text),))
+        return DocumentConflict(there, merged.text, merged.conflicts)
+
+    def _put(self, document_id: str, file: Path, text: str) -> StoredDocument:
+        with self._changing(document_id):
+            _require_free(file, document_id)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(file, text)
+            self._versions.keep(document_id, text, by="editor")
+        return self._read(document_id, file)
+
+    def _read(self, document_id: str, file: Path) -> StoredDocument:
+        try:
+            if not file.is_file():
+                raise NoSuchDocument("there is no such document", where=document_id, hint="see the list of behaviors")
+            with file.open("rb") as stream:
+                content = stream.read(MAX_BYTES + 1)
+            saved_at_s = file.stat().st_mtime
+            text = content.decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise DocumentError("the file is not UTF-8", where=document_id, hint="save it as UTF-8") from error
+        except OSError as error:
+            raise DocumentError(f"cannot read this file: {error.strerror}", where=document_id) from error
+        if len(content) > MAX_BYTES:
+            raise DocumentError("the file is too large to be edited", where=document_id)
+        return StoredDocument(id=document_id, text=text, hash=text_hash(text), saved_at_s=saved_at_s)
+
+
+def _require_document(text: str, document_id: str) -> None:
+    """Refuse text that is no YAML mapping; one that is no valid behavior may be saved, or no work could be left off."""
+    data = parse_source(text, file=document_id).data
+    if not isinstance(data, dict):
+        raise DocumentError("the document is no mapping", where=document_id, hint="begin with `flexcell: 1`")
+    _require_behavior_data(cast("dict[str, object]", data), document_id)
+
+
+def _require_behavior(text: str, document_id: str) -> None:
+    """Refuse cells and entries, which lie in the same folder; text with mistakes may be opened to mend them."""
+    try:
+        data = parse_source(text, file=document_id).data
+    except DocumentError:
+        return
+    if isinstance(data, dict):
+        _require_behavior_data(cast("dict[str, object]", data), document_id)
+
+
+def _require_behavior_data(data: dict[str, object], document_id: str) -> None:
+    if "root" not in data and ("cell" in data or "robots" in data or "faults" in data or "breakpoints" in data):
+        raise DocumentError("this is no behavior", where=document_id, hint="the editor edits behaviors")
+
+
+def _require_free(file: Path, document_id: str) -> None:
+    if file.exists():
+        raise DocumentError("there is a document with this id", where=document_id, hint="choose another name")

@@ -1,0 +1,6 @@
+"""Quick fixes: for a finding, the edits that would mend it, each with a title; a person chooses, nothing is guessed."""
+
+from engine.editing.fixes.fix import Fix
+from engine.editing.fixes.fix_registry import fixes_of
+
+__all__ = ["Fix", "fixes_of"]

@@ -1,0 +1,79 @@
+"""Finds the fixes of findings: each kind of finding has a maker, those without have no fix."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from engine.editing.draft import Draft
+from engine.editing.edit_session import EditSession
+from engine.editing.fixes import declaration_fixes as declarations
+from engine.editing.fixes import parameter_fixes as parameters
+from engine.editing.fixes import policy_fixes as conduct
+from engine.editing.fixes import transition_fixes as wiring
+from engine.editing.fixes import userdata_fixes as keys
+from engine.editing.fixes.fix import MAX_FIXES, Fix, FixContext, quoted_names
+from engine.editing.project_context import ProjectContext
+from engine.errors import DocumentError
+from engine.library.behavior_library import FindingView
+
+FixMaker = Callable[[FixContext], Iterator[Fix]]
+_ELSEWHERE = re.compile(r"^[^`:]+\.(?:ya?ml|json):\d+: ")
+_NAMELESS = ("uncovered-combination", "constant-guard", "idle-retry")
+_MAKERS: Mapping[str, FixMaker] = {
+    "unconnected-outcome": wiring.unconnected,
+    "unknown-outcome": wiring.unknown_outcome,
+    "unused-outcome": wiring.unused_outcome,
+    "unknown-target": wiring.unknown_target,
+    "missing-initial": wiring.missing_initial,
+    "unreachable-node": wiring.unreachable,
+    "ambiguous-target": wiring.ambiguous,
+    "unknown-child": wiring.unknown_child,
+    "preempts-itself": wiring.preempts_itself,
+    "uncovered-combination": wiring.uncovered,
+    "unknown-state": parameters.unknown_state,
+    "unknown-parameter": parameters.unknown,
+    "missing-parameter": parameters.missing,
+    "bad-parameter": parameters.bad,
+    "unknown-input": keys.unknown_input,
+    "unknown-output": keys.unknown_output,
+    "undefined-key": keys.undefined,
+    "maybe-undefined-key": keys.maybe_undefined,
+    "unused-parameter": declarations.unused_parameter,
+    "unknown-success": declarations.unknown_success,
+    "constant-guard": conduct.constant_guard,
+    "idle-retry": conduct.idle_retry,
+    "autonomy-never-passes": conduct.autonomy_never_passes,
+    "bad-resume": conduct.bad_resume,
+}
+
+
+def fixes_of(
+    text: str, findings: Sequence[FindingView], *, file: str, context: ProjectContext
+) -> tuple[tuple[Fix, ...], ...]:
+    """Return the fixes of each finding of a text, in the order of the findings; often none.
+
+    Args:
+        text: The document that the findings are of.
+        findings: What the check says of it.
+        file: Name of the document.
+        context: The states and behaviors around it.
+    """
+    try:
+        session = EditSession(Draft(text, file=file), context)
+    except DocumentError:
+        return tuple(() for _ in findings)
+    return tuple(_of(session, finding) for finding in findings)
+
+
+def _of(session: EditSession, finding: FindingView) -> tuple[Fix, ...]:
+    maker = _MAKERS.get(finding.code)
+    ref = session.outline.refs.get(finding.path)
+    # What is wrong in a behavior that is referred to is mended there.
+    if maker is None or ref is None or _ELSEWHERE.match(finding.message):
+        return ()
+    names = quoted_names(finding)
+    if not names and finding.code not in _NAMELESS:
+        return ()
+    place = FixContext(finding=finding, session=session, ref=ref, names=names)
+    return tuple(maker(place))[:MAX_FIXES]

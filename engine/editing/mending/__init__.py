@@ -1,6 +1,0 @@
-"""Quick fixes: for a finding, the edits that would mend it, each with a title; a person chooses, nothing is guessed."""
-
-from engine.editing.mending.fix import Fix
-from engine.editing.mending.mend import fixes_of
-
-__all__ = ["Fix", "fixes_of"]

@@ -1,0 +1,128 @@
+"""Finds, for each entry of changed data, the entry of the text that it was before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import cast
+
+from engine.editing.syntax import Collection, Member, Scalar
+
+EntryMatch = tuple[str | None, object, Member | None]
+"""A key (None in a list), its value, and the entry of the text that they were, if any."""
+
+
+def match_entries(
+    source: Collection, value: dict[str, object] | list[object], sources: Mapping[int, Collection]
+) -> list[EntryMatch]:
+    """Return the entries of `value` in order, each with the entry of `source` that it was.
+
+    Collections are known by identity, under whatever key; what is left is known by its key, or in a list by
+    what it says, then by where it stands.
+    """
+    if isinstance(value, dict):
+        return _entries(source, value, sources)
+    return _items(source, value, sources)
+
+
+def is_same_value(a: object, b: object) -> bool:
+    """Tell whether two values that are no collections are the same, also in kind: 1 is not 1.0 and not true."""
+    return type(a) is type(b) and a == b
+
+
+def _entries(source: Collection, value: dict[str, object], sources: Mapping[int, Collection]) -> list[EntryMatch]:
+    members = {str(member.key.value): member for member in source.members if member.key is not None}
+    by_value = {id(member.value): member for member in source.members}
+    found: dict[str, Member] = {}
+    taken: set[int] = set()
+    for key, each in value.items():
+        own = by_value.get(id(sources.get(id(each))))
+        if own is not None and members.get(key) is own:
+            found[key] = own
+            taken.add(id(own))
+    for key, each in value.items():
+        own = by_value.get(id(sources.get(id(each))))
+        if key not in found and own is not None and id(own) not in taken and str(_key(own)) not in value:
+            found[key] = own
+            taken.add(id(own))
+    for key in value:
+        own = members.get(key)
+        if key not in found and own is not None and id(own) not in taken:
+            found[key] = own
+            taken.add(id(own))
+    left = [member for member in source.members if id(member) not in taken and str(_key(member)) not in value]
+    fresh = [key for key in value if key not in found]
+    if len(left) == len(fresh):
+        # Keys of which nothing but the name has changed.
+        found |= {key: own for key, own in zip(fresh, left, strict=True) if _says(own, value[key])}
+    return [(key, each, found.get(key)) for key, each in value.items()]
+
+
+def _items(source: Collection, value: list[object], sources: Mapping[int, Collection]) -> list[EntryMatch]:
+    found: dict[int, Member] = {}
+    left = list(enumerate(source.members))
+
+    def is_same(member: Member, each: object) -> bool:
+        return sources.get(id(each)) is member.value or (not isinstance(each, dict | list) and _says(member, each))
+
+    def take(number: int, place: int) -> None:
+        found[number] = source.members[place]
+        left.remove((place, source.members[place]))
+
+    short = min(len(value), len(source.members))
+    head = next((n for n in range(short) if not is_same(source.members[n], value[n])), short)
+    tail = next((n for n in range(short - head) if not is_same(source.members[-1 - n], value[-1 - n])), short - head)
+    for number in range(head):
+        take(number, number)
+    for number in range(tail):
+        take(len(value) - 1 - number, len(source.members) - 1 - number)
+    for number, each in enumerate(value):
+        place = next((place for place, member in left if is_same(member, each)), None)
+        if number not in found and place is not None:
+            take(number, place)
+    for number, each in enumerate(value):
+        place = next((place for place, member in left if place == number and isinstance(member.value, Scalar)), None)
+        if number not in found and place is not None and not isinstance(each, dict | list):
+            take(number, place)
+    return [(None, each, found.get(number)) for number, each in enumerate(value)]
+
+
+def _key(member: Member) -> object:
+    return member.key.value if member.key is not None else None
+
+
+def _says(member: Member, value: object) -> bool:
+    return isinstance(member.value, Scalar) and is_same_value(member.value.value, value)
+
+
+def graft(old: object, new: object) -> object:
+    """Return `new` made of the dicts and lists of `old` where they stand for the same, so that their text is kept."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        kept = cast("dict[str, object]", old)
+        made = {
+            key: graft(kept[key], each) if key in kept else each for key, each in cast("dict[str, object]", new).items()
+        }
+        kept.clear()
+        kept.update(made)
+        return kept
+    if isinstance(old, list) and isinstance(new, list):
+        before, after = cast("list[object]", old), cast("list[object]", new)
+        before[:] = _grafted(list(before), after)
+        return before
+    return new
+
+
+def _grafted(old: list[object], new: list[object]) -> list[object]:
+    left = list(old)
+    made: list[object] = [None] * len(new)
+    due: list[int] = []
+    for number, each in enumerate(new):
+        place = next((i for i, was in enumerate(left) if was == each), None)
+        if place is None:
+            due.append(number)
+        else:
+            made[number] = graft(left.pop(place), each)
+    for number in due:
+        # Of those that say something else now, the one of like kind that stood first.
+        place = next((i for i, was in enumerate(left) if type(was) is type(new[number])), None)
+        made[number] = new[number] if place is None else graft(left.pop(place), new[number])
+    return made

@@ -1,0 +1,417 @@
+"""Writes changed plain data into the text it was read from: what was not changed keeps each of its bytes.
+
+Data is compared with the text by identity. A dict or list that was read from a text is still the one that stands
+there, wherever it has been put and under whichever key; so what is renamed, moved or reordered takes
+its text along, comments and quotes included. Only what is new, or another scalar, is written anew.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import cast
+
+from engine.document.node_spec import KINDS, TREE_KINDS
+from engine.editing.node_matching import EntryMatch, is_same_value, match_entries
+from engine.editing.syntax import Collection, Member, Scalar, SourceText, Syntax, SyntaxTree
+from engine.editing.yaml_style import flow_text, key_text, literal_text, scalar_text
+
+MAX_COLUMNS = 120
+"""Columns up to which a new value stands on one line."""
+_STEP = 2
+_NODES = frozenset((*KINDS, *TREE_KINDS)) - {"condition", "remap"}
+Plain = dict[str, object] | list[object]
+
+
+@dataclass(frozen=True)
+class WritePosition:
+    """Where a value goes: the column of a block, the indentation of its line, and whether braces are around it."""
+
+    column: int
+    indent: int
+    flow: bool
+    beside: bool | None = None
+    """Whether its neighbours stand between braces; None where there are none."""
+
+
+@dataclass(frozen=True)
+class PreviousValue:
+    """What stood in this place: a value of a text."""
+
+    origin: SourceText
+    value: Syntax
+
+
+@dataclass(frozen=True)
+class RenderedText:
+    """The text of a value; a `block` has lines of its own, of which the first begins at the column of its place."""
+
+    text: str
+    block: bool = False
+
+
+@dataclass
+class TextRewriter:
+    """Writes data whose parts come from `sources`, by the id of each dict and list."""
+
+    sources: Mapping[int, Collection]
+    json: bool
+    _homes: dict[int, tuple[Collection, Member]] = field(default_factory=dict[int, tuple[Collection, Member]])
+    _blocks: dict[int, bool] = field(default_factory=dict[int, bool])
+    _whole: dict[int, bool] = field(default_factory=dict[int, bool])
+
+    def document(self, tree: SyntaxTree, data: dict[str, object]) -> str:
+        """Return the text of a tree with `data` in place of its own."""
+        origin, root = tree.origin, tree.root
+        column = root.column if isinstance(root, Collection) else 0
+        written = self.value(data, WritePosition(column, origin.indent_at(root.start), self.json))
+        return origin.text[: root.start] + written.text + origin.text[root.end :]
+
+    def value(self, value: object, place: WritePosition, was: PreviousValue | None = None) -> RenderedText:
+        """Return the text of a value at a place."""
+        if not isinstance(value, dict | list):
+            return RenderedText(self._scalar(value, place, was))
+        found = cast("Plain", value)
+        source = self._source(found)
+        if not found:
+            kept = source is not None and source.flow and not source.members and not source.bare
+            return RenderedText(
+                _slice(source) if source is not None and kept else "{}" if isinstance(found, dict) else "[]"
+            )
+        if source is not None and self._stays_flow(source, found, place):
+            kept = self._is_whole(source, found)
+            text = _slice(source) if kept else self._flow(source, match_entries(source, found, self.sources))
+            stays = was is not None and was.value is source
+            return RenderedText(
+                text if stays else indent_text(text, place.indent - source.origin.indent_at(source.start))
+            )
+        if source is not None and not source.flow and not place.flow:
+            kept = self._is_whole(source, found)
+            text = _slice(source) if kept else self._block(source, match_entries(source, found, self.sources))
+            return RenderedText(indent_text(text, place.column - source.column), block=True)
+        return self._fresh(found, place)
+
+    def _is_whole(self, source: Collection, value: Plain) -> bool:
+        """Tell whether a value is the one of a text and says what it said, all inside it too: so does its text."""
+        if source.data is not value:
+            return False
+        known = self._whole.get(id(source))
+        if known is None:
+            known = self._whole[id(source)] = source.origin.json == self.json and self._says_as_before(source)
+        return known
+
+    def _says_as_before(self, source: Collection) -> bool:
+        data, members = source.data, source.members
+        if len(data) != len(members):
+            return False
+        values: Iterable[object] = data.values() if isinstance(data, dict) else data
+        if isinstance(data, dict) and any(
+            member.key is None or member.key.value != key for member, key in zip(members, data, strict=True)
+        ):
+            return False
+        for member, value in zip(members, values, strict=True):
+            was = member.value
+            if isinstance(was, Scalar):
+                if was.value is not value and not is_same_value(was.value, value):
+                    return False
+            elif not self._is_whole(was, cast("Plain", value)):
+                return False
+        return True
+
+    def _stays_flow(self, source: Collection, value: Plain, place: WritePosition) -> bool:
+        """Tell whether a value stays between its braces: unless it gets something inside that has lines of its own."""
+        if not source.flow or not source.members or source.bare or self._has_block(value):
+            return False
+        return place.flow or not has_node(value) or _had_node(source)
+
+    def _source(self, value: Plain) -> Collection | None:
+        source = self.sources.get(id(value))
+        return None if source is not None and self.json and not source.origin.json else source
+
+    def _has_block(self, value: object) -> bool:
+        """Tell whether something in it comes from lines of its own, which cannot stand between braces."""
+        if not isinstance(value, dict | list):
+            return False
+        found = cast("Plain", value)
+        known = self._blocks.get(id(found))
+        if known is None:
+            source = self._source(found)
+            own = source is not None and not source.flow and bool(found)
+            known = self._blocks[id(found)] = own or any(self._has_block(each) for each in _inside(found))
+        return known
+
+    def _scalar(self, value: object, place: WritePosition, was: PreviousValue | None) -> str:
+        if was is None or not isinstance(was.value, Scalar):
+            return scalar_text(value, json=self.json, flow=place.flow)
+        old = was.value
+        if is_same_value(old.value, value) and old.end > old.start and was.origin.json == self.json:
+            return was.origin.text[old.start : old.end]
+        style = old.style if isinstance(old.value, str) and isinstance(value, str) else ""
+        return scalar_text(value, json=self.json, flow=place.flow, style=style)
+
+    # Between braces
+
+    def _flow(self, source: Collection, entries: list[EntryMatch]) -> str:
+        text, members = source.origin.text, source.members
+        gaps = [text[one.stop : two.at] for one, two in itertools.pairwise(members)]
+        gap = self._usual_gap(source, gaps)
+        indent = _indent_after(gap, source.origin.indent_at(source.start))
+        made = text[source.start : members[0].at]
+        places = {id(member): place for place, member in enumerate(members)}
+        before = -2
+        for number, (key, value, member) in enumerate(entries):
+            place = places[id(member)] if member is not None else -2
+            if number:
+                made += gaps[before] if place == before + 1 else gap
+            made += self._flow_entry(source.origin, key, value, member, indent)
+            before = place
+        return made + text[members[-1].stop : source.end]
+
+    def _usual_gap(self, source: Collection, gaps: list[str]) -> str:
+        plain = next((gap for gap in reversed(gaps) if "#" not in gap), None)
+        if plain is not None:
+            return plain
+        lead = source.origin.text[source.start + 1 : source.members[0].at]
+        return f",{lead}" if lead.startswith("\n") and "#" not in lead else ", "
+
+    def _flow_entry(
+        self, origin: SourceText, key: str | None, value: object, member: Member | None, indent: int
+    ) -> str:
+        was = PreviousValue(origin, member.value) if member is not None else None
+        shown = self.value(value, WritePosition(indent + _STEP, indent, flow=True), was).text
+        if key is None:
+            return shown
+        if member is None or member.key is None:
+            return f"{key_text(key, json=self.json)}: {shown}"
+        text = origin.text
+        gap = text[member.key.end : member.value.start]
+        if not gap.rstrip().endswith(":"):
+            if isinstance(member.value, Scalar) and value is None and member.value.value is None:
+                return text[member.at : member.stop] if key == member.key.value else key_text(key, json=self.json)
+            gap = ": "
+        elif member.value.start == member.value.end:
+            if value is None:
+                shown = ""
+            else:
+                gap = f"{gap} "
+        name = text[member.at : member.key.end] if key == member.key.value else key_text(key, json=self.json)
+        return name + gap + shown
+
+    # On lines of their own
+
+    def _block(self, source: Collection, entries: list[EntryMatch]) -> str:
+        place = WritePosition(source.column, source.column, flow=False, beside=_beside(source))
+        segments = [
+            self._segment(place, key, value, None if member is None else (source, member))
+            for key, value, member in entries
+        ]
+        return "\n".join([segments[0].lstrip(" \n"), *segments[1:]])
+
+    def _segment(
+        self, place: WritePosition, key: str | None, value: object, was: tuple[Collection, Member] | None
+    ) -> str:
+        """Return the lines of one entry of a block at a place, with what stands above it."""
+        elsewhere = was is None
+        was = was or self._moved(value, mapping=key is not None)
+        if was is None:
+            return " " * place.column + self._entry(key, value, place)
+        home, member = was
+        lead = home.origin.text[member.start : member.at]
+        if member is home.members[0]:
+            lead = " " * home.column + lead
+        elif elsewhere:
+            lead = lead.lstrip("\n")
+        segment = lead + self._block_entry(home, key, value, member)
+        return indent_text(segment, place.column - home.column, first=True)
+
+    def _moved(self, value: object, *, mapping: bool) -> tuple[Collection, Member] | None:
+        """Return the entry that a value was elsewhere, whose comments come along."""
+        if not isinstance(value, dict | list):
+            return None
+        origin = self._source(cast("Plain", value))
+        home = self._home_of(origin) if origin is not None else None
+        return home if home is not None and not home[0].flow and isinstance(home[0].data, dict) == mapping else None
+
+    def _brings_comments(self, value: Plain) -> bool:
+        """Tell whether entries with comments beside them were moved into a new value."""
+        for each in _inside(value):
+            moved = self._moved(each, mapping=isinstance(value, dict))
+            if moved is not None:
+                text, member = moved[0].origin.text, moved[1]
+                if "#" in text[member.start : member.at] + text[member.value.end : member.stop]:
+                    return True
+            elif isinstance(each, dict | list) and self._brings_comments(cast("Plain", each)):
+                return True
+        return False
+
+    def _home_of(self, origin: Collection) -> tuple[Collection, Member] | None:
+        """Return the entry that a collection of a text was."""
+        if not self._homes:
+            for collection in self.sources.values():
+                for member in collection.members:
+                    self._homes[id(member.value)] = (collection, member)
+        return self._homes.get(id(origin))
+
+    def _block_entry(self, home: Collection, key: str | None, value: object, member: Member) -> str:
+        text, old = home.origin.text, member.value
+        name, gap = self._name(home, key, member)
+        tail = text[old.end : member.stop]
+        if isinstance(old, Scalar) and not isinstance(value, dict | list):
+            return name + self._scalar_entry(home, value, old, gap, tail)
+        was_block = isinstance(old, Collection) and not old.flow
+        stays = isinstance(old, Collection) and was_block and isinstance(value, type(old.data))
+        column = old.column if isinstance(old, Collection) and stays else home.column + _STEP
+        beside = old.flow if isinstance(old, Collection) and _had_node(old) else None
+        place = WritePosition(column, _indent_after(gap, home.column), flow=False, beside=beside)
+        written = self.value(cast("object", value), place, PreviousValue(home.origin, old))
+        mark = "" if key is None else ":"
+        if written.block and not stays:
+            # A comment behind the old value stays behind the key.
+            first, _, rest = tail.partition("\n")
+            behind = f"{first}\n{' ' * column}" if key is not None or first else " "
+            return f"{name}{mark}{behind}{written.text}" + (f"\n{rest}" if rest else "")
+        if was_block and not written.block:
+            comment = gap.partition(":")[2] if key is not None else gap
+            return f"{name}{mark} {written.text}{comment.rstrip()}{tail}"
+        if not written.block and not gap.endswith((" ", "\n")):
+            gap += " "
+        return name + gap + written.text + tail
+
+    def _scalar_entry(self, home: Collection, value: object, old: Scalar, gap: str, tail: str) -> str:
+        """Return gap, value and tail of an entry that is and was no collection."""
+        if is_same_value(old.value, value):
+            return gap + home.origin.text[old.start : old.end] + tail
+        shown = None
+        if isinstance(value, str) and "#" not in tail:
+            shown = literal_text(value, home.column + _STEP)
+        if shown is None:
+            place = WritePosition(home.column + _STEP, home.column, flow=False)
+            shown = self._scalar(value, place, PreviousValue(home.origin, old))
+        return gap + ("" if gap.endswith((" ", "\n")) else " ") + shown + tail
+
+    def _name(self, home: Collection, key: str | None, member: Member) -> tuple[str, str]:
+        """Return the key as it is written, or the dash, and what stands between it and the value."""
+        text = home.origin.text
+        if member.key is None or key is None:
+            return "-", text[member.at + 1 : member.value.start]
+        name = text[member.at : member.key.end]
+        if key != member.key.value:
+            name = text[member.at : member.key.start] + key_text(key, json=self.json)
+        return name, text[member.key.end : member.value.start]
+
+    def _entry(self, key: str | None, value: object, place: WritePosition) -> str:
+        """Return a new entry of a block."""
+        inside = WritePosition(place.column + _STEP, place.column, flow=False, beside=place.beside)
+        written = self.value(value, inside)
+        shown = written.text
+        if isinstance(value, str):
+            shown = literal_text(value, inside.column) or shown
+        if key is None:
+            return f"- {shown}"
+        between = f"\n{' ' * inside.column}" if written.block else " "
+        return f"{key_text(key, json=self.json)}:{between}{shown}"
+
+    # Anew
+
+    def _fresh(self, value: Plain, place: WritePosition) -> RenderedText:
+        if self.json:
+            return RenderedText(self._fresh_json(value, place))
+        blocks = self._has_block(value)
+        if place.flow or not blocks:
+            text = self._fresh_flow(value, place)
+            fits = place.column + len(text) <= MAX_COLUMNS and "\n" not in text
+            lines = has_node(value) or _lists_mappings(value)
+            if place.flow or (fits and (place.beside is True or not lines) and not self._brings_comments(value)):
+                return RenderedText(text)
+        source = self.sources.get(id(value))
+        beside = _beside(source) if source is not None and _had_node(source) else None
+        here = WritePosition(place.column, place.column, flow=False, beside=beside)
+        entries = value.items() if isinstance(value, dict) else ((None, each) for each in value)
+        segments = [self._segment(here, key, each, None) for key, each in entries]
+        return RenderedText("\n".join([segments[0].lstrip(" \n"), *segments[1:]]), block=True)
+
+    def _fresh_flow(self, value: Plain, place: WritePosition) -> str:
+        inside = WritePosition(place.column, place.indent, flow=True)
+        if isinstance(value, dict):
+            shown = [f"{key_text(k, json=self.json)}: {self.value(v, inside).text}" for k, v in value.items()]
+            return "{" + ", ".join(shown) + "}"
+        return "[" + ", ".join(self.value(each, inside).text for each in value) + "]"
+
+    def _fresh_json(self, value: Plain, place: WritePosition) -> str:
+        line = flow_text(value, json=True)
+        if place.indent + len(line) <= MAX_COLUMNS and not has_node(value):
+            return line
+        indent = place.indent + _STEP
+        inside = WritePosition(indent, indent, flow=True)
+        if isinstance(value, dict):
+            shown = [f"{key_text(k, json=True)}: {self.value(v, inside).text}" for k, v in value.items()]
+        else:
+            shown = [self.value(each, inside).text for each in value]
+        around = "{}" if isinstance(value, dict) else "[]"
+        between = f",\n{' ' * indent}"
+        return f"{around[0]}\n{' ' * indent}{between.join(shown)}\n{' ' * place.indent}{around[1]}"
+
+
+def indent_text(text: str, by: int, *, first: bool = False) -> str:
+    """Return text whose lines, but for the first unless `first`, stand so many columns further right."""
+    if by == 0:
+        return text
+    lines = text.split("\n")
+    return "\n".join(_moved(line, by) if number or first else line for number, line in enumerate(lines))
+
+
+def has_node(value: object) -> bool:
+    """Tell whether a value is, or holds, a node of a behavior: those get lines of their own."""
+    if isinstance(value, list):
+        return any(has_node(each) for each in cast("list[object]", value))
+    if not isinstance(value, dict):
+        return False
+    found = cast("dict[str, object]", value)
+    return any((key in _NODES and _is_kind(key, each)) or has_node(each) for key, each in found.items())
+
+
+def _lists_mappings(value: Plain) -> bool:
+    """Tell whether a value is a list of mappings, such as conditions, which is easier to read line by line."""
+    return isinstance(value, list) and any(isinstance(each, dict) and each != {} for each in value)
+
+
+def _had_node(source: Collection) -> bool:
+    """Tell whether a collection held a node before."""
+    return any(
+        (member.key is not None and member.key.value in _NODES)
+        or (isinstance(member.value, Collection) and _had_node(member.value))
+        for member in source.members
+    )
+
+
+def _is_kind(key: str, value: object) -> bool:
+    return isinstance(value, str) if key in ("state", "behavior", "behaviour") else isinstance(value, dict | list)
+
+
+def _moved(line: str, by: int) -> str:
+    if not line.strip():
+        return line
+    if by > 0:
+        return " " * by + line
+    bare = line.lstrip(" ")
+    return " " * max(0, len(line) - len(bare) + by) + bare
+
+
+def _inside(value: Plain) -> Iterable[object]:
+    return value.values() if isinstance(value, dict) else value
+
+
+def _slice(source: Collection) -> str:
+    return source.origin.text[source.start : source.end]
+
+
+def _indent_after(gap: str, otherwise: int) -> int:
+    last = gap.rpartition("\n")
+    return len(last[2]) - len(last[2].lstrip(" ")) if last[1] else otherwise
+
+
+def _beside(source: Collection) -> bool | None:
+    """Tell whether the collections in a collection stand between braces; None where there are none."""
+    found = [member.value for member in source.members if isinstance(member.value, Collection) and member.value.members]
+    return all(each.flow for each in found) if found else None

@@ -1,0 +1,158 @@
+"""The skill port that lets requests go wrong: around the bus, a recording, or any other port."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import msgspec
+
+from engine.bus import Holder
+from engine.clock import Clock
+from engine.document.faults import Faults
+from engine.event import Event
+from engine.faults.fault_context import FaultContext
+from engine.faults.fault_rule import FaultRule
+from engine.faults.faulty_goal_sender import RepeatableGoal, send_faulty_goal
+from engine.faults.request_faults import RepeatableRequest, apply_request_fault
+from engine.runtime.record.recorder import Recorder
+from engine.runtime.record.skill_port import EntrySchedule, Goal, RunAwarePort, SkillPort
+from engine.skill import Action, Service
+
+R = TypeVar("R")
+F = TypeVar("F")
+S = TypeVar("S", bound=msgspec.Struct)
+
+
+def kill_process() -> None:
+    """End this process at once, as `kill -9` does."""
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+class FaultPort:
+    """Applies the faults of a document to the requests of one run.
+
+    Args:
+        inner: What answers the requests.
+        faults: What goes wrong, in order of precedence.
+        clock: The run's time.
+        seed: The run's seed, for faults with a probability.
+        kill: Ends the process for `crash`.
+    """
+
+    def __init__(
+        self,
+        inner: SkillPort,
+        faults: Faults,
+        *,
+        clock: Clock,
+        seed: int = 0,
+        kill: Callable[[], None] = kill_process,
+    ) -> None:
+        self._inner = inner
+        self._scene = FaultContext(clock, kill)
+        self._rules = tuple(
+            FaultRule(fault, number=index + 1, seed=seed, position=faults.position(index))
+            for index, fault in enumerate(faults.document.faults)
+        )
+        self._again: dict[tuple[str, str], Any] = {}
+
+    def begin(self, recorder: Recorder) -> None:
+        """Record applied faults there from now on; the run calls it before it starts."""
+        self._scene.recorder = recorder
+        if isinstance(self._inner, RunAwarePort):
+            self._inner.begin(recorder)
+        if any(rule.fault.crashes_at is not None for rule in self._rules):
+            recorder.watch(self._crash_at)
+
+    def end(self) -> None:
+        """Log what was never applied; the run calls it when all states are left, just before its end is recorded."""
+        self._scene.over = True
+        for line in self.unapplied():
+            self._scene.warn(line)
+        if isinstance(self._inner, RunAwarePort):
+            self._inner.end()
+
+    def unapplied(self) -> tuple[str, ...]:
+        """Return a line for every fault that has not been applied: which, where it is written, and why not."""
+        return tuple(
+            f"{rule.label} ({rule.fault.kind}, {rule.position}) was never applied: {rule.why_not()}"
+            for rule in self._rules
+            if not rule.applied
+        )
+
+    async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
+        """Ask a service, unless a fault has it otherwise; raises what the bus raises."""
+        address = f"{to}/{request.skill_name()}"
+        rule = self._due(holder.branch, address)
+        if rule is None:
+            return await self._inner.call(request, to=to, holder=holder)
+
+        async def ask() -> R:
+            return await self._inner.call(request, to=to, holder=holder)
+
+        return await apply_request_fault(rule, RepeatableRequest(holder.branch, address, ask), self._scene)
+
+    def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
+        """Send a goal, unless a fault has it otherwise; raises what the bus raises."""
+        sending = RepeatableGoal(self._inner, goal, to, holder, goal_id)
+        rule = self._due(holder.branch, sending.address)
+        if rule is None:
+            return sending()
+        return send_faulty_goal(rule, sending, self._scene)
+
+    async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
+        """Return the newest message of a topic, unless a fault has it otherwise."""
+
+        async def read() -> S:
+            return await self._inner.latest(topic, kind, holder=holder)
+
+        return await self._read(topic, kind, holder, read)
+
+    async def next_message(self, topic: str, kind: type[S], *, holder: Holder) -> S:
+        """Wait for the next message of a topic, unless a fault has it otherwise."""
+
+        async def read() -> S:
+            return await self._inner.next_message(topic, kind, holder=holder)
+
+        return await self._read(topic, kind, holder, read)
+
+    def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
+        """Call back at each new message of a topic; what goes wrong with it, goes wrong when it is read."""
+        return self._inner.watch(topic, callback)
+
+    @property
+    def entries(self) -> EntrySchedule | None:
+        """Those of what is inside."""
+        return self._inner.entries
+
+    async def _read(self, topic: str, kind: type[S], holder: Holder, read: Callable[[], Awaitable[S]]) -> S:
+        again: S | None = self._again.pop((holder.branch, topic), None)
+        if again is not None:
+            return again
+        rule = self._due(holder.branch, topic)
+        if rule is None:
+            return await read()
+        if rule.fault.duplicate is not None:
+            message = await read()
+            self._scene.apply(rule, holder.branch, topic, "the next read gives the same message again")
+            self._again[holder.branch, topic] = message
+            return message
+        if rule.fault.lost is not None:
+            await read()
+            self._scene.apply(rule, holder.branch, topic, "a message is lost")
+            return await self._inner.next_message(topic, kind, holder=holder)
+        return await apply_request_fault(rule, RepeatableRequest(holder.branch, topic, read), self._scene)
+
+    def _due(self, path: str, address: str) -> FaultRule | None:
+        """Return the first fault that is due; all that match count the request."""
+        wanting = [rule for rule in self._rules if rule.wants(path, address)]
+        return wanting[0] if wanting else None
+
+    def _crash_at(self, event: Event) -> None:
+        for rule in self._rules:
+            if rule.fault.crashes_at == event.seq:
+                rule.applied += 1
+                self._scene.kill()

@@ -1,0 +1,125 @@
+"""The tables of an SQLite file of ours at each version of its format, and a check that it has no others."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+_OBJECTS = "SELECT type, name, tbl_name, sql FROM sqlite_schema"
+_MOST_OBJECTS = 64
+
+
+class ForeignSchema(sqlite3.DatabaseError):
+    """A file holds something else than the tables of its version."""
+
+
+class DamagedFile(sqlite3.DatabaseError):
+    """The pages of a file do not fit together."""
+
+
+class FormatTooNew(sqlite3.Error):
+    """The file was written by a newer version of this program."""
+
+
+@dataclass(frozen=True)
+class SqliteMigrations:
+    """The statements that lead from an empty file to each version of the format, one text a version.
+
+    A new file gets all of them and an older one those that it lacks, so that both hold the very same definitions.
+    """
+
+    steps: Sequence[str]
+
+    @property
+    def version(self) -> int:
+        """The newest version."""
+        return len(self.steps)
+
+    def verify(self, connection: sqlite3.Connection) -> int:
+        """Check that a file holds what one of its version holds and no more; return that version, 0 of an empty file.
+
+        Nothing of the file is executed: views, triggers, virtual tables, generated columns and constraints are refused
+        by their text alone.
+
+        Raises:
+            FormatTooNew: a newer version of this program wrote it.
+            ForeignSchema: it has other tables, columns or indexes, or views or triggers.
+            sqlite3.Error: it cannot be read.
+        """
+        found = int(connection.execute("PRAGMA user_version").fetchone()[0])
+        if found > self.version:
+            raise FormatTooNew(f"its format is {found}, this program knows {self.version}")
+        present = _objects(connection)
+        expected = _expected(tuple(self.steps[: max(found, 0)]))
+        for name in sorted({*present, *expected}):
+            if present.get(name) != expected.get(name):
+                kind = (present.get(name) or expected[name])[0]
+                what = "is not that" if name in present and name in expected else "is none"
+                what = "is missing" if name not in present else what
+                raise ForeignSchema(f"its {kind} {name:.80} {what} of format {found}")
+        return found
+
+    def upgrade(self, connection: sqlite3.Connection) -> None:
+        """Bring a file to the newest version, in one transaction.
+
+        Raises:
+            FormatTooNew: a newer version of this program wrote it.
+            ForeignSchema: it is no file of this kind.
+            sqlite3.Error: it cannot be written.
+        """
+        if self.verify(connection) == self.version:
+            return
+        # Two processes may come here at once: which steps are due is asked again under the lock.
+        connection.execute("BEGIN IMMEDIATE")
+        try:
+            for step in self.steps[self.verify(connection) :]:
+                for statement in _statements(step):
+                    connection.execute(statement)
+            connection.execute(f"PRAGMA user_version={self.version}")
+            connection.execute("COMMIT")
+        finally:
+            if connection.in_transaction:
+                connection.rollback()
+
+
+Object = tuple[str, str, str]
+
+
+def _objects(connection: sqlite3.Connection) -> dict[str, Object]:
+    rows = connection.execute(f"{_OBJECTS} LIMIT {_MOST_OBJECTS + 1}").fetchall()
+    if len(rows) > _MOST_OBJECTS:
+        raise ForeignSchema(f"it has more than {_MOST_OBJECTS} tables, indexes, views and triggers")
+    return {str(name): (str(kind), str(table), _plain(sql)) for kind, name, table, sql in rows}
+
+
+@cache
+def _expected(steps: tuple[str, ...]) -> dict[str, Object]:
+    connection = sqlite3.connect(":memory:")
+    try:
+        for step in steps:
+            connection.executescript(step)
+        return _objects(connection)
+    finally:
+        connection.close()
+
+
+def _plain(sql: object) -> str:
+    """Return a definition without the spaces and line ends that mean nothing; versions wrote them differently."""
+    text = " ".join(str(sql or "").split())
+    for sign in "(),":
+        text = text.replace(f" {sign}", sign).replace(f"{sign} ", sign)
+    return text
+
+
+def _statements(script: str) -> list[str]:
+    """Split a script where a statement is complete."""
+    statements: list[str] = []
+    begun = ""
+    for line in script.splitlines(keepends=True):
+        begun += line
+        if sqlite3.complete_statement(begun):
+            statements.append(begun)
+            begun = ""
+    return statements

@@ -1,0 +1,38 @@
+"""A journal of one run in memory: for replays, which a step back asks for what happened before."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from engine.errors import JournalError
+from engine.event import Event
+
+
+@dataclass(kw_only=True)
+class MemoryRunJournal:
+    """Keeps every event as long as it lives."""
+
+    run_id: str
+    epoch: int = 1
+    kept: list[Event] = field(default_factory=list[Event])
+
+    def append(self, event: Event) -> None:
+        """Keep the event."""
+        self.kept.append(event)
+
+    async def events(self) -> Sequence[Event]:
+        """Return what was kept."""
+        return tuple(self.kept)
+
+    async def apply_backpressure(self) -> None:
+        """Return at once."""
+
+    def append_world_state(self, state: bytes) -> None:
+        """Forget it: nobody resumes from memory."""
+
+    def on_failure(self, listener: Callable[[JournalError], None]) -> None:
+        """Forget it: nothing fails."""
+
+    async def commit(self) -> None:
+        """Return at once; nothing is durable."""

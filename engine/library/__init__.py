@@ -1,0 +1,1 @@
+"""The behaviors of a project folder, loaded and checked, and each drawn as a graph."""

@@ -1,0 +1,110 @@
+"""A behavior drawn as nested nodes with outcomes and arrows: what the editor and dashboard show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import msgspec
+
+from engine.document.behavior import Behavior
+from engine.document.concurrency_condition import deciding
+from engine.document.node_spec import FOREACH_OUTCOMES, TREE_OUTCOMES, NodeSpec
+from engine.runtime.plan import Catalogue
+
+
+class GraphTransition(msgspec.Struct, frozen=True, kw_only=True):
+    """An arrow inside a machine; a timeout shows as `after 30 s`, on_error as `error`."""
+
+    source: str
+    outcome: str
+    target: str
+
+
+class GraphNode(msgspec.Struct, frozen=True, kw_only=True, gc=False):
+    """One node with everything inside it; `path` is the one that events carry."""
+
+    path: str
+    name: str
+    kind: str
+    title: str
+    description: str
+    outcomes: tuple[str, ...]
+    children: tuple[GraphNode, ...]
+    transitions: tuple[GraphTransition, ...]
+    initial: str | None
+    conditions: tuple[str, ...]
+
+
+def new_graph(behavior: Behavior, catalogue: Catalogue, *, path: str = "root", name: str = "root") -> GraphNode:
+    """Draw a behavior from its root; unknown states are drawn without outcomes."""
+    return _Drawing(behavior, catalogue, path).node(name, behavior.root, "root")
+
+
+class _Drawing:
+    def __init__(self, behavior: Behavior, catalogue: Catalogue, base: str) -> None:
+        self._behavior = behavior
+        self._catalogue = catalogue
+        self._base = base
+
+    def node(self, name: str, node: NodeSpec, inside: str) -> GraphNode:
+        path = self._base + inside.removeprefix("root")
+        return GraphNode(
+            path=path,
+            name=name,
+            kind=node.kind,
+            title=node.state or node.behavior or node.behaviour or "",
+            description=node.description,
+            outcomes=self._outcomes(node),
+            children=self._children(node, inside, path),
+            transitions=_arrows(node) if node.sequential is not None else (),
+            initial=node.sequential.initial if node.sequential is not None else None,
+            conditions=_rules(node),
+        )
+
+    def _children(self, node: NodeSpec, inside: str, path: str) -> tuple[GraphNode, ...]:
+        target = self._behavior.references.get(node.behavior) if node.behavior is not None else None
+        if target is not None:
+            return (new_graph(target, self._catalogue, path=f"{path}/root", name=target.name),)
+        return tuple(self.node(name, child, f"{inside}/{name}") for name, child in node.children.items())
+
+    def _outcomes(self, node: NodeSpec) -> tuple[str, ...]:
+        if node.state is not None:
+            state = self._catalogue.get(node.state)
+            return state.outcomes if state is not None else tuple(node.transitions)
+        if node.behavior is not None:
+            target = self._behavior.references.get(node.behavior)
+            return target.outcomes if target is not None else tuple(node.transitions)
+        if node.concurrency is not None:
+            otherwise = (node.concurrency.otherwise,) if node.concurrency.otherwise else ()
+            return tuple(dict.fromkeys((*(rule.outcome for rule in deciding(node.concurrency.rules)), *otherwise)))
+        if node.foreach is not None:
+            return FOREACH_OUTCOMES
+        if node.sequential is None:
+            return TREE_OUTCOMES
+        return tuple(dict.fromkeys(arrow.target for arrow in _arrows(node) if arrow.target not in node.children))
+
+
+def _arrows(node: NodeSpec) -> tuple[GraphTransition, ...]:
+    arrows: list[GraphTransition] = []
+    for name, child in node.children.items():
+        for outcome, target in _ways_out(child).items():
+            arrows.append(GraphTransition(source=name, outcome=outcome, target=target))
+    return tuple(arrows)
+
+
+def _ways_out(child: NodeSpec) -> Mapping[str, str]:
+    ways = dict(child.transitions)
+    if child.guard is not None and child.guard.to is not None:
+        ways[f"unless {child.guard.when}"] = child.guard.to
+    if child.timeout is not None and child.timeout.to is not None:
+        ways[f"after {child.timeout.after_s:g} s"] = child.timeout.to
+    if child.on_error is not None:
+        ways["error"] = child.on_error
+    return ways
+
+
+def _rules(node: NodeSpec) -> tuple[str, ...]:
+    if node.concurrency is None:
+        return ()
+    rules = [f"{rule.consequence}: {rule}" for rule in node.concurrency.rules]
+    return (*rules, *([f"{node.concurrency.otherwise}: otherwise"] if node.concurrency.otherwise else []))

@@ -1,0 +1,215 @@
+"""The behaviors of a project folder: found, loaded, checked, and read anew when a file changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from engine.check import Finding, check_survey, invalid_document_finding, read_beside
+from engine.document import Behavior, ParameterSpec, load_source, survey_behavior
+from engine.errors import DocumentError, Position
+from engine.host.gc_pause import pause_gc
+from engine.library.behavior_graph import GraphNode, new_graph
+from engine.runtime.plan import Catalogue
+from engine.suggestions import did_you_mean
+
+_SUFFIXES = (".yaml", ".yml", ".json")
+
+
+class ParameterView(msgspec.Struct, frozen=True, kw_only=True):
+    """One parameter as a form shows it."""
+
+    name: str
+    schema: dict[str, object]
+    required: bool
+
+
+class FindingView(msgspec.Struct, frozen=True, kw_only=True):
+    """One finding with its place in the document."""
+
+    severity: str
+    code: str
+    message: str
+    path: str
+    line: int
+    column: int
+    hint: str
+
+
+class BehaviorView(msgspec.Struct, frozen=True, kw_only=True):
+    """A behavior as the dashboard lists and draws it; `graph` is None when it cannot be read."""
+
+    id: str
+    name: str
+    description: str
+    parameters: tuple[ParameterView, ...] = ()
+    findings: tuple[FindingView, ...] = ()
+    graph: GraphNode | None = None
+    view: dict[str, tuple[float, float]] = {}
+    success: tuple[str, ...] = ()
+
+    @property
+    def errors(self) -> int:
+        """Number of findings that prevent a run."""
+        return sum(finding.severity == "error" for finding in self.findings)
+
+    @property
+    def warnings(self) -> int:
+        """Number of findings that do not."""
+        return len(self.findings) - self.errors
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Read:
+    stamps: Mapping[Path, int]
+    view: BehaviorView
+    behavior: Behavior | None
+
+
+class Library:
+    """The behaviors under `project`; ids are paths relative to it with forward slashes."""
+
+    def __init__(self, project: Path, catalogue: Catalogue) -> None:
+        self.catalogue = catalogue
+        self._project = project.resolve()
+        self._read: dict[str, _Read] = {}
+
+    def views(self) -> tuple[BehaviorView, ...]:
+        """Return all behaviors sorted by id; an unreadable one is listed with its error."""
+        return tuple(self._fresh(behavior_id).view for behavior_id in sorted(self._ids()))
+
+    def view(self, behavior_id: str) -> BehaviorView:
+        """Return one behavior.
+
+        Raises:
+            DocumentError: no document of the project has this id.
+        """
+        return self._fresh(self._known(behavior_id)).view
+
+    def behavior(self, behavior_id: str) -> Behavior:
+        """Return one behavior ready to be planned.
+
+        Raises:
+            DocumentError: there is none, or it has errors; the first one is given.
+        """
+        read = self._fresh(self._known(behavior_id))
+        for finding in read.view.findings:
+            if finding.severity == "error":
+                where = Position(file=behavior_id, line=finding.line, column=finding.column)
+                raise DocumentError(finding.message, where=where, hint=finding.hint or None)
+        if read.behavior is None:
+            raise DocumentError("this behavior cannot be read", where=behavior_id)
+        return read.behavior
+
+    def file_of(self, behavior_id: str) -> Path:
+        """Return the file of a behavior; raises DocumentError when the id names none."""
+        return self._project / self._known(behavior_id)
+
+    def id_of(self, file: Path) -> str:
+        """Return the id of a behavior by its file.
+
+        Raises:
+            DocumentError: the file is not one of this project.
+        """
+        if not file.is_relative_to(self._project):
+            raise DocumentError("this behavior is of another project", where=file, hint=f"this one is {self._project}")
+        return self._known(file.relative_to(self._project).as_posix())
+
+    def _known(self, behavior_id: str) -> str:
+        known = set(self._ids())
+        if behavior_id not in known:
+            raise DocumentError(f"there is no behavior {behavior_id!r}", hint=did_you_mean(behavior_id, known))
+        return behavior_id
+
+    def _ids(self) -> Iterator[str]:
+        for file in (self._project / "behaviors").rglob("*"):
+            if file.suffix in _SUFFIXES and file.is_file() and file.resolve().is_relative_to(self._project):
+                behavior_id = file.relative_to(self._project).as_posix()
+                if not self._is_other(behavior_id):
+                    yield behavior_id
+
+    def _is_other(self, behavior_id: str) -> bool:
+        """Tell cells and entries from behaviors; what cannot be read counts as a behavior with an error."""
+        return not self._fresh(behavior_id).view.id
+
+    def _fresh(self, behavior_id: str) -> _Read:
+        read = self._read.get(behavior_id)
+        if read is None or any(_stamp(file) != stamp for file, stamp in read.stamps.items()):
+            read = self._read[behavior_id] = self._load(behavior_id)
+        return read
+
+    @pause_gc
+    def _load(self, behavior_id: str) -> _Read:
+        file = self._project / behavior_id
+        stamps = {file: _stamp(file)}
+        try:
+            data = load_source(file).data
+            if isinstance(data, dict) and "root" not in data:
+                return _Read(stamps=stamps, view=BehaviorView(id="", name="", description=""), behavior=None)
+        except DocumentError as error:
+            return _Read(
+                stamps=stamps, view=_unreadable(behavior_id, (invalid_document_finding(error, file),)), behavior=None
+            )
+        survey = survey_behavior(file)
+        findings = check_survey(survey, file, self.catalogue)
+        behavior = survey.behavior
+        if behavior is None or survey.mistakes or survey.circles:
+            return _Read(stamps=stamps, view=_unreadable(behavior_id, findings), behavior=None)
+        others = [inner.file for inner in _all_references(behavior)]
+        stamps |= {other: _stamp(other) for other in (*others, *read_beside(behavior))}
+        return _Read(stamps=stamps, view=self._view(behavior_id, behavior, findings), behavior=behavior)
+
+    def _view(self, behavior_id: str, behavior: Behavior, findings: tuple[Finding, ...]) -> BehaviorView:
+        return BehaviorView(
+            id=behavior_id,
+            name=behavior.name,
+            description=behavior.document.description,
+            parameters=tuple(_parameter(name, parameter) for name, parameter in behavior.parameters.items()),
+            findings=tuple(sorted(map(_finding, findings), key=lambda finding: (finding.line, finding.column))),
+            graph=new_graph(behavior, self.catalogue),
+            view=behavior.document.view,
+            success=behavior.success,
+        )
+
+
+def _all_references(behavior: Behavior) -> Iterator[Behavior]:
+    """Return what a behavior refers to, each once, however many lead there."""
+    known: set[int] = set()
+    due = list(behavior.references.values())
+    while due:
+        target = due.pop()
+        if id(target) not in known:
+            known.add(id(target))
+            due += target.references.values()
+            yield target
+
+
+def _stamp(file: Path) -> int:
+    try:
+        return file.stat().st_mtime_ns
+    except OSError:
+        return 0  # a file that has gone is a change like any other
+
+
+def _parameter(name: str, parameter: ParameterSpec) -> ParameterView:
+    return ParameterView(name=name, schema=parameter.json_schema(), required=parameter.required)
+
+
+def _finding(finding: Finding) -> FindingView:
+    return FindingView(
+        severity=finding.severity,
+        code=finding.code,
+        message=finding.message,
+        path=finding.path,
+        line=finding.position.line,
+        column=finding.position.column,
+        hint=finding.hint or "",
+    )
+
+
+def _unreadable(behavior_id: str, findings: Sequence[Finding]) -> BehaviorView:
+    views = tuple(map(_finding, findings))
+    return BehaviorView(id=behavior_id, name=Path(behavior_id).name, description="", findings=views)

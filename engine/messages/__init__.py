@@ -1,0 +1,34 @@
+"""What travels over the bus: typed messages of geometry, robots, sensing and learned motion.
+
+SI units, quaternions are x y z w, angles in radians. Imports nothing else of the engine.
+"""
+
+from engine.messages.geometry import FramePoses, FrameTransform, Message, PartPoses, Pose, Quaternion, Vector3, Wrench
+from engine.messages.robot_states import (
+    ExternalTorque,
+    GripperState,
+    HandState,
+    JointState,
+    MagnetState,
+    RobotDescription,
+)
+from engine.messages.scene import SceneDescription, VisualGeometry
+
+__all__ = [
+    "ExternalTorque",
+    "FramePoses",
+    "FrameTransform",
+    "GripperState",
+    "HandState",
+    "JointState",
+    "MagnetState",
+    "Message",
+    "PartPoses",
+    "Pose",
+    "Quaternion",
+    "RobotDescription",
+    "SceneDescription",
+    "Vector3",
+    "VisualGeometry",
+    "Wrench",
+]

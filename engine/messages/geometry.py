@@ -1,0 +1,57 @@
+"""Geometry: poses, transforms and wrenches, and the base of all messages.
+
+SI units, quaternions are x y z w, angles in radians. Poses are expressed in the
+frame that the message names; `world` is the cell's root frame.
+"""
+
+from __future__ import annotations
+
+import msgspec
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+class Message(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Root of everything published on a topic or carried by a skill."""
+
+
+class Pose(Message, frozen=True, kw_only=True):
+    """A rigid transform: position in metres and unit quaternion x y z w, in `frame`."""
+
+    xyz: Vector3
+    xyzw: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    frame: str = "world"
+
+
+class Wrench(Message, frozen=True, kw_only=True):
+    """Force in newton and torque in newton metre, in `frame`."""
+
+    force_n: Vector3
+    torque_nm: Vector3
+    frame: str
+
+
+class FrameTransform(Message, frozen=True, kw_only=True):
+    """The pose of `child` in `parent`."""
+
+    parent: str
+    child: str
+    xyz: Vector3
+    xyzw: Quaternion
+
+
+class FramePoses(Message, frozen=True, kw_only=True):
+    """World poses of all moving frames at one instant: row i is names[i], xyz and xyzw."""
+
+    time_s: float
+    names: tuple[str, ...]
+    xyz: tuple[Vector3, ...]
+    xyzw: tuple[Quaternion, ...]
+
+
+class PartPoses(Message, frozen=True, kw_only=True):
+    """Where the known parts of the cell lie, in the world frame."""
+
+    time_s: float
+    poses: dict[str, Pose]

@@ -1,0 +1,76 @@
+"""Poses put together, turned around and moved, in plain numbers: quaternions x y z w of length 1."""
+
+from __future__ import annotations
+
+import math
+
+from engine.messages.geometry import Pose, Quaternion, Vector3
+
+_NO_TURN = 1e-9
+
+
+def compose_poses(outer: Pose, inner: Pose) -> Pose:
+    """Return where a pose in the frame that `outer` describes is, in the frame of `outer`."""
+    x, y, z = (a + b for a, b in zip(outer.xyz, rotate_vector(outer.xyzw, inner.xyz), strict=True))
+    return Pose(xyz=(x, y, z), xyzw=_product(outer.xyzw, inner.xyzw), frame=outer.frame)
+
+
+def rotate_vector(by: Quaternion, vector: Vector3) -> Vector3:
+    """Turn a vector by a unit quaternion."""
+    x, y, z, w = by
+    a, b, c = vector
+    # v + 2 w (q x v) + 2 q x (q x v)
+    p, q, r = y * c - z * b, z * a - x * c, x * b - y * a
+    return (
+        a + 2 * (w * p + y * r - z * q),
+        b + 2 * (w * q + z * p - x * r),
+        c + 2 * (w * r + x * q - y * p),
+    )
+
+
+def angle_between_rad(one: Quaternion, other: Quaternion) -> float:
+    """Return the angle between two orientations."""
+    return 2 * math.acos(min(1.0, abs(sum(a * b for a, b in zip(one, other, strict=True)))))
+
+
+def rotation_vector_between(one: Quaternion, other: Quaternion) -> Vector3:
+    """Return the rotation vector, radians, that turns one orientation into the other, the shorter way round."""
+    x, y, z, w = one
+    a, b, c, real = _product(other, (-x, -y, -z, w))
+    length = math.hypot(a, b, c)
+    if length < _NO_TURN:
+        return (0.0, 0.0, 0.0)
+    share = math.copysign(2.0 * math.atan2(length, abs(real)), real) / length
+    return (a * share, b * share, c * share)
+
+
+def invert_pose(pose: Pose) -> Pose:
+    """Return where the origin of the outer frame is, seen in the frame of `pose`."""
+    x, y, z, w = pose.xyzw
+    back = (-x, -y, -z, w)
+    a, b, c = rotate_vector(back, pose.xyz)
+    return Pose(xyz=(-a, -b, -c), xyzw=back, frame=pose.frame)
+
+
+def offset_along(direction: Vector3, distance_m: float) -> Vector3:
+    """Return the way of `distance_m` in a direction of any length but 0."""
+    length = math.hypot(*direction)
+    x, y, z = (value * distance_m / length for value in direction)
+    return (x, y, z)
+
+
+def translate_pose(pose: Pose, offset_m: Vector3) -> Pose:
+    """Return a pose that stands elsewhere, turned alike; `offset_m` is in the frame that the pose is given in."""
+    x, y, z = (value + shift for value, shift in zip(pose.xyz, offset_m, strict=True))
+    return Pose(xyz=(x, y, z), xyzw=pose.xyzw, frame=pose.frame)
+
+
+def _product(one: Quaternion, other: Quaternion) -> Quaternion:
+    a, b, c, d = one
+    x, y, z, w = other
+    return (
+        d * x + a * w + b * z - c * y,
+        d * y - a * z + b * w + c * x,
+        d * z + a * y - b * x + c * w,
+        d * w - a * x - b * y - c * z,
+    )

@@ -1,0 +1,419 @@
+"""A session: an open cell, the behaviors of a project, and any number of runs and operators at once."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from engine.archive import Archive
+from engine.bus.bus_inspector import BusInspector
+from engine.bus.json_bus import JsonBus, LocalJsonBus
+from engine.cell.cell_connection import CellConnection
+from engine.cell.open_cell import OpenCell
+from engine.document import Behavior
+from engine.document.faults import Faults
+from engine.document.substitutes import Substitutes
+from engine.editing import DocumentRepository
+from engine.errors import ControlError, FlexcellError
+from engine.event import Event
+from engine.faults import FaultPort
+from engine.host.gc_pause import pause_gc
+from engine.journal import Journal, RunRecord, list_runs
+from engine.library.behavior_library import BehaviorView, Library
+from engine.project.run_factory import (
+    RunPosition,
+    checkpoint_at,
+    new_origin,
+    new_run,
+    plan_resume,
+    require_names,
+    require_simulation,
+    resume_run,
+)
+from engine.project.session_entries import StoredEntries
+from engine.project.session_operators import OperatorRoster, RunOperator
+from engine.project.session_recordings import RunStartRecord, SessionRecordings
+from engine.project.session_run import RunView, SessionRun
+from engine.project.session_stops import SessionStops
+from engine.recording.recorded_run import read_run, version_snapshot
+from engine.runtime.control import Breakpoint, Control, load_breakpoints, save_breakpoints
+from engine.runtime.history.hot_change import ChangeReport
+from engine.runtime.history.userdata_history import UserdataHistory
+from engine.runtime.plan import Catalogue, Plan, new_plan
+from engine.runtime.record.skill_port import BusPort
+from engine.runtime.run_options import RunOptions
+from engine.suggestions import did_you_mean
+
+EventCallback = Callable[[str, Event], None]
+_KEPT_RUNS = 200
+
+
+class Session:
+    """What the dashboard works on; belongs to the event loop it is made on. With `recordings` its runs are recorded."""
+
+    def __init__(
+        self,
+        cell: OpenCell,
+        *,
+        project: Path,
+        catalogue: Catalogue,
+        journal: Journal,
+        recordings: SessionRecordings | None = None,
+    ) -> None:
+        self.cell = cell
+        self._library = Library(project, catalogue)
+        self._entries = StoredEntries(cell)
+        self.documents = DocumentRepository(project, catalogue, stored=self._entries.of_cell, cell=cell.document)
+        self.archive = Archive(project, catalogue, journal.path)
+        self._journal = journal
+        self._recordings = recordings
+        self._runs: dict[str, SessionRun] = {}
+        self._callbacks: tuple[EventCallback, ...] = ()
+        self._operators = OperatorRoster()
+        self._stops = SessionStops(cell, self._runs)
+
+    async def __aenter__(self) -> Self:
+        await self._entries.open()
+        self._stops.begin()
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop every run and wait until its robots rest."""
+        self._stops.end()
+        for started in self._runs.values():
+            started.run.stop("the session was closed")
+        tasks = [started.task for started in self._runs.values() if started.task is not None]
+        if tasks:
+            await asyncio.wait(tasks)
+        await self._stops.released()
+        if self._recordings is not None:
+            await self._recordings.close()
+        self._entries.close()
+
+    @property
+    def bus(self) -> JsonBus:
+        """The cell's bus, by name and JSON."""
+        return LocalJsonBus(self.cell.bus)
+
+    @property
+    def desk(self) -> BusInspector:
+        """The cell's bus, for a person at a screen."""
+        return BusInspector(self.cell.bus)
+
+    @property
+    def cell_name(self) -> str:
+        """Name of the connected cell."""
+        return self.cell.name
+
+    def behaviors(self) -> tuple[BehaviorView, ...]:
+        """Return all behaviors of the project, sorted by id."""
+        return self._library.views()
+
+    def behavior(self, behavior_id: str) -> BehaviorView:
+        """Return one behavior; raises DocumentError when the id names none."""
+        return self._library.view(behavior_id)
+
+    def runs(self) -> tuple[RunView, ...]:
+        """Return the runs of this session, newest first."""
+        return tuple(started.view(self.cell.bus.clock.now_s()) for started in reversed(self._runs.values()))
+
+    def run(self, run_id: str) -> RunView:
+        """Return one run; raises FlexcellError when the id names none."""
+        return self._known(run_id).view(self.cell.bus.clock.now_s())
+
+    async def start(
+        self,
+        behavior_id: str,
+        *,
+        parameters: Mapping[str, object],
+        seed: int,
+        inputs: Mapping[str, object] | None = None,
+        supervision: RunOptions | None = None,
+        breakpoints: bool = False,
+        begin: RunPosition | None = None,
+        faults: Faults | None = None,
+    ) -> str:
+        """Start a run, once every STOP before it has ended, and return its id.
+
+        Args:
+            behavior_id: Which behavior.
+            parameters: Values for its parameters; with `begin` those of that run are the default.
+            seed: Of its random numbers.
+            inputs: Initial values of userdata keys.
+            supervision: Autonomy, whether an operator is demanded, time-outs.
+            breakpoints: Whether to use those beside the behavior's file.
+            begin: The moment of a run in the journal to begin at; the cell stays as it is.
+            faults: Go wrong in this run only.
+
+        Raises:
+            FlexcellError: the behavior has errors, a parameter is not acceptable, or a STOP takes long.
+        """
+        behavior, plan = await asyncio.to_thread(self._planned, behavior_id)
+        watched = supervision or RunOptions()
+        if breakpoints:
+            watched = replace(watched, breakpoints=load_breakpoints(behavior.file))
+        checkpoint = None
+        if begin is not None:
+            found = read_run(self._journal.path, begin.run)
+            checkpoint = checkpoint_at(found, plan, seq=begin.seq, path=begin.path)
+            known = {name: value for name, value in checkpoint.parameters.items() if name in plan.parameters}
+            parameters = {**known, **parameters}
+        if self.cell.document is not None:
+            catalogue = self._library.catalogue
+            await asyncio.to_thread(require_names, behavior, catalogue, self.cell.document, parameters)
+        # Before the run, whose clock goes from here on.
+        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
+        await self._stops.over()
+        run = new_run(
+            plan,
+            cell=self.cell,
+            journal=self._journal,
+            parameters=parameters,
+            inputs=inputs,
+            seed=seed,
+            origin=new_origin(behavior, cell=self.cell, supervision=watched),
+            supervision=watched,
+            skills=FaultPort(BusPort(self.cell.bus), faults, clock=self.cell.bus.clock, seed=seed) if faults else None,
+            checkpoint=checkpoint,
+        )
+        self._add(
+            SessionRun(behavior_id, run, self.cell.bus.clock.now_s()),
+            RunStartRecord(documents=documents, inputs=inputs, supervision=watched),
+        )
+        return run.id
+
+    def interrupted(self) -> tuple[RunRecord, ...]:
+        """Return the runs of the journal whose engine died, oldest first."""
+        return tuple(record for record in list_runs(self._journal.path) if record.interrupted)
+
+    async def resume(self, run_id: str, *, answers: Mapping[str, str] | None = None, changed: bool = False) -> str:
+        """Go on with an interrupted run of this project and cell, once every STOP has ended, and return its id.
+
+        A simulated world is brought to where it was unless another run is under way.
+
+        Raises:
+            NeedsAnswers: states that were in mid-work ask.
+            FlexcellError: it cannot go on here.
+        """
+        found = read_run(self._journal.path, run_id)
+        behavior_id = self._library.id_of(Path(found.origin.behavior))
+        if found.origin.cell != self._cell_file():
+            there = found.origin.cell or "no cell"
+            raise ControlError(f"this run was in {there}", where=run_id, hint="serve that cell")
+        catalogue = self._library.catalogue
+        behavior, plan = await asyncio.to_thread(self._planned, behavior_id, found.substitutes)
+        require_simulation(plan, self.cell.document)
+        # Before it is decided whether the world is to be brought back: another run may begin meanwhile.
+        documents = await self._recordings.prepare(behavior, cell=self.cell) if self._recordings else None
+        await self._stops.over()
+        alone = all(started.result is not None for started in self._runs.values())
+        resumption = plan_resume(
+            found,
+            plan,
+            catalogue=catalogue,
+            answers=answers,
+            changed=changed,
+            restore=alone and found.origin.seed == self.cell.seed,
+        )
+        watched = RunOptions(autonomy=resumption.autonomy, demand_operator=found.origin.demand_operator)
+        run = await resume_run(
+            resumption,
+            cell=self.cell,
+            journal=self._journal,
+            catalogue=catalogue,
+            answers=answers,
+            supervision=watched,
+        )
+        self._add(
+            SessionRun(behavior_id, run, self.cell.bus.clock.now_s(), events=found.events),
+            RunStartRecord(documents=documents, inputs=found.origin.inputs, supervision=watched),
+        )
+        return run_id
+
+    def control(self, run_id: str) -> Control:
+        """Return what an operator can do with a run that is under way.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        started = self._known(run_id)
+        if started.run.ended:
+            raise ControlError("this run is over", where=run_id)
+        return started.run.control
+
+    def operate(self, run_id: str) -> RunOperator:
+        """Be an operator of a run, until `detach` or `lose` of what is returned; any number may be.
+
+        Raises:
+            ControlError: it is over.
+            FlexcellError: the id names none.
+        """
+        return self._operators.attach(run_id, self.control(run_id))
+
+    async def change(self, run_id: str, *, preempt: bool = False) -> ChangeReport:
+        """Let the behavior as its file is now take the place of the one that a paused run executes; see `Run.change`.
+
+        Raises:
+            ControlError: the run cannot go on in the new version; it goes on as it is.
+            DocumentError: the file cannot be read or has errors.
+        """
+        self.control(run_id)
+        started = self._known(run_id)
+        behavior, plan = await asyncio.to_thread(self._planned, started.behavior_id, started.run.plan.substitutes)
+        kept = await asyncio.to_thread(version_snapshot, behavior)
+        self.control(run_id)
+        return started.run.change(plan, preempt=preempt, kept=kept)
+
+    async def step_back(self, run_id: str, path: str = "") -> tuple[str, ...]:
+        """Take back what a paused run has begun last; see `engine.runtime.run.Run.step_back`.
+
+        Raises:
+            ControlError: the run is over, is not paused, or something cannot be undone; nothing has moved.
+            JournalError: its journal cannot be read.
+        """
+        self.control(run_id)
+        return await self._known(run_id).run.step_back(path)
+
+    @pause_gc
+    def _planned(self, behavior_id: str, substitutes: Substitutes | None = None) -> tuple[Behavior, Plan]:
+        """Read, check and plan a behavior: on a thread, for it may be large."""
+        behavior = self._library.behavior(behavior_id).with_substitutes(substitutes)
+        return behavior, new_plan(behavior, self._library.catalogue)
+
+    async def stop(self, run_id: str, *, reason: str) -> None:
+        """Ask a run to stop and return at once; stopping one that is over does nothing."""
+        self._known(run_id).stop(reason)
+
+    async def stop_all(self, *, reason: str) -> None:
+        """Ask every run to stop, cancel every goal of whomever, and return when every robot is at rest.
+
+        With a stop relay the devices take no motion until every run has ended, that of a clean-up neither.
+
+        Raises:
+            RobotError: one could not confirm it; the others were stopped all the same, and stay latched.
+        """
+        await self._stops.stop_all(reason=reason)
+
+    @property
+    def cell_connection(self) -> CellConnection:
+        """Whether every device of the cell is connected."""
+        return self.cell.connection
+
+    async def connect_cell(self) -> None:
+        """Connect again what is lost of the cell; does nothing where nothing is.
+
+        Raises:
+            ControlError: a run is under way.
+            RobotError: a device does not come back.
+        """
+        for run_id, started in self._runs.items():
+            if started.result is None and not self.cell.connection.connected:
+                raise ControlError("a run is under way", where=run_id, hint="stop it first, then connect the cell")
+        await self.cell.reconnect()
+
+    def breakpoints(self, behavior_id: str) -> tuple[Breakpoint, ...]:
+        """Return the breakpoints that are kept beside a behavior's file.
+
+        Raises:
+            DocumentError: there is no such behavior, or the file beside it is not valid.
+        """
+        return load_breakpoints(self._library.file_of(behavior_id))
+
+    def keep_breakpoints(self, behavior_id: str, breakpoints: Iterable[Breakpoint]) -> None:
+        """Write the breakpoints beside a behavior's file; raises DocumentError when the id names none."""
+        save_breakpoints(self._library.file_of(behavior_id), breakpoints)
+
+    async def wait(self, run_id: str) -> RunView:
+        """Wait until a run is over and return it."""
+        started = self._known(run_id)
+        if started.task is not None:
+            await asyncio.wait({started.task})
+        return self.run(run_id)
+
+    def subscribe(self, callback: EventCallback) -> Callable[[], None]:
+        """Call back with (run id, event) for every event of every run; returns what ends it."""
+        self._callbacks = (*self._callbacks, callback)
+        return lambda: self._unsubscribe(callback)
+
+    def events(self, run_id: str, *, after: int = 0) -> list[Event]:
+        """Return the events of a run with `seq` > `after`, in order."""
+        events = self._known(run_id).events
+        return events[after:]  # `seq` counts from 1 without gaps
+
+    def userdata(self, run_id: str) -> UserdataHistory:
+        """Return an empty book of a run's userdata, to be read from its events on; raises FlexcellError."""
+        run = self._known(run_id).run
+        return UserdataHistory(lambda: run.plan)
+
+    def recording_files(self, run_id: str) -> tuple[Path, ...]:
+        """Return the recordings of a run, oldest first, of a run under way too; `run_id` may be a recording's path.
+
+        Empty where the run was not recorded. May be called on any thread.
+
+        Raises:
+            RecordingError: there is no recording at that path in the project.
+        """
+        if run_id.endswith((".mcap", ".mcap.part")):
+            return (self.archive.recording_file(run_id),)
+        return self._recordings.files(run_id) if self._recordings is not None else ()
+
+    def latest(self, topic: str) -> object | None:
+        """Return the newest message of a bus topic, or None."""
+        try:
+            return self.cell.bus.find_topic(topic).latest
+        except FlexcellError:
+            return None  # nobody publishes it in this cell, which is not an error of the viewer
+
+    def subscribe_topic(self, topic: str, callback: Callable[[Any], None]) -> Callable[[], None]:
+        """Call back with every new message of a topic, the newest one first, at once.
+
+        Raises:
+            BusError: this cell has no such topic.
+        """
+        found = self.cell.bus.find_topic(topic)
+        if found.latest is not None:
+            callback(found.latest)
+        return found.subscribe(callback).close
+
+    async def _execute(self, started: SessionRun, start: RunStartRecord) -> None:
+        if self._recordings is None:
+            started.result = await started.run.execute()
+            return
+        async with self._recordings.around(started.run, start, cell=self.cell):
+            started.result = await started.run.execute()
+
+    def _tell(self, run_id: str, event: Event) -> None:
+        self._runs[run_id].events.append(event)
+        for callback in self._callbacks:
+            callback(run_id, event)
+
+    def _add(self, started: SessionRun, start: RunStartRecord) -> None:
+        run = started.run
+        self._runs[run.id] = started
+        run.watch(lambda event: self._tell(run.id, event))
+        started.task = asyncio.create_task(self._execute(started, start), name=f"session run {run.id}")
+        self._forget_oldest()
+
+    def _cell_file(self) -> str | None:
+        return str(self.cell.document.file.resolve()) if self.cell.document is not None else None
+
+    def _unsubscribe(self, callback: EventCallback) -> None:
+        self._callbacks = tuple(known for known in self._callbacks if known is not callback)
+
+    def _known(self, run_id: str) -> SessionRun:
+        if run_id not in self._runs:
+            raise FlexcellError(f"there is no run {run_id!r}", hint=did_you_mean(run_id, self._runs))
+        return self._runs[run_id]
+
+    def _forget_oldest(self) -> None:
+        """Keep memory bounded; the journal keeps every run."""
+        over = [run_id for run_id, started in self._runs.items() if started.result is not None]
+        for run_id in over[: max(0, len(self._runs) - _KEPT_RUNS)]:
+            del self._runs[run_id]

@@ -1,0 +1,73 @@
+"""A run of a session: its task, its events and its result."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterable
+
+import msgspec
+
+from engine.cause_chain import describe_cause
+from engine.event import Event
+from engine.runtime.control import ControlView
+from engine.runtime.run import Run, RunResult
+
+
+class RunView(msgspec.Struct, frozen=True, kw_only=True):
+    """One run, under way or over; `status` is running, stopping, finished, stopped or errored.
+
+    `control` is what an operator sees of it while it is under way.
+    """
+
+    id: str
+    behavior: str
+    status: str
+    outcome: str | None
+    success: bool
+    cause: str
+    started_at_s: float
+    duration_s: float
+    control: ControlView | None = None
+
+
+class SessionRun:
+    """One run under way or over; used on the session's event loop.
+
+    Args:
+        behavior_id: What it executes.
+        run: The run.
+        started_s: The time of the cell's clock at its start.
+        events: Those that it had before this session, when it was resumed.
+    """
+
+    def __init__(self, behavior_id: str, run: Run, started_s: float, *, events: Iterable[Event] = ()) -> None:
+        self.behavior_id = behavior_id
+        self.run = run
+        self.started_s = started_s
+        self.started_at_s = time.time()
+        self.events: list[Event] = list(events)
+        self.stopping = False
+        self.result: RunResult | None = None
+        self.task: asyncio.Task[None] | None = None
+
+    def stop(self, reason: str) -> None:
+        """Ask it to stop and return at once; one that is over stays as it is."""
+        if self.result is None:
+            self.stopping = True
+            self.run.stop(reason)
+
+    def view(self, now_s: float) -> RunView:
+        """Return how it stands at this time of the cell's clock."""
+        result = self.result
+        return RunView(
+            id=self.run.id,
+            behavior=self.behavior_id,
+            status=result.status if result else ("stopping" if self.stopping else "running"),
+            outcome=result.outcome if result else None,
+            success=result.success if result else False,
+            cause=describe_cause(result.cause) if result and result.cause and not result.success else "",
+            started_at_s=self.started_at_s,
+            duration_s=result.duration_s if result else now_s - self.started_s,
+            control=self.run.control.view() if result is None and not self.run.ended else None,
+        )

@@ -1,0 +1,44 @@
+"""Unfolds the chunks of a recording: never to more than they say, and never to more than is allowed."""
+
+from __future__ import annotations
+
+import zlib
+from importlib import import_module
+from typing import Any
+
+import zstandard
+from mcap.records import Chunk
+
+from engine.recording.read_budget import MAX_CHUNK, ReadBudget
+
+
+def decompress_chunk(chunk: Chunk, allowance: ReadBudget) -> bytes:
+    """Return the records in a chunk as bytes.
+
+    Raises:
+        ValueError: it is too large, is packed in an unknown way, or is damaged.
+    """
+    allowance.take_chunk(chunk.uncompressed_size)
+    data = _unpacked(chunk)
+    if len(data) != chunk.uncompressed_size:
+        raise ValueError(f"a chunk does not unfold to the {chunk.uncompressed_size} bytes that it says")
+    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+        raise ValueError("the checksum of a chunk is wrong")
+    return data
+
+
+def _unpacked(chunk: Chunk) -> bytes:
+    # One byte more than it says is asked for, which shows that there are more.
+    wanted = chunk.uncompressed_size + 1
+    match chunk.compression:
+        case "":
+            return chunk.data
+        case "zstd":
+            reader = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK).stream_reader(chunk.data)
+            return reader.read(wanted)
+        case "lz4":
+            # It has no types.
+            frame: Any = import_module("lz4.frame")
+            return frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=wanted)
+        case other:
+            raise ValueError(f"a chunk is packed as {other[:20]!r}, which is not known")

@@ -1,0 +1,95 @@
+"""Turns a live recording into a finished one: compressed chunks and an index, events in chunks of their own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from mcap.records import Attachment, Channel, McapRecord, Message, Metadata, Schema
+from mcap.writer import CompressionType, Writer
+
+from engine.errors import RecordingError
+from engine.host.private_files import open_private
+from engine.recording.file_content import open_records
+from engine.recording.live_file import PROFILE
+from engine.recording.read_budget import ReadBudget
+
+EVENT_TOPIC = "/flexcell/events"
+CHUNK_BYTES = 512 * 1024
+PART = ".part"
+
+
+def part_file(path: Path) -> Path:
+    """Return where a recording lies while it grows."""
+    return path.with_name(path.name + PART)
+
+
+def recovered_file(path: Path) -> Path:
+    """Return where what a killed process left of a recording is put: `run.mcap` → `run-recovered.mcap`."""
+    return path.with_name(f"{path.stem}-recovered{path.suffix}")
+
+
+def finalize_recording(part: Path, target: Path) -> None:
+    """Write `target` from a live recording, closed or cut off, and remove that.
+
+    Raises:
+        RecordingError: it cannot be read or written; it is left as it is.
+    """
+    fresh = target.with_name(f".{target.name}.new")
+    try:
+        with open_records(part) as records, open_private(fresh) as stream:
+            writer = Writer(stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
+            _copy(records, writer, ReadBudget(part.stat().st_size))
+        os.replace(fresh, target)
+        part.unlink()
+    except OSError as error:
+        fresh.unlink(missing_ok=True)
+        reason = error.strerror or str(error)
+        raise RecordingError(
+            f"the recording cannot be finished: {reason}", where=target, hint=f"it is whole in {part.name}"
+        ) from error
+    except Exception as error:
+        # The parts of a damaged file may break in any way; what is left of it stays where it is.
+        fresh.unlink(missing_ok=True)
+        what = " ".join(str(error).split()) or type(error).__name__
+        raise RecordingError(f"this file is damaged: {what}", where=part, hint="remove it") from error
+
+
+def _copy(records: Callable[[], Iterator[McapRecord]], writer: Writer, allowance: ReadBudget) -> None:
+    writer.start(profile=PROFILE, library="flexcell")
+    schemas: dict[int, int] = {}
+    channels: dict[int, int] = {}
+    events: set[int] = set()
+    for record in records():
+        match record:
+            case Metadata():
+                allowance.take_document(sum(len(key) + len(value) for key, value in record.metadata.items()))
+                writer.add_metadata(record.name, record.metadata)
+            case Attachment():
+                allowance.take_document(len(record.data))
+                writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
+            case Schema() if record.id not in schemas:
+                schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
+            case Channel() if record.id not in channels:
+                channels[record.id] = writer.register_channel(
+                    record.topic, record.message_encoding, schemas[record.schema_id], record.metadata
+                )
+                if record.topic == EVENT_TOPIC:
+                    events.add(record.id)
+            case Message():
+                if record.channel_id in events:
+                    _write(record, channels, writer)
+            case _:
+                pass
+    writer.flush()
+    for record in records():
+        if isinstance(record, Message) and record.channel_id not in events:
+            _write(record, channels, writer)
+    writer.finish()
+
+
+def _write(message: Message, channels: dict[int, int], writer: Writer) -> None:
+    writer.add_message(
+        channels[message.channel_id], message.log_time, message.data, message.publish_time, message.sequence
+    )

@@ -1,0 +1,35 @@
+"""When nodes were entered in a recording: what made a tree ask its checks again then left no other trace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from engine.event import NodeEntered
+from engine.recording import RecordedEvent
+from engine.replay.recorded_requests import RecordedInstant
+from engine.replay.recorded_schedule import RecordedSchedule
+
+
+class RecordedEntrySchedule:
+    """The entries of a story, by path and visit.
+
+    Args:
+        story: The events to come again.
+        timetable: Hands them out.
+    """
+
+    def __init__(self, story: Sequence[RecordedEvent], timetable: RecordedSchedule) -> None:
+        self._timetable = timetable
+        self._moments = {
+            (each.event.path, each.event.visit): RecordedInstant(place, each.at_s)
+            for place, each in enumerate(story)
+            if isinstance(each.event, NodeEntered)
+        }
+
+    def expect(self, path: str, visit: int, wake: Callable[[], None]) -> Callable[[], None]:
+        """Call `wake` when the node at `path` is due to be entered the `visit`-th time; returns what forgets that."""
+        moment = self._moments.get((path, visit))
+        if moment is None:
+            return lambda: None
+        due = self._timetable.expect(moment.place, moment.at_s, wake)
+        return lambda: self._timetable.forget(due)

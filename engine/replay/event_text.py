@@ -1,0 +1,141 @@
+"""Short text of an event, and the differences between two events."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from itertools import chain
+from typing import Any, cast
+
+import msgspec
+
+from engine.event import (
+    BehaviorChanged,
+    BranchesPreempted,
+    Event,
+    GoalFinished,
+    GoalSent,
+    MessageLogged,
+    MessageReceived,
+    NodeDiverted,
+    NodeEntered,
+    NodeExited,
+    OperatorCommanded,
+    RunEnded,
+    RunStarted,
+    RunSteppedBack,
+    ServiceAnswered,
+    ServiceCalled,
+    TransitionTaken,
+    UndoEnded,
+    UndoStarted,
+    UserdataAppended,
+    UserdataWritten,
+)
+from engine.journal import encode_event
+
+_LONGEST = 60
+_FILE_PLACE = re.compile(r"[^\s'\"`,;()]*\.(?:py|ya?ml|json):\d+(?::\d+)?(?:: )?")
+_MISSING = object()
+
+
+def event_text(event: Event) -> str:
+    """Return a few words without the path."""
+    match event:
+        case RunStarted():
+            return f"start of {event.behavior}"
+        case NodeEntered():
+            return f"entered ({event.kind}, visit {event.visit})"
+        case NodeExited():
+            how = event.outcome or ("preempted" if event.preempted else "error")
+            return f"left with {how}"
+        case TransitionTaken():
+            return f"transition {event.source}: {event.outcome or 'left'} → {event.target}"
+        case NodeDiverted():
+            return f"left for {event.target} by {event.by}"
+        case BranchesPreempted():
+            return event.condition
+        case GoalSent() | ServiceCalled():
+            return f"request {event.address}"
+        case GoalFinished():
+            return f"goal {event.status}"
+        case ServiceAnswered():
+            return "answer" if event.cause is None else f"no answer: {event.cause.message}"
+        case MessageReceived():
+            return f"message of {event.topic}"
+        case UserdataWritten():
+            return f"wrote {event.key} = {_short(event.value)}"
+        case UserdataAppended():
+            return f"appended {_short(event.value)} to {event.key}"
+        case MessageLogged():
+            return f"{event.level}: {event.message}"
+        case OperatorCommanded():
+            return f"command {event.command}"
+        case UndoStarted():
+            return f"undoes visit {event.undoes}"
+        case UndoEnded():
+            how = "preempted" if event.preempted else "failed" if event.cause is not None else "done"
+            return f"undo of visit {event.undoes} {how}"
+        case RunSteppedBack():
+            return f"stepped back from {event.source}" if event.cause is None else "could not step back"
+        case RunEnded():
+            return f"end of the run: {event.status} {event.outcome or ''}".rstrip()
+        case _:
+            return _tag(event)
+
+
+def plain_event(event: Event) -> dict[str, Any]:
+    """Return what a replay has to give again: all but numbers, times, and places in files.
+
+    Files move and lines shift without any change of what happens.
+    """
+    plain: dict[str, Any] = msgspec.json.decode(encode_event(event))
+    del plain["seq"], plain["time_s"]
+    if isinstance(event, RunStarted):
+        del plain["document"], plain["clock"]
+    if isinstance(event, BehaviorChanged):
+        del plain["document"]
+    if isinstance(event, MessageLogged):
+        plain["message"] = _without_places(event.message)
+    if "cause" in plain:
+        plain["cause"] = _without_places(plain["cause"])
+    return plain
+
+
+def value_changes(recorded: object, replayed: object, at: str = "") -> Iterable[str]:
+    """Go through the values that are different, each as `speed: 0.5 ≠ 0.7`."""
+    if isinstance(recorded, dict) and isinstance(replayed, dict):
+        before, after = cast("dict[str, object]", recorded), cast("dict[str, object]", replayed)
+        for key in chain(before, (key for key in after if key not in before)):
+            yield from value_changes(before.get(key, _MISSING), after.get(key, _MISSING), f"{at}.{key}" if at else key)
+        return
+    if isinstance(recorded, list) and isinstance(replayed, list):
+        earlier, later = cast("list[object]", recorded), cast("list[object]", replayed)
+        if len(earlier) == len(later):
+            for index, pair in enumerate(zip(earlier, later, strict=True)):
+                yield from value_changes(*pair, f"{at}[{index}]")
+            return
+    if recorded != replayed:
+        yield f"{at}: {_short(cast('object', recorded))} ≠ {_short(cast('object', replayed))}"
+
+
+def _without_places(value: Any) -> Any:
+    if isinstance(value, str):
+        return _FILE_PLACE.sub("", value)
+    if isinstance(value, dict):
+        clean = {key: _without_places(each) for key, each in cast("dict[str, Any]", value).items()}
+        return {key: each for key, each in clean.items() if each != ""}
+    if isinstance(value, list):
+        return [_without_places(each) for each in cast("list[Any]", value)]
+    return value
+
+
+def _tag(event: Event) -> str:
+    return str(event.__struct_config__.tag).replace("_", " ")
+
+
+def _short(value: object) -> str:
+    if value is _MISSING:
+        return "nothing"
+    text = msgspec.json.encode(value).decode()
+    return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"

@@ -1,0 +1,85 @@
+"""Searches the order of simultaneous answers with which a behavior reproduces its recording.
+
+In the recorded run an answer took some turns of the loop from its device to the state that waited,
+during which others that were ready at that instant did things that left no event. How many turns
+is not recorded, and must not make a difference where any number gives the story again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+
+from engine.event import (
+    BehaviorChanged,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    MessageReceived,
+    OperatorChanged,
+    OperatorCommanded,
+    ServiceAnswered,
+    StopRequested,
+)
+from engine.recording import RecordedEvent
+from engine.replay.recorded_schedule import BEFORE_CANCEL
+from engine.replay.replay_run import ReplayRun
+
+_ANSWERS = (
+    ServiceAnswered,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    MessageReceived,
+    StopRequested,
+    OperatorCommanded,
+    OperatorChanged,
+    BehaviorChanged,
+)
+_MOST_TURNS = 4
+_MOST_ANSWERS = 8
+_TOGETHER = 3
+_INSTANT_S = 1e-9
+_EFFORT = 20_000
+"""Events to be gone through in the search, at most."""
+
+
+def search_order(
+    first: ReplayRun, attempt: Callable[[Mapping[int, int]], ReplayRun], story: Sequence[RecordedEvent]
+) -> ReplayRun:
+    """Return the attempt that comes furthest, beginning with `first`; always the same one."""
+    best = first
+    left = max(1, _EFFORT // len(story))
+    while not best.same and best.met < len(story):
+        for turns in _variants(best, story):
+            left -= 1
+            tried = attempt(turns)
+            if tried.same or tried.met > best.met:
+                best = tried
+                break
+            if left <= 0:
+                return best
+        else:
+            return best
+    return best
+
+
+def _variants(best: ReplayRun, story: Sequence[RecordedEvent]) -> Iterator[Mapping[int, int]]:
+    """Go through other orders of the answers of the instant at which an attempt failed.
+
+    One answer after the other is moved, the last one first, then the last few together.
+    """
+    instant_s = story[best.met].at_s
+    places: list[int] = []
+    for place in range(best.met, -1, -1):
+        if abs(story[place].at_s - instant_s) > _INSTANT_S or len(places) == _MOST_ANSWERS:
+            break
+        if isinstance(story[place].event, _ANSWERS):
+            places.append(place)
+    for turns in (BEFORE_CANCEL, *range(1, _MOST_TURNS + 1)):
+        for place in places:
+            if best.turns.get(place, 0) != turns:
+                yield {**best.turns, place: turns}
+    last = places[:_TOGETHER]
+    for moved in product(range(_MOST_TURNS), repeat=len(last)):
+        yield {**best.turns, **dict(zip(last, moved, strict=True))}

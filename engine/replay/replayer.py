@@ -1,0 +1,84 @@
+"""Runs a recorded run again, in virtual time and without its robots, and tells the first difference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+from engine.document import Behavior
+from engine.errors import RecordingError
+from engine.event import BehaviorChanged, Event
+from engine.recording import RecordedEvent, Recording, recorded_behavior, recorded_substitutes
+from engine.recording.recorded_run import changed_behavior
+from engine.replay.expected_events import replayed_events
+from engine.replay.order_search import search_order
+from engine.replay.replay_difference import ReplayDifference
+from engine.replay.replay_loop import ReplayLoop
+from engine.replay.replay_run import ReplayRun
+from engine.runtime.plan import Catalogue, Plan, new_plan
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReplayReport:
+    """What came of a replay."""
+
+    recording: Recording
+    difference: ReplayDifference | None
+    """None when the run was the same."""
+    events: tuple[Event, ...]
+    """What happened this time."""
+    compared: int
+    """How many recorded events came again."""
+    duration_s: float
+    """How long the replay took, on the wall clock."""
+
+    @property
+    def same(self) -> bool:
+        """Whether everything recorded came again and nothing else."""
+        return self.difference is None
+
+
+def replay(recording: Recording, catalogue: Catalogue, *, behavior: Behavior | None = None) -> ReplayReport:
+    """Run a recording again, with another version of its behavior if one is given.
+
+    Raises:
+        RecordingError: it cannot be replayed.
+        DocumentError: the behavior cannot be run with what was given to the recorded one.
+    """
+    started_s = perf_counter()
+    story = replayed_events(recording)
+    plan = new_plan(_executed(recording, behavior), catalogue)
+    versions = dict(_versions(story, plan, catalogue))
+    if behavior is not None and versions:
+        raise RecordingError("a run whose behavior was changed is replayed with its own versions only")
+
+    def attempt(turns: Mapping[int, int]) -> ReplayRun:
+        again = ReplayRun(recording, plan, story, turns, versions)
+        ReplayLoop().run_main(again.run())
+        return again
+
+    again = attempt({})
+    if recording.description.clock == "virtual":
+        again = search_order(again, attempt, story)
+    return ReplayReport(
+        recording=recording,
+        difference=again.difference,
+        events=tuple(again.events),
+        compared=again.met,
+        duration_s=perf_counter() - started_s,
+    )
+
+
+def _versions(story: Sequence[RecordedEvent], plan: Plan, catalogue: Catalogue) -> Iterator[tuple[int, Plan]]:
+    """Go through what took over in hot changes, by the number of the event; the same stands in for its nodes."""
+    for each in story:
+        if isinstance(each.event, BehaviorChanged) and (changed := changed_behavior(each.event)) is not None:
+            yield each.event.seq, new_plan(changed.with_substitutes(plan.substitutes), catalogue)
+
+
+def _executed(recording: Recording, changed: Behavior | None) -> Behavior:
+    """Return what is run again: another version has the same substitutes, as nothing else was recorded."""
+    if changed is None:
+        return recorded_behavior(recording.documents)
+    return changed.with_substitutes(recorded_substitutes(recording.documents))

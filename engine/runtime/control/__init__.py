@@ -1,0 +1,24 @@
+"""Operator control of one run: pause, step, breakpoints, lock, repeat, force, autonomy, hot change.
+
+`Control` is what an operator's console talks to; `Gate` is where the nodes of the run ask whether
+they may go on.
+"""
+
+from engine.runtime.control.autonomy import LEVELS, AutonomyLevel
+from engine.runtime.control.breakpoint import Breakpoint, breakpoints_file, load_breakpoints, save_breakpoints
+from engine.runtime.control.control import Control, ControlView, LossPolicy
+from engine.runtime.control.gate import Gate, GateWait
+
+__all__ = [
+    "LEVELS",
+    "AutonomyLevel",
+    "Breakpoint",
+    "Control",
+    "ControlView",
+    "Gate",
+    "GateWait",
+    "LossPolicy",
+    "breakpoints_file",
+    "load_breakpoints",
+    "save_breakpoints",
+]

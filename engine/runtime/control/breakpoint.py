@@ -1,0 +1,108 @@
+"""Breakpoints: where a run pauses by itself; kept beside the behavior's file, keyed by state path."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from fnmatch import fnmatchcase
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from engine.document.decoding import StrictModel, decode_document
+from engine.document.expression import Template, compile_template
+from engine.document.yaml_source import load_source
+from engine.document.yaml_writer import write_yaml
+from engine.errors import DocumentError, ExpressionError
+
+GatePoint = Literal["before", "after"]
+
+
+class Breakpoint(StrictModel, frozen=True, kw_only=True, dict=True, rename={"condition": "if"}):
+    """Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches.
+
+    `path` may hold the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and
+    parameters. `hits` lets it pass that many times minus one before it pauses. `outcomes` limits
+    an `after` breakpoint to these.
+    """
+
+    path: Annotated[str, Meta(min_length=1, description="A node path, may hold `*` and `?`")]
+    when: GatePoint = "before"
+    condition: str | None = None
+    hits: Annotated[int, Meta(ge=1, description="Pause at the n-th time and from then on")] = 1
+    outcomes: tuple[str, ...] = ()
+    enabled: bool = True
+
+    def matches(self, path: str, when: GatePoint, outcome: str) -> bool:
+        """Tell whether it is about this place."""
+        if not self.enabled or self.when != when or (self.outcomes and outcome not in self.outcomes):
+            return False
+        return self.path == path or fnmatchcase(path, self.path)
+
+    def holds(self, read: Callable[[str], object]) -> bool:
+        """Tell whether its condition is true; `read` gives a userdata key or parameter.
+
+        Raises:
+            FlexcellError: a key is not defined there, or the condition is no truth value.
+        """
+        if self.template is None:
+            return True
+        value = self.template.evaluate({name: read(name) for name in self.template.names})
+        if not isinstance(value, bool):
+            raise ExpressionError(f"the condition of a breakpoint gave {value!r}", where=self.path, hint="compare it")
+        return value
+
+    @cached_property
+    def template(self) -> Template | None:
+        """The condition, compiled; None without one."""
+        if self.condition is None:
+            return None
+        return compile_template(self.condition if "${" in self.condition else f"${{{self.condition}}}")
+
+
+class BreakpointsDocument(StrictModel, frozen=True, kw_only=True):
+    """The file beside a behavior."""
+
+    flexcell: Literal[1]
+    breakpoints: tuple[Breakpoint, ...] = ()
+
+
+def breakpoints_file(behavior: Path) -> Path:
+    """Return where the breakpoints of a behavior file are kept: `pick.yaml` → `pick.breakpoints.yaml`."""
+    return behavior.with_name(f"{behavior.stem}.breakpoints.yaml")
+
+
+def load_breakpoints(behavior: Path) -> tuple[Breakpoint, ...]:
+    """Read the breakpoints of a behavior file; none where there is no such file.
+
+    Raises:
+        DocumentError: the file is not valid; `where` is the position.
+    """
+    file = breakpoints_file(behavior)
+    if not file.is_file():
+        return ()
+    source = load_source(file)
+    document = decode_document(source, BreakpointsDocument)
+    for index, found in enumerate(document.breakpoints):
+        try:
+            _ = found.template
+        except ExpressionError as error:
+            where = source.position(("breakpoints", index, "if"))
+            raise DocumentError(error.message, where=where, hint=error.hint) from None
+    return document.breakpoints
+
+
+def save_breakpoints(behavior: Path, breakpoints: Iterable[Breakpoint]) -> None:
+    """Write the file beside the behavior in one step; without breakpoints there is no file."""
+    file = breakpoints_file(behavior)
+    kept = tuple(breakpoints)
+    if not kept:
+        file.unlink(missing_ok=True)
+        return
+    document = BreakpointsDocument(flexcell=1, breakpoints=kept)
+    fresh = file.with_name(f".{file.name}.new")
+    fresh.write_text(write_yaml(msgspec.to_builtins(document)), encoding="utf-8")
+    os.replace(fresh, file)

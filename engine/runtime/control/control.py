@@ -1,0 +1,363 @@
+"""What an operator can do with one run; every command is an event before it takes effect."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import Literal, Protocol
+
+import msgspec
+
+from engine.errors import ControlError
+from engine.event import OperatorChanged, OperatorCommanded, PauseConfirmed
+from engine.node_path import is_inside
+from engine.preemption import preempt_for_order
+from engine.runtime.control.autonomy import AutonomyLevel
+from engine.runtime.control.breakpoint import Breakpoint
+from engine.runtime.control.gate import Gate, GateWait, OperatorOrder, StepBackAction
+from engine.runtime.control.single_step import SingleStep, StepMode
+from engine.runtime.record.recorder import Recorder
+from engine.runtime.scheduling.active_nodes import ActiveNodes
+from engine.runtime.scheduling.hold import BranchHolds
+from engine.runtime.scheduling.settlement import Settlement
+from engine.suggestions import did_you_mean
+
+LossPolicy = Literal["hold", "continue", "stop"]
+
+
+class ControlView(msgspec.Struct, frozen=True, kw_only=True):
+    """What an operator sees of a run."""
+
+    paused: bool
+    confirmed: bool
+    """Whether everything that was to be held is at rest; False while it brakes, and while nothing is paused."""
+    cannot: tuple[str, ...]
+    """Goals that cannot be held."""
+    waiting: tuple[GateWait, ...]
+    locks: tuple[str, ...]
+    breakpoints: tuple[Breakpoint, ...]
+    autonomy: AutonomyLevel
+    operator: str
+    """none, attached, detached or lost."""
+    active: tuple[str, ...]
+    stepping: bool = False
+    """Whether a step of the paused run is under way."""
+    demanded: bool = False
+    """Whether outcomes are asked for although nobody is there."""
+    loss_policy: LossPolicy = "hold"
+    """What is done `loss_timeout_s` after the operator is lost."""
+    loss_timeout_s: float = 0.0
+
+
+class BehaviorStructure(Protocol):
+    """What control has to know of the behavior."""
+
+    def outcomes(self, path: str) -> Sequence[str] | None:
+        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        ...
+
+    def paths(self) -> Sequence[str]:
+        """Return the paths of all nodes."""
+        ...
+
+
+class Control:
+    """Commands of the operator to one run; used on the loop thread.
+
+    Args:
+        gate: Where the nodes wait.
+        branch_holds: What holds their goals and timers.
+        activity: What is active.
+        settlement: Tells when the run is quiet.
+        recorder: The event log.
+        structure: The behavior, for messages about what does not exist.
+        stop: Stops the run with a reason.
+        loss_policy: What to do when the operator is lost: hold the run, let it continue, or stop it.
+        loss_timeout_s: How long after the loss.
+    """
+
+    def __init__(
+        self,
+        *,
+        gate: Gate,
+        branch_holds: BranchHolds,
+        activity: ActiveNodes,
+        settlement: Settlement,
+        recorder: Recorder,
+        structure: BehaviorStructure,
+        stop: Callable[[str], None],
+        demanded: bool = False,
+        loss_policy: LossPolicy = "hold",
+        loss_timeout_s: float = 5.0,
+    ) -> None:
+        self.structure = structure
+        self._gate = gate
+        self._branch_holds = branch_holds
+        self._activity = activity
+        self._settlement = settlement
+        self._recorder = recorder
+        self._stop = stop
+        self._demanded = demanded
+        self._loss_policy: LossPolicy = loss_policy
+        self._loss_timeout_s = loss_timeout_s
+        self._loss: asyncio.TimerHandle | None = None
+        self._operator = "none"
+        self._closed = False
+        self._confirmed = False
+        gate.asks = demanded
+        gate.on_paused = self._paused
+        branch_holds.on_settled = self._settled
+        gate.arm()
+
+    @property
+    def demanded(self) -> bool:
+        """Whether the run needs an operator: rules of autonomy hold although none is there."""
+        return self._demanded
+
+    def pause(self) -> None:
+        """Hold every goal and timer and let no node be entered or left; shown as confirmed once at rest."""
+        self._record("pause")
+        self._gate.pause()
+
+    def resume(self) -> None:
+        """Let the run go on."""
+        self._record("resume")
+        self._confirmed = False
+        self._gate.resume()
+
+    def step(self, mode: StepMode = "into", path: str = "") -> None:
+        """Let a paused run make one step.
+
+        Args:
+            mode: into the next node, over what is inside it, or out of its container.
+            path: The branch; without it the first one, in order of arrival, that waits.
+
+        Raises:
+            ControlError: the run is not paused, or nothing waits in that branch.
+        """
+        if not self._gate.paused:
+            raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
+        self._refuse_undoing("")
+        waiting = self._waiting_in(path)
+        if path and waiting is None:
+            raise ControlError("nothing waits there", where=path, hint=did_you_mean(path, self._gate.waiting))
+        self._record("step", path, mode=mode)
+        self._confirmed = False
+        origin = waiting.path if waiting is not None else ""
+        self._gate.step(SingleStep(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
+
+    def require_still(self) -> None:
+        """Refuse a step back of a run that is not paused, or is about to do something all the same.
+
+        Raises:
+            ControlError: it is running, stepping, or follows another order.
+        """
+        if self._closed or not self._gate.paused:
+            raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
+        self._refuse_undoing("")
+        if self._gate.stepping or self._gate.ordered:
+            raise ControlError("the run follows another order", hint="wait until it rests")
+
+    def step_back(self, cursor: str, path: str, target: str, back: StepBackAction) -> None:
+        """Have the node at `path` give up and go `back`; for `engine.runtime.run.Run.step_back`, which decides how far.
+
+        Args:
+            cursor: The node that waits or is active in the branch, by which the order is known.
+            path: The node that gives up: that one, or one around it.
+            target: The node that is undone.
+            back: Takes back what is to be taken back.
+        """
+        self._record("step_back", cursor)
+        self._confirmed = False
+        self._gate.begin_undo(target, path)
+        self._order(path, OperatorOrder(outcome=None, back=back))
+
+    def lock(self, path: str, reason: str = "") -> None:
+        """Hold the outcome of a node until `unlock`; transitions inside it still pass, `reason` goes into the log."""
+        self._require_node(path)
+        self._record("lock", path, **({"reason": reason} if reason else {}))
+        self._gate.locks.add(path)
+        self._gate.arm()
+
+    def unlock(self, path: str) -> None:
+        """Let the outcome of a locked node pass."""
+        if path not in self._gate.locks:
+            raise ControlError("this node is not locked", where=path, hint=did_you_mean(path, self._gate.locks))
+        self._record("unlock", path)
+        self._gate.locks.discard(path)
+        self._gate.arm()
+
+    def force(self, path: str, outcome: str) -> None:
+        """End an active or waiting node with an outcome; what runs in it is preempted and cleans up.
+
+        Raises:
+            ControlError: it is not active, or has no such outcome.
+        """
+        known = self._require_node(path)
+        if outcome not in known:
+            raise ControlError(f"there is no outcome {outcome!r}", where=path, hint=did_you_mean(outcome, known))
+        self._require_active(path)
+        self._record("force", path, outcome=outcome)
+        self._order(path, OperatorOrder(outcome=outcome))
+
+    def repeat(self, path: str) -> None:
+        """Run an active or waiting node again; what runs in it is preempted and cleans up first.
+
+        Raises:
+            ControlError: it is not active.
+        """
+        self._require_node(path)
+        self._require_active(path)
+        self._record("repeat", path)
+        self._order(path, OperatorOrder(outcome=None))
+
+    def restart(self, path: str) -> None:
+        """Have an active node preempted and entered anew, as a hot change wants it; that change is the command."""
+        self._order(path, OperatorOrder(outcome=None))
+
+    def answer(self, path: str) -> None:
+        """Let the outcome pass that a node has requested.
+
+        Raises:
+            ControlError: it has requested none.
+        """
+        waiting = self._gate.waiting.get(path)
+        if waiting is None or "autonomy" not in waiting.reasons:
+            asking = [each.path for each in self._gate.waiting.values() if "autonomy" in each.reasons]
+            raise ControlError("this node has requested nothing", where=path, hint=did_you_mean(path, asking))
+        self._record("answer", path, outcome=waiting.outcome)
+        self._gate.answer(path)
+
+    def set_autonomy(self, level: AutonomyLevel) -> None:
+        """Let outcomes pass by themselves that require less than `level`."""
+        self._record("autonomy", level=level)
+        self._gate.autonomy = level
+        self._gate.arm()
+
+    def set_breakpoints(self, breakpoints: Sequence[Breakpoint]) -> None:
+        """Replace all breakpoints; those whose path no node has are kept and told in the log."""
+        self._record("breakpoints", breakpoints=[msgspec.to_builtins(each) for each in breakpoints])
+        paths = self.structure.paths()
+        for each in breakpoints:
+            if not any(each.matches(path, each.when, each.outcomes[0] if each.outcomes else "") for path in paths):
+                message = f"the breakpoint at {each.path} matches no node; {did_you_mean(each.path, paths)}"
+                self._recorder.log("", message, level="warning")
+        self._gate.breakpoints = tuple(breakpoints)
+        self._gate.arm()
+
+    def attach_operator(self) -> None:
+        """An operator is there: rules of autonomy are on."""
+        self._forget_loss()
+        self._set_operator("attached", asks=True)
+
+    def detach_operator(self) -> None:
+        """The operator has left on purpose: without a demanded one, rules are off."""
+        self._forget_loss()
+        self._set_operator("detached", asks=self._demanded)
+
+    def lose_operator(self) -> None:
+        """The connection to the operator broke: after the time-out the loss policy applies."""
+        if self._operator != "attached":
+            return
+        self._set_operator("lost", asks=True)
+        loop = asyncio.get_running_loop()
+        self._loss = loop.call_later(self._loss_timeout_s, self._apply_loss)
+
+    async def settled(self) -> None:
+        """Return when all has happened that a command makes happen at once."""
+        await self._settlement.settled(None)
+
+    def view(self) -> ControlView:
+        """Return the present state."""
+        gate = self._gate
+        return ControlView(
+            paused=gate.paused,
+            confirmed=self._confirmed and gate.paused,
+            cannot=self._branch_holds.cannot(),
+            waiting=tuple(gate.waiting.values()),
+            locks=tuple(sorted(gate.locks)),
+            breakpoints=gate.breakpoints,
+            autonomy=gate.autonomy,
+            operator=self._operator,
+            active=tuple(self._activity.nodes),
+            stepping=gate.stepping,
+            demanded=self._demanded,
+            loss_policy=self._loss_policy,
+            loss_timeout_s=self._loss_timeout_s,
+        )
+
+    def close(self) -> None:
+        """The run is over; no timer is left behind."""
+        self._closed = True
+        self._forget_loss()
+
+    @property
+    def closed(self) -> bool:
+        """True once the run is over."""
+        return self._closed
+
+    def _order(self, path: str, order: OperatorOrder) -> None:
+        waiting = path in self._gate.waiting
+        self._gate.order(path, order)
+        task = self._activity.task_of(path)
+        if not waiting and task is not None:
+            self._branch_holds.let_clean_up(path)
+            preempt_for_order(task)
+
+    def _require_node(self, path: str) -> Sequence[str]:
+        known = self.structure.outcomes(path)
+        if known is None:
+            raise ControlError("there is no such node", where=path, hint=did_you_mean(path, self.structure.paths()))
+        return known
+
+    def _refuse_undoing(self, path: str) -> None:
+        """Refuse an order for what a step back is undoing; any order at all where `path` is empty."""
+        for undoing in self._gate.undoing:
+            if not path or is_inside(undoing, path):
+                raise ControlError("this is being undone", where=undoing, hint="wait until the run rests, or stop it")
+
+    def _require_active(self, path: str) -> None:
+        self._refuse_undoing(path)
+        if path not in self._activity.nodes and path not in self._gate.waiting:
+            active = [*self._activity.nodes, *self._gate.waiting]
+            raise ControlError("this node is not active", where=path, hint=did_you_mean(path, active))
+
+    def _waiting_in(self, path: str) -> GateWait | None:
+        return next((each for each in self._gate.waiting.values() if not path or is_inside(path, each.path)), None)
+
+    def _paused(self) -> None:
+        """Whoever has paused the run: it is confirmed once everything rests."""
+        self._confirmed = False
+        if self._branch_holds.settled():
+            self._settled()
+
+    def _settled(self) -> None:
+        if self._confirmed or not self._gate.paused or self._gate.stepping:
+            return
+        self._confirmed = True
+        self._recorder.emit(PauseConfirmed, cannot=self._branch_holds.cannot())
+
+    def _apply_loss(self) -> None:
+        self._loss = None
+        if self._loss_policy == "continue":
+            self._gate.asks = self._demanded
+            self._gate.arm()
+        elif self._loss_policy == "hold":
+            self.pause()
+        else:
+            self._stop("the operator was lost")
+
+    def _forget_loss(self) -> None:
+        if self._loss is not None:
+            self._loss.cancel()
+            self._loss = None
+
+    def _set_operator(self, status: str, *, asks: bool) -> None:
+        recorder = self._recorder
+        self._operator = status
+        recorder.emit(OperatorChanged, status=status)
+        self._gate.asks = asks
+        self._gate.arm()
+
+    def _record(self, command: str, path: str = "", **arguments: object) -> None:
+        self._recorder.emit(OperatorCommanded, command=command, path=path, arguments=arguments)

@@ -1,0 +1,260 @@
+"""The gate of a run: every node asks here before its entry and between its outcome and the transition.
+
+While nothing is asked of it, `armed` is False and nodes pass without calling it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, replace
+
+from engine.cause_chain import cause_of, describe_cause
+from engine.document.expression_cost import MAX_STEPS
+from engine.document.step_meter import METER
+from engine.errors import FlexcellError
+from engine.event import GatePassed, GateReached, OutcomeRequested, OutcomeWithdrawn
+from engine.node_path import is_inside
+from engine.runtime.control.autonomy import AutonomyLevel, passes_by_itself
+from engine.runtime.control.breakpoint import Breakpoint, GatePoint
+from engine.runtime.control.single_step import SingleStep
+from engine.runtime.record.node_exit import NodeExit
+from engine.runtime.record.recorder import Recorder
+from engine.runtime.scheduling.hold import BranchHolds
+from engine.runtime.userdata.userdata import Scope
+
+PAUSE = "pause"
+StepBackAction = Callable[[Scope], Awaitable[NodeExit | None]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatorOrder:
+    """What the operator wants of a node: end with `outcome`, or, without one, run again, once it has gone `back`."""
+
+    outcome: str | None
+    back: StepBackAction | None = None
+    """Takes back what it, or the node before it, has done, and says how it is left then; None for not at all."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GateWait:
+    """A node that waits at the gate: where, since which visit, and for what.
+
+    `required` is the level that the outcome requires, empty before an entry.
+    """
+
+    path: str
+    visit: int
+    point: GatePoint
+    outcome: str = ""
+    reasons: tuple[str, ...] = ()
+    required: str = ""
+
+
+class Gate:
+    """Holds nodes back; belongs to one run, used on the loop thread."""
+
+    def __init__(self, recorder: Recorder, branch_holds: BranchHolds) -> None:
+        self.armed = False
+        self.waiting: dict[str, GateWait] = {}
+        self.locks: set[str] = set()
+        self.breakpoints: tuple[Breakpoint, ...] = ()
+        self.autonomy: AutonomyLevel = "full"
+        self.asks = False
+        """Whether rules of autonomy are on: an operator is there, or demanded."""
+        self._hits: dict[Breakpoint, int] = {}
+        self._orders: dict[str, OperatorOrder] = {}
+        self._answers: set[str] = set()
+        self._accepted: dict[str, tuple[int, str]] = {}
+        self.on_paused: Callable[[], None] = lambda: None
+        """Called after every pause: by the operator, a breakpoint, the end of a step."""
+        self.undoing: tuple[str, ...] = ()
+        """The node that is being undone, and the one that gave up for it; empty while there is none."""
+        self._step: SingleStep | None = None
+        self._paused = False
+        self._recorder = recorder
+        self._branch_holds = branch_holds
+
+    @property
+    def paused(self) -> bool:
+        """Whether the operator (or a breakpoint) has paused the run."""
+        return self._paused
+
+    @property
+    def stepping(self) -> bool:
+        """Whether a step is under way."""
+        return self._step is not None
+
+    def arm(self) -> None:
+        """Work out anew whether nodes have to ask; due after every change, wakes those that wait."""
+        self.armed = bool(
+            self._paused
+            or self._branch_holds.active
+            or self.locks
+            or self.asks
+            or self._orders
+            or any(each.enabled for each in self.breakpoints)
+        )
+        self._branch_holds.wake()
+
+    def pause(self) -> None:
+        """Hold every branch."""
+        self._paused, self._step = True, None
+        self._branch_holds.hold(PAUSE, self._covers)
+        self.arm()
+        self.on_paused()
+
+    def resume(self) -> None:
+        """Let every branch go on."""
+        self._paused, self._step = False, None
+        self._branch_holds.release(PAUSE)
+        self.arm()
+
+    def step(self, step: SingleStep) -> None:
+        """Let one branch go on to the next place where the step ends."""
+        self._step = step
+        self._branch_holds.hold(PAUSE, self._covers)
+        self.arm()
+
+    def begin_undo(self, path: str, gives_up: str) -> None:
+        """Let what is done to undo the node at `path` go on, and nothing else; the node `gives_up` goes back there."""
+        self.undoing = (path, gives_up)
+        self.step(SingleStep(mode="back", branch=path, origin=path))
+
+    def undoes(self, path: str) -> bool:
+        """Tell whether what is at a path is being undone; no priority of another branch holds that."""
+        return bool(self.undoing) and is_inside(self.undoing[0], path)
+
+    def end_undo(self) -> None:
+        """Hold everything again, whatever was ordered meanwhile."""
+        self.undoing = ()
+        self.pause()
+
+    def order(self, path: str, order: OperatorOrder) -> None:
+        """Have a node, at the gate or just preempted, end so."""
+        self._orders[path] = order
+        self.arm()
+
+    @property
+    def ordered(self) -> bool:
+        """Whether nodes have orders that they have not followed yet."""
+        return bool(self._orders)
+
+    def has_order(self, path: str) -> bool:
+        """Tell whether something was ordered of a node."""
+        return path in self._orders
+
+    def taken_order(self, path: str) -> OperatorOrder | None:
+        """Return what was ordered of a node, once; what it cleaned up for that is done."""
+        self._branch_holds.has_cleaned_up(path)
+        return self._orders.pop(path, None)
+
+    def has_order_around(self, path: str) -> bool:
+        """Tell whether something was ordered of a node that this one is in."""
+        return any(other != path and is_inside(other, path) for other in self._orders)
+
+    def answer(self, path: str) -> None:
+        """Let the requested outcome of a node pass."""
+        self._answers.add(path)
+        self.arm()
+
+    async def before(self, path: str, visit: int, scope: Scope) -> OperatorOrder | None:
+        """Return when the node may be entered, or what was ordered instead."""
+        self._arrive(path, "before", "", scope)
+        return await self._wait(GateWait(path=path, visit=visit, point="before"), required=None)
+
+    async def after(self, path: str, visit: int, outcome: str, required: str, scope: Scope) -> OperatorOrder | None:
+        """Return when the outcome may be followed, or what was ordered instead.
+
+        Args:
+            path: The node.
+            visit: Its activation.
+            outcome: How it ended; empty when it was diverted by timeout, guard or on_error.
+            required: The level of autonomy from which on the outcome does not pass by itself.
+            scope: Where conditions of breakpoints read.
+        """
+        self._arrive(path, "after", outcome, scope)
+        accepted = self._accepted.pop(path, None) == (visit, outcome)
+        waiting = GateWait(path=path, visit=visit, point="after", outcome=outcome)
+        return await self._wait(waiting, required=None if accepted or not outcome else required)
+
+    async def offer(self, path: str, visit: int, outcome: str, required: str) -> None:
+        """Ask the operator for an outcome that a state only offers yet; being cancelled withdraws it."""
+        if not self.asks or passes_by_itself(required, self.autonomy):
+            return
+        waiting = GateWait(path=path, visit=visit, point="after", outcome=outcome)
+        if await self._wait(waiting, required=required) is None:
+            self._accepted[path] = (visit, outcome)
+
+    async def _wait(self, waiting: GateWait, *, required: str | None) -> OperatorOrder | None:
+        path = waiting.path
+        asked = required is not None and self._still_asks(required)
+        if required is not None and asked:
+            self._recorder.emit(
+                OutcomeRequested, path=path, visit=waiting.visit, outcome=waiting.outcome, required=required
+            )
+        try:
+            while (order := self._orders.pop(path, None)) is None:
+                unanswered = asked and path not in self._answers and self._still_asks(required)
+                reasons = self._reasons(waiting, asked=unanswered)
+                if not reasons:
+                    break
+                self._show(replace(waiting, reasons=reasons, required=required or ""))
+                await self._branch_holds.changed()
+            return order
+        finally:
+            self._answers.discard(path)
+            if asked:
+                self._recorder.emit(OutcomeWithdrawn, path=path, visit=waiting.visit, outcome=waiting.outcome)
+            if self.waiting.pop(path, None) is not None:
+                self._recorder.emit(GatePassed, path=path, visit=waiting.visit, point=waiting.point)
+
+    def _still_asks(self, required: str | None) -> bool:
+        return self.asks and required is not None and not passes_by_itself(required, self.autonomy)
+
+    def _reasons(self, waiting: GateWait, *, asked: bool) -> tuple[str, ...]:
+        reasons = list(self._branch_holds.reasons(waiting.path))
+        if waiting.point == "after" and waiting.path in self.locks:
+            reasons.append("lock")
+        if asked:
+            reasons.append("autonomy")
+        return tuple(reasons)
+
+    def _arrive(self, path: str, point: GatePoint, outcome: str, scope: Scope) -> None:
+        """Pause where a breakpoint or the end of a step says so."""
+        if self._step is not None and self._step.ends_at(path, point):
+            self.pause()
+            return
+        with METER.limited(MAX_STEPS, "the breakpoints here"):
+            for each in self.breakpoints:
+                if each.matches(path, point, outcome) and self._due(each, path, scope):
+                    self._recorder.log(path, f"breakpoint {point} {each.path}")
+                    self.pause()
+                    return
+
+    def _due(self, due: Breakpoint, path: str, scope: Scope) -> bool:
+        try:
+            if not due.holds(lambda name: scope.read(name, reader=path)):
+                return False
+        except FlexcellError as error:
+            # A condition that cannot be evaluated must not end the run; it must be seen, so it pauses.
+            self._recorder.log(path, f"breakpoint {due.path}: {describe_cause(cause_of(error))}")
+            return True
+        hits = self._hits[due] = self._hits.get(due, 0) + 1
+        return hits >= due.hits
+
+    def _show(self, waiting: GateWait) -> None:
+        known = self.waiting.get(waiting.path)
+        self.waiting[waiting.path] = waiting
+        if known is not None and known.reasons == waiting.reasons:
+            return
+        self._recorder.emit(
+            GateReached,
+            path=waiting.path,
+            visit=waiting.visit,
+            point=waiting.point,
+            reasons=waiting.reasons,
+            outcome=waiting.outcome,
+        )
+
+    def _covers(self, path: str) -> bool:
+        return self._step is None or not self._step.frees(path)

@@ -1,0 +1,421 @@
+"""Reduces the events of a run, in order, to the state of the run.
+
+It is what resuming after a crash, starting from a chosen moment and the timeline of a debugger
+have in common. It needs the plan: initial userdata is in the document, not in the events.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import cast
+
+from engine.document.node_spec import FOREACH_OUTCOMES
+from engine.errors import DocumentError
+from engine.event import (
+    BehaviorChanged,
+    BranchesPreempted,
+    Cause,
+    Event,
+    GatePassed,
+    NodeDiverted,
+    NodeEntered,
+    NodeExited,
+    NodeRetried,
+    OperatorCommanded,
+    RunEnded,
+    RunStarted,
+    RunSteppedBack,
+    StatusChanged,
+    TransitionTaken,
+    UndoStarted,
+    UserdataAppended,
+    UserdataWritten,
+)
+from engine.runtime.control.autonomy import AutonomyLevel
+from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.history.container_reason import reason_of
+from engine.runtime.history.node_state import ActiveNodeState, PendingExit, exit_of
+from engine.runtime.nodes.diagnosis import Diagnosis
+from engine.runtime.nodes.foreach import ForEach
+from engine.runtime.nodes.machine import Machine
+from engine.runtime.nodes.node import Node, NodeWork
+from engine.runtime.nodes.priority import Priority
+from engine.runtime.plan import Plan
+from engine.runtime.record.node_checkpoint import NodeCheckpoint
+from engine.runtime.record.node_exit import guard_closed_cause
+from engine.runtime.record.tree_event import tree_event_of
+from engine.runtime.userdata.append_only_lists import AppendOnlyLists
+from engine.suggestions import did_you_mean
+
+DIVERTED_TO_OUTCOME = ("operator", "start")
+"""`Diverted.by` whose target is an outcome and not a place to go to."""
+
+
+class RunStateReducer:
+    """One run as its events tell it, up to the last one taken.
+
+    Nodes that the plan does not have, as the document has changed since, matter only while active.
+    """
+
+    def __init__(self, plan: Plan, *, run: str) -> None:
+        self.run = run
+        self.seq = 0
+        self.time_s = 0.0
+        self.ended = False
+        self.paused = False
+        self.autonomy: AutonomyLevel | None = None
+        self.locks: set[str] = set()
+        self.undoing = ""
+        """The state whose undoing was begun last by a step back that has not ended; empty while there is none."""
+        self.visits: dict[str, int] = {}
+        self.seed = 0
+        self.document = ""
+        self.parameters: dict[str, object] = {}
+        self._plan = plan
+        self._open: dict[str, ActiveNodeState] = {}
+        self._left: dict[str, PendingExit] = {}
+        self._scopes: dict[str, dict[str, object]] = {"": dict(plan.userdata)}
+        self._pending: dict[str, list[UserdataWritten | UserdataAppended]] = {}
+        self._lists = AppendOnlyLists()
+
+    def read(self, events: Iterable[Event], *, until_seq: int | None = None) -> RunStateReducer:
+        """Take events in order, up to and with `until_seq`; returns itself."""
+        for event in events:
+            if until_seq is not None and event.seq > until_seq:
+                break
+            self.take(event)
+        self._lists.give_away()
+        return self
+
+    def take(self, event: Event) -> None:
+        """Take the next event."""
+        self.seq, self.time_s = event.seq, event.time_s
+        self._mark(event)
+        match event:
+            case RunStarted():
+                self.seed, self.document, self.parameters = event.seed, event.document, event.parameters
+                self._scopes[""].update(event.inputs)
+            case NodeEntered():
+                self._enter(event)
+            case NodeExited():
+                self._exit(event)
+            case NodeDiverted():
+                self._divert(event)
+            case BranchesPreempted():
+                self._preempt(event)
+            case NodeRetried():
+                self._retry(event)
+            case TransitionTaken():
+                self._transition(event)
+            case UserdataWritten() | UserdataAppended():
+                self._write(event)
+            case StatusChanged() if event.status != "running":
+                # A parallel has merged its branches, or was halted.
+                self._forget_branches(event.path)
+            case GatePassed() if event.point == "after" and event.path in self._left:
+                self._left[event.path] = replace(self._left[event.path], passed=True)
+            case OperatorCommanded():
+                self._command(event)
+            case UndoStarted():
+                self.visits[event.path] = event.visit
+                self.undoing = event.path
+            case RunSteppedBack():
+                self._step_back(event)
+            case BehaviorChanged():
+                self._change(event)
+            case RunEnded():
+                self.ended = True
+            case _:
+                pass
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """The paths of the nodes that are active, in order of entry."""
+        return tuple(path for path, node in self._open.items() if node.entered)
+
+    @property
+    def active_states(self) -> tuple[str, ...]:
+        """The states among them."""
+        return tuple(path for path in self.active if not self._node(path).work.children)
+
+    def course(self, path: str) -> tuple[Cause | None, Cause | None]:
+        """Return what went wrong last among the children of an active container, and what decided their course."""
+        node = self._open.get(path)
+        return (node.diagnosis.cause, node.diagnosis.reason) if node is not None else (None, None)
+
+    def userdata(self, scope: str = "") -> Mapping[str, object]:
+        """Return the values of one scope."""
+        return dict(self._scopes.get(scope, {}))
+
+    def scopes(self) -> Mapping[str, Mapping[str, object]]:
+        """Return all scopes by the path of their container."""
+        return {path: dict(values) for path, values in self._scopes.items()}
+
+    def visit(self, path: str) -> int:
+        """Return the number of the last activation of a node."""
+        return self.visits.get(path, 0)
+
+    def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
+        """Return the present moment as something to go on from; states in mid-work are to be entered again.
+
+        Raises:
+            DocumentError: the run is at a node that the plan does not have.
+        """
+        points: dict[str, NodeCheckpoint] = {}
+        for path, node in self._open.items():
+            points[path] = self._open_point(path, node)
+        for path, left in self._left.items():
+            self._node(path)
+            points[path] = NodeCheckpoint(
+                visit=left.visit,
+                left=left.outcome,
+                diverted=left.diverted,
+                failed=left.outcome is None and left.diverted is None,
+                cause=left.cause,
+                reason=left.reason,
+                passed=left.passed,
+                attempt=left.attempt,
+                elapsed_s=self.time_s - left.since_s,
+            )
+        return Checkpoint(
+            run=self.run,
+            seq=self.seq,
+            read_seq=self.seq,
+            time_s=self.time_s,
+            userdata=self.userdata(),
+            points=points,
+            visits=dict(self.visits),
+            parameters=self.parameters,
+            seed=self.seed,
+            epoch=epoch,
+            rerun=self.active_states,
+            undoing=self.undoing,
+        )
+
+    def _open_point(self, path: str, node: ActiveNodeState) -> NodeCheckpoint:
+        work = self._node(path).work
+        if isinstance(work, Machine | Priority) and node.current not in (None, *work.children, *work.outcomes):
+            self._node(f"{path}/{node.current}")
+        scope = f"{path}#{node.round}" if isinstance(work, ForEach) else path
+        branches = {
+            key.removeprefix(f"{path}/").removesuffix("*"): values
+            for key, values in self._scopes.items()
+            if key.startswith(f"{path}/") and key.endswith("*")
+        }
+        return NodeCheckpoint(
+            visit=node.visit,
+            entered=node.entered,
+            attempt=node.attempt,
+            elapsed_s=self.time_s - node.since_s,
+            inputs=node.inputs,
+            current=node.current,
+            cause=node.diagnosis.cause,
+            reason=node.diagnosis.reason,
+            values=dict(self._scopes.get(scope, {})),
+            branches=branches,
+            preempted=dict(node.preempted),
+            failed_clean_ups=dict(node.failed_clean_ups),
+            round=node.round,
+            done=tuple(node.done),
+        )
+
+    def _node(self, path: str) -> Node:
+        node = self._plan.nodes.get(path)
+        if node is None:
+            raise DocumentError(
+                "this node is active and the behavior does not have it",
+                where=path,
+                hint=f"the document has changed since; {did_you_mean(path, self._plan.nodes)}",
+            )
+        return node
+
+    def _work(self, path: str) -> NodeWork | None:
+        node = self._plan.nodes.get(path)
+        return node.work if node is not None else None
+
+    def _enter(self, event: NodeEntered) -> None:
+        path = event.path
+        self.visits[path] = event.visit
+        again = self._open.pop(path, None)
+        self._left.pop(path, None)
+        self._pending.pop(path, None)
+        between = again is not None and not again.entered
+        self._open[path] = ActiveNodeState(
+            visit=event.visit,
+            inputs=event.inputs,
+            since_s=again.since_s if again is not None else event.time_s,
+            attempt=again.attempt if again is not None and between else 1,
+        )
+        container = self._open.get(path.rpartition("/")[0])
+        if container is not None:
+            container.current = path.rpartition("/")[2]
+        work = self._work(path)
+        if isinstance(work, ForEach):
+            self._begin_round(path, work, event.inputs, 0)
+        else:
+            self._scopes[path] = dict(work.initial_values(event.inputs)) if work is not None else {}
+
+    def _begin_round(self, path: str, work: ForEach, inputs: Mapping[str, object], number: int) -> None:
+        items = work.items_of(inputs)
+        self._scopes.pop(f"{path}#{number - 1}", None)
+        if number < len(items):
+            self._scopes[f"{path}#{number}"] = work.round_values(number, items[number])
+
+    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
+        """What a node writes counts from its end on: one that is entered again writes again."""
+        own = f"{event.path}*"
+        # A branch that is still being stopped is merged, or a post-condition has written: that counts at once.
+        merged = own in self._scopes and event.scope != own
+        post = isinstance(event, UserdataWritten) and bool(event.post)
+        if event.path in self._open and event.path != event.scope and not (merged or post):
+            self._pending.setdefault(event.path, []).append(event)
+        else:
+            self._keep(event)
+
+    def _commit_writes(self, path: str) -> None:
+        for event in self._pending.pop(path, ()):
+            self._keep(event)
+
+    def _keep(self, event: UserdataWritten | UserdataAppended) -> None:
+        values = self._scopes.setdefault(event.scope, {})
+        values[event.key] = self._lists.value_after(event, values.get(event.key))
+
+    def _exit(self, event: NodeExited) -> None:
+        path = event.path
+        self._commit_writes(path)
+        node = self._open.pop(path, None)
+        outcome = event.outcome or None
+        reason = reason_of(self._work(path), path, outcome, node, self._left)
+        self._forget_inside(path)
+        if event.preempted:
+            if (container := self._open.get(path.rpartition("/")[0])) is not None:
+                container.take_clean_up(event)
+            return
+        self._left[path] = PendingExit(
+            event.visit,
+            outcome,
+            None,
+            event.cause,
+            reason,
+            attempt=node.attempt if node is not None else 1,
+            since_s=node.since_s if node is not None else event.time_s,
+        )
+
+    def _preempt(self, event: BranchesPreempted) -> None:
+        """Know which branches are to end; one that stood between two attempts, or at the gate, has ended with that."""
+        container = self._open.get(event.path)
+        if container is None:
+            return
+        container.preempted[event.condition] = event.branches
+        for path in (f"{event.path}/{name}" for name in event.branches):
+            if (node := self._open.get(path)) is None or not node.entered:
+                self._drop(path)
+
+    def _divert(self, event: NodeDiverted) -> None:
+        path = event.path
+        self._open.pop(path, None)
+        self._forget_inside(path)
+        by_outcome = event.by in DIVERTED_TO_OUTCOME
+        outcome, target = (event.target, None) if by_outcome else (None, event.target)
+        reason = guard_closed_cause(path) if event.by == "guard" else None
+        self._left[path] = PendingExit(event.visit, outcome, target, event.cause, reason)
+
+    def _retry(self, event: NodeRetried) -> None:
+        if event.path not in self._plan.nodes:
+            return  # a decorator of a tree, whose marks tell it
+        left = self._left.pop(event.path, None)
+        since_s = left.since_s if left is not None else event.time_s
+        self._open[event.path] = ActiveNodeState(
+            self.visit(event.path), {}, since_s, attempt=event.attempt, entered=False
+        )
+
+    def _transition(self, event: TransitionTaken) -> None:
+        left = self._left.pop(f"{event.path}/{event.source}", None)
+        self._commit_writes(event.path)
+        container = self._open.get(event.path)
+        if container is None:
+            return
+        container.current = event.target
+        child = self._plan.nodes.get(f"{event.path}/{event.source}")
+        if left is not None and child is not None:
+            container.diagnosis.take(child, exit_of(left))
+        work = self._work(event.path)
+        if isinstance(work, ForEach) and event.target not in FOREACH_OUTCOMES:
+            container.round += 1
+            self._begin_round(event.path, work, container.inputs, container.round)
+
+    def _change(self, event: BehaviorChanged) -> None:
+        self.document = event.document
+        for path in event.removed:
+            # What it had written was merged just before.
+            self._scopes.pop(f"{path}*", None)
+            above, _, name = path.rpartition("/")
+            if (container := self._open.get(above)) is not None:
+                container.forget_branch(name)
+        for path in (*event.restarted, *event.removed):
+            self._drop(path)
+
+    def _drop(self, path: str) -> None:
+        """Know nothing of a node any more but how often it was entered: it has not begun."""
+        self._forget_inside(path)
+        for table in (self._open, self._left, self._pending):
+            table.pop(path, None)
+
+    def _step_back(self, event: RunSteppedBack) -> None:
+        self.undoing = ""
+        if event.cause is not None:
+            return
+        for path in (event.path, event.source):
+            self._drop(path)
+        for each in event.values:
+            values = self._scopes.setdefault(each.scope, {})
+            if each.defined:
+                values[each.key] = each.value
+            else:
+                values.pop(each.key, None)
+        container = self._open.get(event.path.rpartition("/")[0])
+        if container is not None:
+            container.current = event.path.rpartition("/")[2]
+            container.diagnosis = Diagnosis(event.went_wrong, event.reason)
+
+    def _mark(self, event: Event) -> None:
+        """Tell the tree around a part, or around a leaf, what has happened to it."""
+        mark = tree_event_of(event)
+        above = mark.path if mark is not None else ""
+        while mark is not None and (above := above.rpartition("/")[0]):
+            node = self._open.get(above)
+            if node is None:
+                continue
+            work = self._work(above)
+            if work is not None and work.kind == "tree":
+                node.done.append(mark)
+            return
+
+    def _forget_branches(self, path: str) -> None:
+        for key in [key for key in self._scopes if key.endswith("*") and key.rpartition("/")[0] == path]:
+            del self._scopes[key]
+
+    def _command(self, event: OperatorCommanded) -> None:
+        match event.command:
+            case "pause":
+                self.paused = True
+            case "resume":
+                self.paused = False
+            case "lock":
+                self.locks.add(event.path)
+            case "unlock":
+                self.locks.discard(event.path)
+            case "autonomy":
+                self.autonomy = cast("AutonomyLevel", event.arguments["level"])
+            case _:
+                pass
+
+    def _forget_inside(self, path: str) -> None:
+        """What was inside a node that was left is over."""
+        self._scopes.pop(path, None)
+        below = f"{path}/"
+        rounds = f"{path}#"
+        for table in (self._open, self._left, self._scopes):
+            for inner in [key for key in table if key.startswith((below, rounds))]:
+                del table[inner]

@@ -1,0 +1,195 @@
+"""Userdata of a run, rebuilt from its events: every scope with its values, their last writers and times.
+
+Unlike `RunStateReducer`, which knows where a run can be resumed, it applies a write at once and keeps the values of
+containers that are left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+import msgspec
+
+from engine.document.node_spec import FOREACH_OUTCOMES
+from engine.event import (
+    Event,
+    NodeEntered,
+    NodeExited,
+    RunEnded,
+    RunStarted,
+    RunSteppedBack,
+    StatusChanged,
+    TransitionTaken,
+    UserdataAppended,
+    UserdataWritten,
+)
+from engine.runtime.nodes.foreach import ForEach
+from engine.runtime.plan import Plan
+from engine.runtime.userdata.append_only_lists import AppendOnlyLists
+
+
+class UserdataRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """One value: who wrote it last (a node's path), when on the run's clock, and how often it was written.
+
+    `by` is empty for a value that the scope began with.
+    """
+
+    value: object
+    by: str
+    at_s: float
+    writes: int
+
+
+class ScopeView(msgspec.Struct, frozen=True, kw_only=True):
+    """The values of one container; they stay when it is left, which is told by `is_open`."""
+
+    is_open: bool
+    since_s: float
+    values: dict[str, UserdataRecord]
+
+
+class UserdataHistory:
+    """The scopes of one run by the path of their container, up to the last event taken.
+
+    The behavior's own is under the empty path, a round of a loop under `path#n`, a branch of a
+    concurrency container that is not merged yet under `path*`.
+
+    Args:
+        plan: Gives the plan of the run as it is now; a hot change brings another one.
+    """
+
+    def __init__(self, plan: Callable[[], Plan]) -> None:
+        self.seq = 0
+        self.scopes: dict[str, ScopeView] = {}
+        self._plan = plan
+        self._changed: set[str] = set()
+        self._items: dict[str, tuple[int, Sequence[object]]] = {}
+        self._lists = AppendOnlyLists()
+        self._begin("", plan().userdata, 0.0)
+
+    def read(self, events: Iterable[Event]) -> None:
+        """Take the next events, in order."""
+        for event in events:
+            self._take(event)
+            self.seq = event.seq
+        self._lists.give_away()
+
+    def copy(self) -> UserdataHistory:
+        """Return one that goes on from here by itself."""
+        made = UserdataHistory(self._plan)
+        made.seq, made.scopes, made._changed, made._items = (
+            self.seq,
+            dict(self.scopes),
+            set(self._changed),
+            dict(self._items),
+        )
+        return made
+
+    def changes(self) -> dict[str, ScopeView | None]:
+        """Return the scopes that have changed since this was asked last; None for one that is no more."""
+        changed, self._changed = self._changed, set()
+        return {path: self.scopes.get(path) for path in sorted(changed)}
+
+    def _take(self, event: Event) -> None:
+        match event:
+            case RunStarted():
+                for key, value in event.inputs.items():
+                    self._put("", key, UserdataRecord(value=value, by="", at_s=event.time_s, writes=0))
+            case NodeEntered():
+                self._enter(event)
+            case UserdataWritten() | UserdataAppended():
+                self._write(event)
+            case TransitionTaken():
+                self._next_round(event)
+            case NodeExited():
+                self._close(event.path)
+            case RunSteppedBack() if event.cause is None:
+                self._step_back(event)
+            case StatusChanged() if event.status != "running":
+                self._close(event.path)
+            case RunEnded():
+                self._close("")
+            case _:
+                pass
+
+    def _enter(self, event: NodeEntered) -> None:
+        node = self._plan().nodes.get(event.path)
+        if node is None or not node.work.children:
+            return
+        self._forget_inside(event.path)
+        if isinstance(node.work, ForEach):
+            self._items[event.path] = (0, node.work.items_of(event.inputs))
+            self._begin_round(event.path, node.work, event.time_s)
+        else:
+            self._begin(event.path, node.work.initial_values(event.inputs), event.time_s)
+
+    def _next_round(self, event: TransitionTaken) -> None:
+        node = self._plan().nodes.get(event.path)
+        if node is None or not isinstance(node.work, ForEach) or event.path not in self._items:
+            return
+        if event.target not in FOREACH_OUTCOMES:
+            number, items = self._items[event.path]
+            self._drop(f"{event.path}#{number}")
+            self._items[event.path] = (number + 1, items)
+            self._begin_round(event.path, node.work, event.time_s)
+
+    def _begin_round(self, path: str, work: ForEach, time_s: float) -> None:
+        number, items = self._items[path]
+        if number < len(items):
+            self._begin(f"{path}#{number}", work.round_values(number, items[number]), time_s)
+
+    def _begin(self, path: str, values: Mapping[str, object], time_s: float) -> None:
+        entries = {key: UserdataRecord(value=value, by="", at_s=time_s, writes=0) for key, value in values.items()}
+        self._set(path, ScopeView(is_open=True, since_s=time_s, values=entries))
+
+    def _write(self, event: UserdataWritten | UserdataAppended) -> None:
+        known = self.scopes.get(event.scope)
+        before = known.values.get(event.key) if known is not None else None
+        writes = 1 + (before.writes if before is not None else 0)
+        if known is None:
+            self._begin(event.scope, {}, event.time_s)
+        value = self._lists.value_after(event, before.value if before is not None else None)
+        self._put(event.scope, event.key, UserdataRecord(value=value, by=event.path, at_s=event.time_s, writes=writes))
+
+    def _step_back(self, event: RunSteppedBack) -> None:
+        for path in (event.path, event.source):
+            self._drop(path)
+            self._forget_inside(path)
+        for each in event.values:
+            known = self.scopes.get(each.scope)
+            if known is None:
+                continue
+            if each.defined:
+                before = known.values.get(each.key)
+                writes = 1 + (before.writes if before is not None else 0)
+                entry = UserdataRecord(value=each.value, by=event.path, at_s=event.time_s, writes=writes)
+                self._put(each.scope, each.key, entry)
+            else:
+                values = {key: entry for key, entry in known.values.items() if key != each.key}
+                self._set(each.scope, msgspec.structs.replace(known, values=values))
+
+    def _put(self, scope: str, key: str, entry: UserdataRecord) -> None:
+        known = self.scopes[scope]
+        self._set(scope, msgspec.structs.replace(known, values={**known.values, key: entry}))
+
+    def _set(self, path: str, scope: ScopeView) -> None:
+        self.scopes[path] = scope
+        self._changed.add(path)
+
+    def _drop(self, path: str) -> None:
+        if self.scopes.pop(path, None) is not None:
+            self._changed.add(path)
+
+    def _close(self, path: str) -> None:
+        for key, scope in self.scopes.items():
+            if scope.is_open and (key == path or _is_inside(key, path)):
+                self._set(key, msgspec.structs.replace(scope, is_open=False))
+
+    def _forget_inside(self, path: str) -> None:
+        """What lies inside starts afresh with its container."""
+        for key in [key for key in self.scopes if _is_inside(key, path)]:
+            self._drop(key)
+
+
+def _is_inside(key: str, path: str) -> bool:
+    return path == "" or key.startswith((f"{path}/", f"{path}#")) or key == f"{path}*"

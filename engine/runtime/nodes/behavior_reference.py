@@ -1,0 +1,108 @@
+"""A behavior reference as a node's work: another behavior with parameters and keys of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import msgspec
+
+from engine.document.expression import Template
+from engine.runtime.nodes.diagnosis import explain_exit
+from engine.runtime.nodes.execution import Execution
+from engine.runtime.nodes.node import Node
+from engine.runtime.nodes.node_entry import NodeEntry
+from engine.runtime.record.node_exit import ContainerOutcome
+from engine.runtime.userdata.userdata import Scope
+from engine.state import Outcome
+
+
+class ReferencedBehavior(Protocol):
+    """The executable form of the behavior that is referred to."""
+
+    @property
+    def root(self) -> Node:
+        """Its outermost node, with paths below the reference."""
+        ...
+
+    @property
+    def outcomes(self) -> tuple[str, ...]:
+        """How it can end."""
+        ...
+
+    @property
+    def success(self) -> tuple[str, ...]:
+        """The outcomes that mean success."""
+        ...
+
+    @property
+    def userdata(self) -> Mapping[str, object]:
+        """Initial values of its own scope."""
+        ...
+
+    def checked_parameters(self, given: Mapping[str, object]) -> dict[str, object]:
+        """Values for all its parameters; raises DocumentError."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class BehaviorReference:
+    """Runs `target` in a scope that only `inputs` and `outputs` connect with the outside."""
+
+    target: ReferencedBehavior
+    parameters: Template
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, str]
+    position: str
+
+    @property
+    def kind(self) -> str:
+        """The key of this node in documents."""
+        return "behavior"
+
+    @property
+    def children(self) -> Mapping[str, Node]:
+        """The root of the other behavior."""
+        return {"root": self.target.root}
+
+    @cached_property
+    def outcomes(self) -> tuple[str, ...]:
+        """Those its document declares."""
+        return self.target.outcomes
+
+    @cached_property
+    def nominal(self) -> frozenset[str]:
+        """The outcomes its document calls success; all of them where it does not say."""
+        return frozenset(self.target.success or self.target.outcomes)
+
+    def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
+        """The values its scope begins with."""
+        return {**self.target.userdata, **inputs}
+
+    @property
+    def constant(self) -> None:
+        """That depends on userdata."""
+        return None
+
+    def enter(self, scope: Scope) -> NodeEntry:
+        """Evaluate its parameters and read what flows in."""
+        variables = {name: scope.read(name, reader=self.position) for name in self.parameters.names}
+        given = msgspec.convert(self.parameters.evaluate(variables), dict[str, object])
+        inputs = {inner: scope.read(outer, reader=self.position) for inner, outer in self.inputs.items()}
+        values = {**self.target.checked_parameters(given), **inputs}
+        return NodeEntry(None, values, msgspec.to_builtins(values))
+
+    async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
+        """Run the other behavior to one of its outcomes and copy out what `outputs` names."""
+        values = entry.point.values if entry.point is not None else self.initial_values(entry.inputs)
+        inner = Scope(path, values)
+        left = await self.target.root.perform(inner, execution)
+        name = left.target or left.outcome
+        for key, outer in self.outputs.items():
+            with execution.counted():
+                value = inner.read(key, reader=self.position)
+            execution.write(path, scope, outer, value)
+        why = explain_exit(self.target.root, left)
+        return ContainerOutcome(name, cause=None if name in self.nominal else why, reason=why)

@@ -1,0 +1,248 @@
+"""What a running state sees of its run: time, skills, topics, log, random numbers."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine, Mapping
+from typing import Any, TypeVar
+
+import msgspec
+
+from engine.bus import GoalEnd, GoalStatus, Holder
+from engine.cause_chain import cause_of
+from engine.clock import Clock, OneTurn
+from engine.errors import FlexcellError
+from engine.event import (
+    Cause,
+    GoalFinished,
+    GoalHeld,
+    GoalResumed,
+    GoalSent,
+    MessageReceived,
+    ServiceAnswered,
+    ServiceCalled,
+)
+from engine.runtime.nodes.execution import Execution
+from engine.runtime.record.nonfinite import encode_nonfinite
+from engine.runtime.record.recorder import Recorder
+from engine.runtime.record.skill_port import Goal
+from engine.skill import Action, Service
+from engine.state import ActionEnd
+
+R = TypeVar("R")
+F = TypeVar("F")
+S = TypeVar("S", bound=msgspec.Struct)
+
+
+class HoldableClock:
+    """The run's clock as a state sees it: it stands still while the state's branch is held."""
+
+    def __init__(self, execution: Execution, path: str) -> None:
+        self._execution = execution
+        self._path = path
+
+    @property
+    def virtual(self) -> bool:
+        """True when time passes only as fast as the work that needs it."""
+        return self._execution.clock.virtual
+
+    def now_s(self) -> float:
+        """Seconds since the run's clock started."""
+        self._execution.progress_count += 1
+        return self._execution.clock.now_s()
+
+    def sleep(self, duration_s: float) -> Coroutine[Any, Any, None]:
+        """Let `duration_s` pass."""
+        if duration_s == 0:
+            return OneTurn()
+        # Handed on, not awaited: each coroutine around a wait is gone through whenever the state is woken.
+        return self._execution.sleep(self._path, duration_s)
+
+
+class HoldableGoal:
+    """A goal that the run holds and resumes along with its branch."""
+
+    def __init__(self, goal: Goal, goal_id: str, path: str, recorder: Recorder) -> None:
+        self._goal = goal
+        self._recorder = recorder
+        self.label = goal_id
+        self.path = path
+
+    async def hold(self) -> None:
+        """Bring the device to rest; raises BusError where the skill cannot be held."""
+        await self._goal.hold()
+        if not self._goal.finished:
+            self._recorder.emit(GoalHeld, path=self.path, goal=self.label)
+
+    async def resume(self) -> None:
+        """Let it go on."""
+        await self._goal.resume()
+        if not self._goal.finished:
+            self._recorder.emit(GoalResumed, path=self.path, goal=self.label)
+
+
+class ActivationContext(msgspec.Struct, eq=False):
+    """The `engine.state.Context` of one activation of one state.
+
+    One is made for every state that is entered, which a struct does three times faster than a class.
+    """
+
+    _execution: Execution
+    path: str
+    _visit: int
+    _autonomy: Mapping[str, str]
+    _goals: int = 0
+    _calls: int = 0
+    _clock: HoldableClock | None = None
+
+    @property
+    def clock(self) -> Clock:
+        """The run's time."""
+        clock = self._clock
+        if clock is None:
+            clock = self._clock = HoldableClock(self._execution, self.path)
+        return clock
+
+    async def call(self, request: Service[R], *, to: str) -> R:
+        """Ask a service after the journal is durable, as it may have an effect."""
+        execution = self._execution
+        await execution.branch_holds.until_free(self.path)
+        self._calls += 1
+        call = f"{self.path}#{self._visit}.c{self._calls}"
+        with execution.pending_calls.of(self.path):
+            self._record_called(call, request, f"{to}/{request.skill_name()}")
+            await execution.commit()
+            try:
+                answer = await self._answer(request, to)
+            except FlexcellError as error:
+                self._record_answered(call, None, cause_of(error))
+                raise
+            self._record_answered(call, answer, None)
+        self._count_progress()
+        return answer
+
+    async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
+        """Send a goal and wait for its end; when preempted, cancel it and wait for rest."""
+        execution = self._execution
+        self._count_progress()
+        await execution.branch_holds.until_free(self.path)
+        self._goals += 1
+        goal_id = f"{self.path}#{self._visit}.{self._goals}"
+        self._record_sent(goal_id, goal, f"{to}/{goal.skill_name()}")
+        try:
+            await execution.commit()
+            sent = execution.skills.send_goal(goal, to=to, holder=self._holder, goal_id=goal_id)
+        except FlexcellError as error:
+            self._record_finished(GoalEnd(GoalStatus.REJECTED, None, cause_of(error)), goal_id)
+            raise
+        except asyncio.CancelledError:
+            self._record_finished(GoalEnd(GoalStatus.CANCELED, None, None), goal_id)
+            raise
+        held = HoldableGoal(sent, goal_id, self.path, execution.recorder)
+        execution.branch_holds.attach(held)
+        try:
+            end = await sent.result()
+        except asyncio.CancelledError:
+            self._record_finished(await _cancelled(sent), goal_id)
+            raise
+        finally:
+            await execution.branch_holds.detach(held)
+        self._record_finished(end, goal_id)
+        return ActionEnd(end.status.value, end.result, end.cause)
+
+    async def latest(self, topic: str, kind: type[S]) -> S:
+        """Return the newest message of a topic, waiting for the first one."""
+        self._count_progress()
+        return self._received(topic, await self._execution.skills.latest(topic, kind, holder=self._holder))
+
+    async def next_message(self, topic: str, kind: type[S]) -> S:
+        """Wait for the next message of a topic."""
+        self._count_progress()
+        return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
+
+    async def offer(self, outcome: str) -> None:
+        """Ask the operator for an outcome where the run's autonomy does not let it pass; cancelling withdraws."""
+        self._count_progress()
+        required = self._autonomy.get(outcome, "off")
+        await self._execution.gate.offer(self.path, self._visit, outcome, required)
+
+    def log(self, message: str, *, level: str = "info") -> None:
+        """Write a line into the event log."""
+        self._execution.recorder.log(self.path, message, level=level)
+
+    def random(self) -> float:
+        """A number in [0, 1) from the run's seed."""
+        self._execution.progress_count += 1
+        return self._execution.random.random()
+
+    async def _answer(self, request: Service[R], to: str) -> R:
+        execution = self._execution
+        observed = execution.observed.take(self.path, request, to)
+        if observed is None:
+            return await execution.skills.call(request, to=to, holder=self._holder)
+        if observed.error is not None:
+            raise observed.error
+        return observed.answer
+
+    def _count_progress(self) -> None:
+        """Count that the state waits for somebody else, whose answer may be a new one each time."""
+        self._execution.waits.add(self.path)
+        self._execution.progress_count += 1
+
+    @property
+    def _holder(self) -> Holder:
+        return Holder(self._execution.run, self.path)
+
+    def _received(self, topic: str, message: S) -> S:
+        self._execution.recorder.emit(
+            MessageReceived, path=self.path, topic=topic, message=encode_nonfinite(msgspec.to_builtins(message))
+        )
+        return message
+
+    def _record_called(self, call: str, request: Service[Any], address: str) -> None:
+        self._execution.recorder.emit(
+            ServiceCalled,
+            path=self.path,
+            call=call,
+            address=address,
+            request=encode_nonfinite(msgspec.to_builtins(request)),
+        )
+
+    def _record_answered(self, call: str, answer: object, cause: Cause | None) -> None:
+        self._execution.recorder.emit(
+            ServiceAnswered,
+            path=self.path,
+            call=call,
+            result=encode_nonfinite(msgspec.to_builtins(answer)),
+            cause=cause,
+        )
+
+    def _record_sent(self, goal_id: str, goal: Action[Any, Any], address: str) -> None:
+        self._execution.recorder.emit(
+            GoalSent,
+            path=self.path,
+            goal=goal_id,
+            address=address,
+            request=encode_nonfinite(msgspec.to_builtins(goal)),
+        )
+
+    def _record_finished(self, end: GoalEnd[Any], goal_id: str) -> None:
+        self._execution.recorder.emit(
+            GoalFinished,
+            path=self.path,
+            goal=goal_id,
+            status=end.status.value,
+            result=encode_nonfinite(msgspec.to_builtins(end.result)) if end.result is not None else None,
+            cause=end.cause,
+        )
+
+
+async def _cancelled(handle: Goal) -> GoalEnd[Any]:
+    """Cancel a goal and wait until its server confirms, however often we are cancelled meanwhile."""
+    handle.cancel()
+    while True:
+        try:
+            return await handle.result()
+        except asyncio.CancelledError:
+            if handle.finished:
+                return GoalEnd(GoalStatus.CANCELED, None, Cause(message="the action server went away"))

@@ -1,0 +1,40 @@
+"""Events of the nodes of behavior trees, extracted from the events of a run without loading py_trees."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from engine.event import Event, NodeDiverted, NodeEntered, NodeExited, NodeRetried, StatusChanged, UserdataWritten
+
+
+class TreeEvent(NamedTuple):
+    """One thing that happened to a part: its path, what, and the run's time.
+
+    `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME`, `attempt NUMBER` or `assigned WHEN`.
+    """
+
+    path: str
+    what: str
+    at_s: float
+
+
+def tree_event_of(event: Event) -> TreeEvent | None:
+    """Return what an event tells of a part of a tree, None for events that tell nothing."""
+    match event:
+        case StatusChanged():
+            return TreeEvent(event.path, event.status, event.time_s)
+        case NodeEntered():
+            return TreeEvent(event.path, "entered", event.time_s)
+        case NodeExited():
+            what = "invalid" if event.preempted else f"outcome {event.outcome}" if event.outcome else "failed"
+            return TreeEvent(event.path, what, event.time_s)
+        case NodeDiverted():
+            # An operator names an outcome; timeout, guard and on_error name a status.
+            said = "outcome" if event.by in ("operator", "start") else "target"
+            return TreeEvent(event.path, f"{said} {event.target}", event.time_s)
+        case NodeRetried():
+            return TreeEvent(event.path, f"attempt {event.attempt}", event.time_s)
+        case UserdataWritten() if event.post:
+            return TreeEvent(event.path, f"assigned {event.post}", event.time_s)
+        case _:
+            return None

@@ -1,0 +1,415 @@
+"""A run: one execution of one behavior, from start to a reported outcome, stoppable at any moment."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from engine.bus import SkillBus
+from engine.cause_chain import cause_of, describe_cause, wrap_cause
+from engine.errors import FlexcellError, JournalError, NotStopped
+from engine.event import Cause, RunEnded
+from engine.journal import NullRunJournal, RunJournal
+from engine.preemption import preempt_finally
+from engine.runtime.control import Control, Gate
+from engine.runtime.history.checkpoint import Checkpoint
+from engine.runtime.history.hot_change import NO_SNAPSHOT, ChangeReport, VersionSnapshot
+from engine.runtime.hot_change_executor import HotChangeExecutor
+from engine.runtime.nodes.diagnosis import explain_exit
+from engine.runtime.nodes.execution import Execution
+from engine.runtime.plan import Plan
+from engine.runtime.record.node_exit import NodeExit
+from engine.runtime.record.recorder import Recorder, Watcher
+from engine.runtime.record.skill_port import BusPort, RunAwarePort, SkillPort
+from engine.runtime.run_log import RunLog
+from engine.runtime.run_options import RunOptions
+from engine.runtime.scheduling.hold import BranchHolds
+from engine.runtime.userdata.userdata import Scope
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunResult:
+    """How a run ended: `status` is finished, stopped or errored; `success` only for a declared outcome."""
+
+    run: str
+    behavior: str
+    status: str
+    outcome: str | None
+    success: bool
+    cause: Cause | None
+    duration_s: float
+    userdata: Mapping[str, object]
+    stood_in_for: tuple[str, ...] = ()
+    """The nodes that did nothing, as a test has put something in their place."""
+    abandoned: tuple[str, ...] = ()
+    """States that did not end when told to; what they command may still move and stays leased."""
+
+
+class Run:
+    """One execution of one plan on a bus; made and used on the loop thread.
+
+    Args:
+        plan: What is executed.
+        run: Its id.
+        bus: Where its skills are; its clock is the run's.
+        parameters: Values for the behavior's parameters.
+        inputs: Initial values of userdata keys that the behavior declares.
+        seed: Of its random numbers.
+        journal: Where its events are kept durably; nowhere by default.
+        skills: Stands in for the bus where robots are recorded, or faults injected.
+        supervision: Operator, autonomy, breakpoints, time-outs.
+        checkpoint: The moment to go on from; of this run after a crash, or of another one.
+        world: Gives the state of the simulated world, kept in the journal with every commit.
+        instant_limit: Transitions in a row in which nothing is waited for before a loop is reported.
+        polling_limit: Transitions in virtual time in which nothing happens but waiting before a loop is reported.
+
+    Raises:
+        DocumentError: a parameter or input is not acceptable.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        *,
+        run: str,
+        bus: SkillBus,
+        parameters: Mapping[str, object] | None = None,
+        inputs: Mapping[str, object] | None = None,
+        seed: int = 0,
+        journal: RunJournal | None = None,
+        skills: SkillPort | None = None,
+        supervision: RunOptions | None = None,
+        checkpoint: Checkpoint | None = None,
+        world: Callable[[], Awaitable[bytes | None]] | None = None,
+        instant_limit: int = 10_000,
+        polling_limit: int = 20_000,
+    ) -> None:
+        self.id = run
+        self.plan = plan
+        self.seed = seed
+        self.parameters = plan.checked_parameters(parameters or {})
+        self._parameters = Scope("parameters", self.parameters)
+        self._inputs = plan.checked_inputs(inputs or {})
+        self._supervision = supervision or RunOptions()
+        self._checkpoint = checkpoint
+        self._is_resumed = checkpoint is not None and checkpoint.run == run
+        self._journal = journal or NullRunJournal(run_id=run)
+        self._recorder = Recorder(
+            bus.clock,
+            self._journal,
+            after_seq=checkpoint.seq if checkpoint is not None and self._is_resumed else 0,
+            after_s=checkpoint.time_s if checkpoint is not None and self._is_resumed else 0.0,
+        )
+        self._recorder.on_lost(self.fail)
+        branch_holds = BranchHolds()
+        self._execution = Execution(
+            run=run,
+            bus=bus,
+            clock=bus.clock,
+            recorder=self._recorder,
+            random=random.Random(seed if checkpoint is None else f"{seed} after {checkpoint.seq}"),
+            skills=skills or BusPort(bus),
+            branch_holds=branch_holds,
+            gate=Gate(self._recorder, branch_holds),
+            instant_limit=instant_limit,
+            polling_limit=polling_limit,
+            abandon_after_s=self._supervision.abandon_after_s,
+            world=world,
+        )
+        branch_holds.is_preempted = self._execution.activity.is_preempted
+        if checkpoint is not None:
+            self._execution.points = dict(checkpoint.points)
+            self._execution.is_resumed = self._is_resumed
+            if self._is_resumed:
+                self._execution.visits = dict(checkpoint.visits)
+        self._log = RunLog(self._recorder)
+        self._task: asyncio.Task[NodeExit] | None = None
+        self._stop_reason: str | None = None
+        self._failure: FlexcellError | None = None
+        self._begun = False
+        self._ended = False
+        self._cancelled = False
+        self._given_up: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._patience: asyncio.TimerHandle | None = None
+        self._control = self._new_control()
+        if isinstance(skills, RunAwarePort):
+            skills.begin(self._recorder)
+
+    @property
+    def control(self) -> Control:
+        """What an operator can do with this run, from its making to its end."""
+        self._begin()
+        return self._control
+
+    @property
+    def recorder(self) -> Recorder:
+        """The event log, for what has to be told of the run from outside."""
+        return self._recorder
+
+    @property
+    def ended(self) -> bool:
+        """True once it is over."""
+        return self._ended
+
+    def outcomes(self, path: str) -> Sequence[str] | None:
+        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        return self.plan.outcomes_of(path)
+
+    def paths(self) -> Sequence[str]:
+        """Return the paths of all nodes."""
+        return tuple(self.plan.nodes)
+
+    def watch(self, watcher: Watcher) -> None:
+        """Call `watcher` with every event of this run, on the loop thread."""
+        self._recorder.watch(watcher)
+
+    def stop(self, reason: str) -> None:
+        """Preempt everything; `execute` returns when all clean-up is done and the robots rest.
+
+        A stop beats pause, lock and autonomy. Before the start it prevents the start; later calls
+        are recorded and change nothing; calls after the end do nothing.
+        """
+        if self._ended:
+            return
+        first = self._stop_reason is None
+        self._stop_reason = self._stop_reason or reason
+        if self._task is not None:
+            self._log.stop_requested(reason)
+            if first:
+                # What a pause holds would never clean up.
+                self._execution.branch_holds.let_clean_up(self.plan.root.path)
+                preempt_finally(self._task)
+                # A little longer than any container inside waits for its children.
+                patience_s = self._supervision.abandon_after_s + 2.5
+                self._patience = self._task.get_loop().call_later(patience_s, self._give_up)
+
+    def fail(self, error: FlexcellError) -> None:
+        """Stop like `stop`, and end errored with this cause: something around the run made it impossible."""
+        self._failure = self._failure or error
+        self.stop(error.message)
+
+    @property
+    def active_states(self) -> tuple[str, ...]:
+        """The paths of the states that were entered and not left, in order of entry."""
+        nodes = self.plan.nodes
+        # A branch that a hot change has removed is in no plan any more while it cleans up.
+        active = self._execution.activity.nodes
+        return tuple(path for path in active if path not in nodes or not nodes[path].work.children)
+
+    def change(self, plan: Plan, *, preempt: bool = False, kept: VersionSnapshot = NO_SNAPSHOT) -> ChangeReport:
+        """Let a new version of the behavior take the place of the running one, which must be paused or locked.
+
+        Args:
+            plan: The new version.
+            preempt: Whether active nodes that cannot go on as they are, or that have other parameters or keys, are
+                preempted and entered anew, and branches that are gone but under way preempted.
+            kept: The texts of the version, without which the run cannot be replayed.
+
+        Raises:
+            ControlError: the run cannot go on in the new version; it goes on as it is.
+        """
+        known = {name: value for name, value in self.parameters.items() if name in plan.parameters}
+        required = [name for name, each in plan.parameters.items() if each.required and name not in known]
+        checked = plan.checked_parameters(known) if not required else {}
+        changing = HotChangeExecutor(execution=self._execution, control=self._control, log=self._log)
+        report = changing.change(self.plan, plan, preempt=preempt, kept=kept)
+        for key, value in checked.items():
+            self._parameters.write(key, value)
+        self.plan = plan
+        return report
+
+    async def step_back(self, path: str = "") -> tuple[str, ...]:
+        """Take back the node that began last, in one branch of this paused run; returns what is undone, in order.
+
+        It is undone by the `undo` of its states, its userdata by the former values, and the run stands before its
+        entry, paused again once that is done. A failure of an undo is told in the log; the run then stands where it
+        was.
+
+        Args:
+            path: The branch; by default the one in which something began last.
+
+        Raises:
+            ControlError: it is not paused, or something cannot be undone; nothing has moved.
+            JournalError: the run keeps no journal, or it cannot be read.
+        """
+        # Few runs are ever taken back, and this one is at rest meanwhile.
+        from engine.runtime.step_back_executor import request_step_back
+
+        return await request_step_back(
+            path, plan=lambda: self.plan, execution=self._execution, control=self._control, journal=self._journal
+        )
+
+    async def execute(self) -> RunResult:
+        """Run to the end and report it; never raises for what happens inside the behavior.
+
+        Cancelling this call stops the run and waits for its clean-up before CancelledError goes on.
+        """
+        started_s = self._execution.clock.now_s()
+        self._begin()
+        before = self._checkpoint.userdata if self._checkpoint is not None else self.plan.userdata
+        scope = Scope("", {**before, **self._inputs}, self._parameters)
+        status, left, cause = await self._perform(scope)
+        await self._release()
+        outcome = (left.target or left.outcome) if left is not None else None
+        success = outcome in self.plan.success
+        if left is not None and not success:
+            cause = explain_exit(self.plan.root, left)
+        if isinstance(self._execution.skills, RunAwarePort):
+            self._execution.skills.end()
+        self._ended = True
+        self._control.close()
+        end = await self._record_end(status, outcome, cause)
+        if self._cancelled:
+            raise asyncio.CancelledError
+        return RunResult(
+            run=self.id,
+            behavior=self.plan.name,
+            status=end.status,
+            outcome=end.outcome,
+            success=success and end.status == "finished",
+            cause=end.cause,
+            duration_s=round(self._execution.clock.now_s() - started_s, 6),
+            userdata=scope.own_values(),
+            stood_in_for=self.plan.stood_in_for,
+            abandoned=tuple(self._execution.abandoned),
+        )
+
+    async def _perform(self, scope: Scope) -> tuple[str, NodeExit | None, Cause | None]:
+        if self._stop_reason is not None:
+            self._log.stop_requested(self._stop_reason)
+            return "stopped" if self._failure is None else "errored", None, self._stopped()
+        root = self.plan.root
+        with self._execution.settlement.owned():
+            self._task = self._execution.activity.branch(root.path, root.perform(scope, self._execution))
+        try:
+            while not self._task.done():
+                try:
+                    await asyncio.wait({self._task, self._given_up}, return_when=asyncio.FIRST_COMPLETED)
+                except asyncio.CancelledError:
+                    self._cancelled = True
+                    self.stop("the process that ran it was stopped")
+                    continue
+                if not self._task.done():
+                    return "errored", None, self._abandon(self._task)
+        finally:
+            if self._patience is not None:
+                self._patience.cancel()
+        return self._told(self._task)
+
+    def _told(self, task: asyncio.Task[NodeExit]) -> tuple[str, NodeExit | None, Cause | None]:
+        try:
+            return "finished", task.result(), None
+        except asyncio.CancelledError:
+            return "stopped" if self._failure is None else "errored", None, self._stopped()
+        except FlexcellError as error:
+            cause = cause_of(error)
+            if self._failure is None and self._stop_reason is not None and not self._execution.abandoned:
+                return "stopped", None, wrap_cause(self._stopped().message, cause, kind="Stopped")
+            return "errored", None, cause
+        except Exception as error:
+            # A custom state may raise anything; it ends the run with its cause, not the engine.
+            self._recorder.log(self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
+            return "errored", None, cause_of(error)
+
+    def _give_up(self) -> None:
+        if not self._given_up.done():
+            self._given_up.set_result(None)
+
+    def _abandon(self, task: asyncio.Task[NodeExit]) -> Cause:
+        waited_s = self._supervision.abandon_after_s
+        leaves = self.active_states
+        for path in leaves:
+            self._execution.abandon(task, path, waited_s)
+        error = NotStopped(
+            f"{', '.join(leaves) or 'the run'} did not stop within {waited_s:g} s and was abandoned",
+            where=self.plan.root.path,
+            hint="let the state's clean-up end, and CancelledError pass",
+        )
+        return cause_of(error)
+
+    async def _release(self) -> None:
+        """Cancel the goals that are left and give the resources back, however often we are cancelled meanwhile."""
+        if self._execution.abandoned:
+            return
+        cancelling = asyncio.create_task(self._execution.bus.cancel_goals(self.id), name=f"goals of run {self.id}")
+        while not cancelling.done():
+            try:
+                await asyncio.wait({cancelling})
+            except asyncio.CancelledError:
+                self._cancelled = True
+        self._execution.bus.leases.release_run(self.id)
+        cancelling.result()
+
+    def _stopped(self) -> Cause:
+        if self._failure is not None:
+            return cause_of(self._failure)
+        return Cause(message=f"stopped: {self._stop_reason or 'cancelled'}", where=self.plan.root.path, kind="Stopped")
+
+    def _new_control(self) -> Control:
+        control = Control(
+            gate=self._execution.gate,
+            branch_holds=self._execution.branch_holds,
+            activity=self._execution.activity,
+            settlement=self._execution.settlement,
+            recorder=self._recorder,
+            structure=self,
+            stop=self.stop,
+            demanded=self._supervision.demand_operator,
+            loss_policy=self._supervision.loss_policy,
+            loss_timeout_s=self._supervision.loss_timeout_s,
+        )
+        gate = self._execution.gate
+        gate.autonomy = self._supervision.autonomy
+        gate.breakpoints = self._supervision.breakpoints
+        gate.arm()
+        return control
+
+    def _begin(self) -> None:
+        """Record the first events, once: before any command, watcher or node."""
+        if self._begun:
+            return
+        self._begun = True
+        checkpoint = self._checkpoint
+        if checkpoint is not None and self._is_resumed:
+            self._log.resumed(checkpoint)
+        else:
+            virtual = self._execution.clock.virtual
+            self._log.started(self.plan, self.parameters, self._inputs, seed=self.seed, virtual=virtual)
+            if checkpoint is not None:
+                self._log.started_from(checkpoint)
+        undoing = checkpoint.undoing if checkpoint is not None and self._is_resumed else ""
+        if undoing:
+            message = "the engine died while a step back was undoing this, so the run begins paused: step back again"
+            self._recorder.log(undoing, message, level="warning")
+        if self._supervision.start_paused or undoing:
+            self._control.pause()
+
+    async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
+        """Make the end durable, then tell it; a run whose end cannot be kept has failed with that cause."""
+        end = self._recorder.end(status, outcome, cause)
+        committing = asyncio.create_task(self._execution.commit(), name=f"end of run {self.id}")
+        while not committing.done():
+            try:
+                await asyncio.wait({committing})
+            except asyncio.CancelledError:
+                self._cancelled = True
+        try:
+            committing.result()
+        except JournalError as error:
+            end = msgspec.structs.replace(end, status="errored", outcome=None, cause=_unrecorded(error, end))
+        self._recorder.tell(end)
+        return end
+
+
+def _unrecorded(error: JournalError, end: RunEnded) -> Cause:
+    """Return the cause of a run whose end could not be written: the journal, and how it had ended by itself."""
+    if end.cause is not None and any(link.kind == JournalError.__name__ for link in end.cause.chain()):
+        return end.cause
+    lost = cause_of(error)
+    by_itself = end.outcome or end.status
+    why = f" ({describe_cause(end.cause)})" if end.cause is not None else ""
+    return msgspec.structs.replace(lost, message=f"{lost.message}; the run itself had ended: {by_itself}{why}")

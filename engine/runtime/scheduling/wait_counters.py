@@ -1,0 +1,61 @@
+"""Counts waits by node path, and the steps of loops that never wait."""
+
+from __future__ import annotations
+
+from engine.clock import Clock
+from engine.node_path import is_inside
+
+SHORTEST_S = 1e-6
+"""What waits for less, the resolution of times in events, does not wait."""
+_FAIRNESS = 256
+
+
+class WaitCounter:
+    """Counts what the states of one run have waited for, by their paths."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._last: dict[str, int] = {}
+
+    def add(self, path: str) -> None:
+        """Note that the state, or part of a tree, at `path` waits for something."""
+        self.count += 1
+        self._last[path] = self.count
+
+    def add_timed(self, path: str, duration_s: float) -> None:
+        """Note that it waits for so long."""
+        if duration_s >= SHORTEST_S:
+            self.add(path)
+
+    def last(self, path: str) -> int:
+        """Return the number of the last wait at or inside `path`, counted from 1; 0 where there was none."""
+        return max((count for each, count in self._last.items() if is_inside(path, each)), default=0)
+
+
+class BusyLoopCounter:
+    """Counts the steps of one loop in which nothing was waited for; what siblings wait for does not count.
+
+    Args:
+        path: The container that loops.
+        waits: Those of the run.
+        clock: Virtual time passes when all wait and only then, so there it tells by itself.
+    """
+
+    __slots__ = ("_clock", "_path", "_seen", "_waits", "count")
+
+    def __init__(self, path: str, waits: WaitCounter, clock: Clock) -> None:
+        self.count = 0
+        self._path = path
+        self._waits = waits
+        self._clock = clock
+        self._seen = clock.now_s() if clock.virtual else waits.count
+
+    def step(self, *, most: int) -> bool:
+        """Count a step; tell whether everybody else is due a turn, or there were `most` without a wait."""
+        self.count += 1
+        if self.count % _FAIRNESS and self.count < most:
+            return False
+        last = self._clock.now_s() if self._clock.virtual else self._waits.last(self._path)
+        if last > self._seen:
+            self.count, self._seen = 0, last
+        return self.count > 0

@@ -1,0 +1,56 @@
+"""Arguments of a py_trees behaviour from the `with:` of a document, as its constructor's types say."""
+
+from __future__ import annotations
+
+import inspect
+import typing
+from collections.abc import Collection, Mapping
+from typing import Any
+
+import msgspec
+from py_trees.behaviour import Behaviour
+
+from engine.errors import StateError
+from engine.suggestions import did_you_mean
+
+
+def takes_name(kind: type[Behaviour]) -> bool:
+    """Tell whether the constructor has a `name`, as py_trees' own have."""
+    return "name" in inspect.signature(kind).parameters
+
+
+def wrong_arguments(kind: type[Behaviour], given: Collection[str]) -> tuple[str, str] | None:
+    """Return what is wrong with the names of the arguments and what to do about it, or None."""
+    known = inspect.signature(kind).parameters
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values()):
+        return None
+    for name in given:
+        if name not in known:
+            return f"{kind.__qualname__} takes no argument `{name}`", did_you_mean(name, known)
+    for name, parameter in known.items():
+        required = parameter.default is parameter.empty and parameter.kind is not parameter.VAR_POSITIONAL
+        if required and name not in given and name != "name":
+            return f"{kind.__qualname__} needs the argument `{name}`", f"add `{name}: …` to `with`"
+    return None
+
+
+def converted_arguments(kind: type[Behaviour], given: Mapping[str, Any], *, position: str) -> dict[str, Any]:
+    """Return the arguments as the types that the constructor names: `SUCCESS` becomes a status.
+
+    Raises:
+        StateError: a value does not fit its type.
+    """
+    try:
+        hints = typing.get_type_hints(kind.__init__)
+    except (AttributeError, NameError, TypeError):
+        hints = {}
+    arguments: dict[str, Any] = {}
+    for name, value in given.items():
+        try:
+            arguments[name] = msgspec.convert(value, hints.get(name, Any))
+        except msgspec.ValidationError as error:
+            raise StateError(f"argument `{name}` of {kind.__qualname__}: {error}", where=position) from error
+        except TypeError:
+            # The type is one that documents cannot say; the constructor judges for itself.
+            arguments[name] = value
+    return arguments

@@ -1,0 +1,43 @@
+"""The behaviours of py_trees that documents may name: those of py_trees itself, and those of the project's modules.
+
+Apart from `engine.state_catalogue`, since most documents name none and py_trees takes its time to import.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from types import ModuleType
+
+import py_trees.behaviours
+import py_trees.timers
+from py_trees.behaviour import Behaviour
+
+from engine.errors import RegistryError
+from engine.state_catalogue import NO_CLASSES, Catalogue, module_of
+from engine.suggestions import did_you_mean
+
+_PY_TREES: Mapping[str, ModuleType] = {module.__name__: module for module in (py_trees.behaviours, py_trees.timers)}
+"""Modules of py_trees' own, whose behaviours every document may name."""
+
+
+def find_behaviour(catalogue: Catalogue, name: str, given: Mapping[str, type] = NO_CLASSES) -> type[Behaviour]:
+    """Return the py_trees behaviour that a document names; arguments and errors as in `find_state`."""
+    module_name, _, class_name = name.partition(":")
+    found: object = given.get(name)
+    if found is None:
+        module = _PY_TREES.get(module_name) or module_of(catalogue, module_name)
+        if class_name not in vars(module):
+            known = [each for each, value in vars(module).items() if _is_behaviour(value)]
+            raise RegistryError(f"`{module_name}` has no `{class_name}`", hint=did_you_mean(class_name, known))
+        found = vars(module)[class_name]
+    if not (isinstance(found, type) and issubclass(found, Behaviour)) or inspect.isabstract(found):
+        raise RegistryError(
+            f"`{name}` is not a py_trees behaviour that can be made",
+            hint="it must be a subclass of py_trees.behaviour.Behaviour with an `update`",
+        )
+    return found
+
+
+def _is_behaviour(value: object) -> bool:
+    return isinstance(value, type) and issubclass(value, Behaviour) and not inspect.isabstract(value)

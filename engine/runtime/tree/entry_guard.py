@@ -1,0 +1,67 @@
+"""The guard of a composite, decorator or py_trees behaviour that is asked before it begins, and not while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from engine.runtime.tree.skipped_nodes import SkippedNodes
+
+_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE}
+
+
+class EntryGuard:
+    """Stands before the ticks of one part; where it is closed the part has its target for a status, and is not ticked.
+
+    Args:
+        part: What is guarded.
+        keys: The userdata keys and parameters that the condition reads.
+        holds: Evaluates the condition; may raise FlexcellError.
+        text: The condition as written.
+        to: success, failure or skipped.
+        skips: Told when the part is skipped.
+    """
+
+    def __init__(
+        self,
+        part: Behaviour,
+        *,
+        keys: frozenset[str],
+        holds: Callable[[], bool],
+        text: str,
+        to: str,
+        skips: SkippedNodes,
+    ) -> None:
+        self.keys = keys
+        self.holds = holds
+        self.said: bool | None = None
+        """False where it was closed in the tick under way, or in the last one; else None."""
+        self.refusal = ""
+        """Why the part has failed, where that is because of this guard."""
+        self._part = part
+        self._text = text
+        self._to = to
+        self._skips = skips
+        self._tick = part.tick
+        vars(part)["tick"] = self.tick
+
+    def tick(self) -> Iterator[Behaviour]:
+        """Ask, unless the part is at work already; then tick it."""
+        part, self.refusal = self._part, ""
+        if part.status is Status.RUNNING or self.holds():
+            self._skips.run(part)
+            yield from self._tick()
+            return
+        self.said = False
+        for child in part.children:
+            if child.status is not Status.INVALID:
+                child.stop(Status.INVALID)
+        self.refusal = f"{self._text} is false" if self._to == "failure" else ""
+        part.status = self._skips.skip(part) if self._to == "skipped" else self._closed()
+        yield part
+
+    def _closed(self) -> Status:
+        self._skips.run(self._part)
+        return _STATUS[self._to]

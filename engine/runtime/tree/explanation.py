@@ -1,0 +1,67 @@
+"""Why a tree failed: from the part that failed down to the leaf and its own cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from py_trees import composites
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+from py_trees.decorators import Decorator, Inverter
+
+from engine.cause_chain import wrap_cause
+from engine.event import Cause
+from engine.runtime.nodes.diagnosis import explain_exit
+from engine.runtime.tree.branching import IfThenElse
+from engine.runtime.tree.decorators import Cooldown, Guard, Remap, Retry, Timeout
+from engine.runtime.tree.entry_guard import EntryGuard
+from engine.runtime.tree.parallel import ThresholdParallel
+from engine.runtime.tree.tree_leaf import TreeLeaf
+from engine.runtime.tree.tree_node import TreeNode
+
+
+def explain_tree_failure(
+    behaviour: Behaviour, parts: Mapping[Behaviour, TreeNode], guards: Mapping[Behaviour, EntryGuard]
+) -> Cause:
+    """Return why a behaviour is FAILURE, the outermost part first."""
+    part = parts[behaviour]
+    if isinstance(behaviour, TreeLeaf):
+        if behaviour.left is None:
+            return Cause(message=f"{part.name} failed", where=part.path)
+        return explain_exit(behaviour.plan.node, behaviour.left)
+    guard = guards.get(behaviour)
+    if guard is not None and guard.refusal:
+        return Cause(message=guard.refusal, where=part.path, kind="Guard")
+    if isinstance(behaviour, Timeout | Cooldown | Guard | Remap) and behaviour.refusal:
+        return Cause(message=behaviour.refusal, where=part.path, kind=type(behaviour).__name__)
+    if part.foreign is not None:
+        said = f": {behaviour.feedback_message}" if behaviour.feedback_message else ""
+        return Cause(message=f"{part.name} failed{said}", where=part.path)
+    if isinstance(behaviour, Inverter):
+        return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
+    below = _culprit(behaviour)
+    because = explain_tree_failure(below, parts, guards) if below is not None else None
+    if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
+        return wrap_cause(
+            f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path
+        )
+    if isinstance(behaviour, ThresholdParallel):
+        said = (
+            f"{behaviour.failed} of {len(part.children)} failed, and {behaviour.success_count} must succeed; the first"
+        )
+        return wrap_cause(said, because, where=part.path)
+    if isinstance(behaviour, Retry) and behaviour.attempt > 1:
+        return wrap_cause(f"failed {behaviour.attempt} times", because, where=part.path)
+    return because or Cause(message=f"{part.name} had failed before", where=part.path)
+
+
+def _culprit(behaviour: Behaviour) -> Behaviour | None:
+    if isinstance(behaviour, Decorator):
+        candidates = [behaviour.decorated]
+    elif isinstance(behaviour, IfThenElse):
+        candidates = [*behaviour.branches, behaviour.condition]
+    elif isinstance(behaviour, composites.Selector):
+        candidates = behaviour.children[::-1]
+    else:
+        candidates = behaviour.children
+    return next((child for child in candidates if child.status is Status.FAILURE), None)

@@ -1,0 +1,277 @@
+"""Re-evaluates the checks of composites without memory while an action is running.
+
+A composite without memory asks them again at every tick, a `while_do_else` its condition, and acts on what they say.
+Nothing ticks while nothing has ended, so they are observed beside the tree: when userdata that they read is written,
+when a topic that they have read has news, and at their period. Only where one would end otherwise than it has, a tick
+is due, which runs it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from py_trees import composites, decorators
+from py_trees.behaviour import Behaviour
+from py_trees.common import Status
+
+from engine.event import Event, MessageReceived, UserdataAppended, UserdataWritten
+from engine.node_path import is_inside
+from engine.preemption import preempt
+from engine.runtime.nodes.execution import Execution
+from engine.runtime.nodes.node import overdue_policy
+from engine.runtime.nodes.observation import Observation, observe
+from engine.runtime.scheduling.timer import Timer
+from engine.runtime.tree.active_leaves import CHECK_TIMEOUT_S
+from engine.runtime.tree.branching import WhileDoElse
+from engine.runtime.tree.decorators import Cooldown
+from engine.runtime.tree.foreign_behaviour import ForeignBehaviour
+from engine.runtime.tree.tree_builder import TreeBuilder
+from engine.runtime.tree.tree_leaf import TreeLeaf
+from engine.runtime.tree.tree_livelock import TreeLivelockDetector
+
+_FINAL = (Status.SUCCESS, Status.FAILURE)
+
+
+class _Watch:
+    """One check that is observed while what stands behind it is at work."""
+
+    def __init__(self, leaf: TreeLeaf) -> None:
+        self.leaf = leaf
+        self.timer: Timer | None = None
+        self.topics: dict[str, Callable[[], None]] = {}
+        self.visit = 0
+        self.forget_entry: Callable[[], None] = lambda: None
+
+    @property
+    def path(self) -> str:
+        return self.leaf.plan.node.path
+
+
+class ReactiveChecks:
+    """The checks that one activation of a tree would ask again; used on the loop thread.
+
+    Args:
+        path: The tree.
+        execution: The run.
+        builder: What stands in the tree.
+        polling: Counts what is asked in vain.
+        wake: Called when one may say something else, or a tick is due.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        execution: Execution,
+        *,
+        builder: TreeBuilder,
+        polling: TreeLivelockDetector,
+        wake: Callable[[], None],
+    ) -> None:
+        self.tick_due = False
+        """Whether something has changed that the tree has to be ticked for."""
+        self._path = path
+        self._execution = execution
+        self._builder = builder
+        self._polling = polling
+        self._wake = wake
+        self._watches: dict[Behaviour, _Watch] = {}
+        self._foreign: dict[Behaviour, ForeignBehaviour] = {}
+        self._topics: dict[str, set[str]] = defaultdict(set)
+
+    @property
+    def timers(self) -> tuple[Timer, ...]:
+        """Those that are set."""
+        return tuple(watch.timer for watch in self._watches.values() if watch.timer is not None)
+
+    @property
+    def stale(self) -> bool:
+        """Whether a check may say something else than it has, so that `ask` has something to do."""
+        return any(watch.leaf.stale for watch in self._watches.values())
+
+    def follow(self, root: Behaviour) -> None:
+        """Watch what the next tick would ask again, after one has been carried out."""
+        self.tick_due = False
+        if not self._builder.reactive:
+            return
+        found = tuple(self._in_front(root)) if root.status is Status.RUNNING else ()
+        for gone in [leaf for leaf in self._watches if leaf not in found]:
+            self._end(self._watches.pop(gone))
+        self._foreign = {each: self._builder.foreign[each] for each in found if each in self._builder.foreign}
+        for leaf in found:
+            if isinstance(leaf, TreeLeaf) and leaf.plan.check:
+                self._watch(self._watches.setdefault(leaf, _Watch(leaf)))
+        # In document order: so they are asked.
+        self._watches = {leaf: self._watches[leaf] for leaf in found if leaf in self._watches}
+
+    def hear(self, event: Event) -> None:
+        """Take an event of the run."""
+        if isinstance(event, UserdataWritten | UserdataAppended):
+            if (self._watches or self._foreign) and self._execution.skills.entries is None:
+                self._hear_write(event)
+        elif isinstance(event, MessageReceived) and self._builder.reactive and is_inside(self._path, event.path):
+            self._topics[event.path].add(event.topic)
+
+    async def ask(self, *, until: Callable[[], bool], news: asyncio.Event) -> None:
+        """Observe what may have changed, in document order, until there is a reason to tick.
+
+        Args:
+            until: Whether there is another reason, for which an observation is given up.
+            news: Set when there may be one.
+
+        Raises:
+            StateError: in virtual time nothing but observing can go on for ever.
+            CancelledError: the tree was preempted.
+        """
+        for watch in tuple(self._watches.values()):
+            if not watch.leaf.stale or self.tick_due:
+                continue
+            await self._execution.branch_holds.until_free(watch.path)
+            if until():
+                return
+            watch.leaf.stale = False
+            observed = await self._observe(watch.leaf, until, news)
+            if until():
+                watch.leaf.stale = True
+                return
+            self._compare(watch, observed)
+            self._time(watch)
+            if not self.tick_due:
+                self._polling.count(self._names)
+
+    def forget_answers(self) -> None:
+        """Have the checks ask anew: time has passed since they were observed."""
+        for watch in self._watches.values():
+            self._execution.observed.forget(watch.path)
+
+    def close(self) -> None:
+        """Watch nothing any more."""
+        for watch in self._watches.values():
+            self._end(watch)
+        self._watches.clear()
+        self._foreign.clear()
+
+    def _in_front(self, node: Behaviour) -> Iterator[Behaviour]:
+        """Go through the leaves in front of what is RUNNING in composites without memory, below a RUNNING node."""
+        without_memory = isinstance(node, WhileDoElse) or (
+            isinstance(node, composites.Sequence | composites.Selector) and not node.memory
+        )
+        for child in node.children:
+            if child.status is Status.RUNNING:
+                yield from self._in_front(child)
+                if without_memory:
+                    return
+            elif without_memory:
+                yield from self._ended(child)
+
+    def _ended(self, node: Behaviour) -> Iterator[Behaviour]:
+        """Go through the leaves of a part that has ended, which a tick would ask again."""
+        if node.status not in _FINAL:
+            return
+        if isinstance(node, decorators.OneShot) and node.final_status is not None:
+            return
+        if isinstance(node, Cooldown) and node.cooling:
+            return
+        if isinstance(node, TreeLeaf) or node in self._builder.foreign:
+            yield node
+            return
+        for child in node.children:
+            yield from self._ended(child)
+
+    def _compare(self, watch: _Watch, observed: Observation) -> None:
+        self._topics[watch.path] |= observed.topics
+        self._hear_topics(watch)
+        if observed.left is not None:
+            status = watch.leaf.status_of(observed.left)
+            if status is watch.leaf.said:
+                return
+            # Should the tick not ask it, it is not the reason for another one.
+            watch.leaf.said = status
+        self._execution.observed.keep(watch.path, observed.answers)
+        self.tick_due = True
+
+    async def _observe(self, leaf: TreeLeaf, until: Callable[[], bool], news: asyncio.Event) -> Observation:
+        path = leaf.plan.node.path
+        work = observe(leaf.plan.node, leaf.scope, self._execution)
+        task = asyncio.create_task(work, name=f"observing {path}")
+        hearing: asyncio.Task[bool] | None = None
+        try:
+            # Most end in the first turn of the loop.
+            await asyncio.sleep(0)
+            deadline_s = self._execution.clock.now_s() + CHECK_TIMEOUT_S
+            while not task.done() and not until():
+                left_s = deadline_s - self._execution.clock.now_s()
+                if left_s <= 0:
+                    break
+                if hearing is None or hearing.done():
+                    news.clear()
+                    hearing = asyncio.create_task(news.wait(), name=f"news of {self._path}")
+                await asyncio.wait({task, hearing}, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            if hearing is not None:
+                hearing.cancel()
+            await preempt((task,), overdue_policy(self._execution, self._path))
+        return Observation() if task.cancelled() else task.result()
+
+    def _hear_write(self, event: UserdataWritten | UserdataAppended) -> None:
+        heard = False
+        for watch in self._watches.values():
+            reads = watch.leaf.plan.reads
+            if (reads is None or event.key in reads) and not is_inside(watch.path, event.path):
+                watch.leaf.stale = heard = True
+        for foreign in self._foreign.values():
+            if event.key in foreign.reads:
+                self.tick_due = heard = True
+        if heard:
+            if not is_inside(self._path, event.path):
+                self._execution.waits.add(self._path)
+            self._wake()
+
+    def _watch(self, watch: _Watch) -> None:
+        entries = self._execution.skills.entries
+        if entries is not None:
+            visit = self._execution.visits.get(watch.path, 0) + 1
+            if visit != watch.visit:
+                watch.forget_entry()
+                watch.visit = visit
+                watch.forget_entry = entries.expect(watch.path, visit, self._tick)
+            return
+        self._time(watch)
+        self._hear_topics(watch)
+
+    def _hear_topics(self, watch: _Watch) -> None:
+        for topic in self._topics[watch.path] - watch.topics.keys():
+            watch.topics[topic] = self._execution.skills.watch(topic, partial(self._outdate, watch))
+
+    def _time(self, watch: _Watch) -> None:
+        """Set the next time at which it is asked, unless that is set."""
+        every_s = watch.leaf.plan.every_s
+        if every_s is None or (watch.timer is not None and not watch.timer.future.done()):
+            return
+        if watch.timer is not None:
+            self._execution.branch_holds.drop(watch.timer)
+        watch.timer = self._execution.branch_holds.timer(watch.path, every_s)
+        watch.timer.future.add_done_callback(lambda _: self._outdate(watch))
+
+    def _outdate(self, watch: _Watch) -> None:
+        if watch.leaf in self._watches:
+            self._execution.waits.add(watch.path)
+            watch.leaf.stale = True
+            self._wake()
+
+    def _tick(self) -> None:
+        self.tick_due = True
+        self._wake()
+
+    def _names(self) -> str:
+        return ", ".join(watch.path.removeprefix(f"{self._path}/") for watch in self._watches.values())
+
+    def _end(self, watch: _Watch) -> None:
+        if watch.timer is not None:
+            self._execution.branch_holds.drop(watch.timer)
+        for forget in watch.topics.values():
+            forget()
+        watch.forget_entry()
+        self._execution.observed.forget(watch.path)

@@ -1,0 +1,271 @@
+"""Builds the py_trees nodes of a planned tree for one activation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+from py_trees import composites, decorators
+from py_trees.behaviour import Behaviour
+from py_trees.common import OneShotPolicy, ParallelPolicy, Status
+
+from engine.document import node_spec as nodes
+from engine.document.expression import Template
+from engine.errors import ExpressionError, StateError
+from engine.event import Cause, NodeRetried
+from engine.runtime.nodes.execution import Execution
+from engine.runtime.tree.active_leaves import ActiveLeaves
+from engine.runtime.tree.branching import IfThenElse, WhileDoElse
+from engine.runtime.tree.decorators import Cooldown, Guard, Remap, Repeat, Retry, StatusCondition, Timeout
+from engine.runtime.tree.entry_guard import EntryGuard
+from engine.runtime.tree.explanation import explain_tree_failure
+from engine.runtime.tree.foreign_behaviour import ForeignBehaviour
+from engine.runtime.tree.parallel import Parallel, ThresholdParallel, ThresholdPolicy
+from engine.runtime.tree.post_conditions import PostConditions
+from engine.runtime.tree.scope_access import ScopeAccess
+from engine.runtime.tree.status_log import StatusLog
+from engine.runtime.tree.timers import TreeTimers
+from engine.runtime.tree.tree_leaf import TickPause, TreeLeaf
+from engine.runtime.tree.tree_node import TreeNode
+
+_STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE, "running": Status.RUNNING}
+_ONE_SHOT = {"completion": OneShotPolicy.ON_COMPLETION, "success": OneShotPolicy.ON_SUCCESSFUL_COMPLETION}
+
+
+@dataclass(kw_only=True)
+class TreeBuilder:
+    """What the parts of one activation of a tree share, and what has grown so far.
+
+    Args:
+        execution: The run.
+        leaves: Those that are active.
+        tree_timers: Timers of decorators.
+        clear: Brings a subtree to rest whose tick was torn by an error.
+    """
+
+    execution: Execution
+    leaves: ActiveLeaves
+    tree_timers: TreeTimers
+    clear: Callable[[Behaviour], None]
+    turn: TickPause = field(default_factory=TickPause)
+    parts: dict[Behaviour, TreeNode] = field(default_factory=dict[Behaviour, TreeNode])
+    guards: list[Guard | EntryGuard] = field(default_factory=list["Guard | EntryGuard"])
+    entry_guards: dict[Behaviour, EntryGuard] = field(default_factory=dict[Behaviour, EntryGuard])
+    foreign: dict[Behaviour, ForeignBehaviour] = field(default_factory=dict[Behaviour, ForeignBehaviour])
+    posts: dict[Behaviour, PostConditions] = field(default_factory=dict[Behaviour, PostConditions])
+    statuses: StatusLog = field(init=False)
+    reactive: bool = False
+    """Whether it holds a part that asks again what has ended: a composite without memory, or a `while_do_else`."""
+    _rank: int = 0
+
+    def __post_init__(self) -> None:
+        """Begin with nothing recorded."""
+        self.statuses = StatusLog(self.execution)
+
+    def build(
+        self, part: TreeNode, place: ScopeAccess, *, caught: bool = False, passing: Status = Status.SUCCESS
+    ) -> Behaviour:
+        """Return the py_trees node for a part with everything below it.
+
+        Args:
+            part: What to grow.
+            place: Where it reads and writes.
+            caught: Whether a decorator around it takes the errors of its leaves.
+            passing: The status by which the part around it passes over it when it is skipped.
+
+        Raises:
+            FlexcellError: a foreign behaviour cannot be made.
+        """
+        if part.leaf is not None:
+            self._rank += 1
+            rank = self._rank
+            leaf = TreeLeaf(part.leaf, place, self.leaves, self.turn, self.statuses, rank, caught)
+            self.parts[leaf] = part
+            if part.post:
+                self._post(part, leaf, place)
+            self.statuses.skips.place(leaf, passing)
+            return leaf
+        if part.foreign is not None:
+            node: Behaviour = self._foreign(part, place)
+        elif part.source.parallel is not None:
+            node = self._parallel(part, place, caught)
+        elif part.source.kind in ("sequence", "selector"):
+            node = self._line(part, place, caught)
+        elif part.source.kind in nodes.SLOTS:
+            node = self._branching(part, place, caught)
+        else:
+            retry = part.source.retry
+            errors = retry is not None and retry.errors
+            inside = self.build(part.children[0], place, caught=caught or errors, passing=passing)
+            node = self._decorator(part, inside, place)
+        self.parts[node] = part
+        self.statuses.skips.place(node, passing)
+        if part.skips and node not in self.foreign and part.source.kind not in nodes.SLOTS:
+            self.statuses.skips.follow(node)
+        if part.source.guard is not None and part.source.kind != "guard":
+            self._entry_guard(part, part.source.guard, node, place)
+        if part.post:
+            self._post(part, node, place)
+        self.statuses.follow(node, part.path)
+        return node
+
+    def _post(self, part: TreeNode, node: Behaviour, place: ScopeAccess) -> None:
+        self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
+
+    def dismantle(self) -> None:
+        """Let go of everything once the tree has ended: nodes that know each other would wait for the collector."""
+        for node in self.parts:
+            node.parent = None
+            if node in self.posts or (node.children and node not in self.foreign):
+                # Its children, its iterator, and what was put in the place of its methods.
+                vars(node).clear()
+        self.parts.clear()
+        self.statuses.skips.forget_all()
+
+    def _line(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+        passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
+        children = [self.build(child, place, caught=caught, passing=passing) for child in part.children]
+        group = part.source.sequence or part.source.selector
+        memory = group.memory if isinstance(group, nodes.CompositeSpec) else True
+        self.reactive = self.reactive or not memory
+        if part.source.sequence is not None:
+            return composites.Sequence(part.path, memory, children)
+        return composites.Selector(part.path, memory, children)
+
+    def _branching(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+        # A condition that is skipped does not hold.
+        children = [self.build(child, place, caught=caught, passing=Status.FAILURE) for child in part.children]
+        if part.source.if_then_else is not None:
+            return IfThenElse(part.path, children, self.statuses.skips)
+        self.reactive = True
+        return WhileDoElse(part.path, children, self.statuses.skips)
+
+    def _parallel(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+        places = {child.name: ScopeAccess(place.scope) for child in part.children}
+        group = part.source.parallel
+        written = group if isinstance(group, nodes.ParallelSpec) else nodes.ParallelSpec(children=())
+        # Where one success or a number of them decides, what is skipped is neither.
+        passing = Status.INVALID if written.counts or written.policy == "one" else Status.SUCCESS
+        children = [self.build(child, places[child.name], caught=caught, passing=passing) for child in part.children]
+        policy: ParallelPolicy.Base
+        if written.counts:
+            policy = ThresholdPolicy(written.success_count, written.failure_count or 1)
+        elif written.policy == "one":
+            policy = ParallelPolicy.SuccessOnOne()
+        elif written.policy == "all":
+            policy = ParallelPolicy.SuccessOnAll(synchronise=written.synchronise)
+        else:
+            chosen = [node for node, child in zip(children, part.children, strict=True) if child.name in written.policy]
+            policy = ParallelPolicy.SuccessOnSelected(chosen, synchronise=written.synchronise)
+        kind = ThresholdParallel if written.counts else Parallel
+        return kind(
+            part.path,
+            policy,
+            children,
+            places=places,
+            outside=place,
+            execution=self.execution,
+            skips=self.statuses.skips,
+        )
+
+    def _foreign(self, part: TreeNode, place: ScopeAccess) -> Behaviour:
+        plan = part.foreign
+        if plan is None:
+            raise StateError("not a py_trees behaviour", where=part.position)
+        foreign = ForeignBehaviour(
+            part,
+            plan,
+            place,
+            execution=self.execution,
+            leaves=self.leaves,
+            tree_timers=self.tree_timers,
+            turn=self.turn,
+        )
+        self.foreign[foreign.behaviour] = foreign
+        return foreign.behaviour
+
+    def _decorator(self, part: TreeNode, child: Behaviour, place: ScopeAccess) -> Behaviour:
+        path, tree_timers = part.path, self.tree_timers
+        match part.source:
+            case nodes.NodeSpec(inverter=nodes.DecoratorSpec()):
+                return decorators.Inverter(path, child)
+            case nodes.NodeSpec(one_shot=nodes.OneShotSpec() as shot):
+                return decorators.OneShot(path, child, _ONE_SHOT[shot.policy])
+            case nodes.NodeSpec(repeat=nodes.RepeatSpec() as repeat):
+                return Repeat(path, child, repeat.times, tree_timers, self.statuses.repeat)
+            case nodes.NodeSpec(cooldown=nodes.CooldownSpec() as cooldown):
+                return Cooldown(path, child, cooldown.after_s, tree_timers)
+            case nodes.NodeSpec(remap=nodes.RemapSpec() as remap):
+                shown = {_STATUS[actual]: _STATUS[getattr(remap, actual)] for actual in _STATUS}
+                return Remap(path, child, shown, remap.every_s, tree_timers)
+            case nodes.NodeSpec(condition=nodes.StatusConditionSpec() as condition):
+                return StatusCondition(path, child, _STATUS[condition.status], condition.every_s, tree_timers)
+            case nodes.NodeSpec(timeout=nodes.TimeoutSpec() as timeout):
+                return Timeout(path, child, timeout.after_s, tree_timers)
+            case nodes.NodeSpec(retry=nodes.RetrySpec() as retry):
+                return self._retry(part, retry, child)
+            case nodes.NodeSpec(guard=nodes.GuardSpec() as guard):
+                return self._guard(part, guard, child, place)
+            case _:
+                raise StateError(f"a tree cannot hold a `{part.source.kind}`", where=part.position)
+
+    def _guard(self, part: TreeNode, guard: nodes.GuardSpec, child: Behaviour, place: ScopeAccess) -> Behaviour:
+        when = part.when
+        if when is None:
+            raise StateError("a guard without a condition", where=part.position)
+        holds = partial(_holds, when, place, part.position)
+        closed = partial(self._closed, guard.to or "failure")
+        node = Guard(part.path, child, keys=when.names, holds=holds, text=guard.when, closed=closed)
+        self.guards.append(node)
+        return node
+
+    def _entry_guard(self, part: TreeNode, guard: nodes.GuardSpec, node: Behaviour, place: ScopeAccess) -> None:
+        when = part.when
+        if when is None:
+            raise StateError("a guard without a condition", where=part.position)
+        holds = partial(_holds, when, place, part.position)
+        made = EntryGuard(
+            node,
+            keys=when.names,
+            holds=holds,
+            text=guard.when,
+            to=guard.to or "failure",
+            skips=self.statuses.skips,
+        )
+        self.guards.append(made)
+        self.entry_guards[node] = made
+
+    def _closed(self, to: str, node: Behaviour) -> Status:
+        if to == "skipped":
+            return self.statuses.skips.skip(node)
+        self.statuses.skips.run(node)
+        return _STATUS[to]
+
+    def _retry(self, part: TreeNode, retry: nodes.RetrySpec, child: Behaviour) -> Behaviour:
+        return Retry(
+            part.path,
+            child,
+            times=retry.times,
+            backoff_s=retry.backoff_s,
+            errors=retry.errors,
+            tree_timers=self.tree_timers,
+            clear=self.clear,
+            tell=partial(self._tell_retry, part.path, child),
+        )
+
+    def _tell_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
+        self.execution.recorder.emit(
+            NodeRetried,
+            path=path,
+            attempt=attempt,
+            wait_s=wait_s,
+            cause=error or explain_tree_failure(child, self.parts, self.entry_guards),
+        )
+
+
+def _holds(when: Template, place: ScopeAccess, position: str) -> bool:
+    value = when.evaluate({name: place.scope.read(name, reader=position) for name in when.names})
+    if not isinstance(value, bool):
+        raise ExpressionError(f"the guard gave {value!r}, which is not a boolean", where=position, hint="compare it")
+    return value

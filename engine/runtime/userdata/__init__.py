@@ -1,0 +1,1 @@
+"""Userdata: scopes of keys, and the values that they hold."""

@@ -1,0 +1,45 @@
+"""Digital outputs of a robot's controller and what hangs on them (RCL 4.3.9, tables 10 and 11)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+
+from engine.messages import Message
+from engine.skill import Service
+from engine.skills.switch_result import SwitchResult
+
+OutputNumber = Annotated[int, msgspec.Meta(ge=0, description="Number of the output, from 0")]
+On = Annotated[bool, msgspec.Meta(description="True to turn on, false to turn off")]
+
+
+class DigitalOutputs(Message, frozen=True, kw_only=True):
+    """All outputs by number; the latest value of `<arm>/digital_outputs`."""
+
+    values: tuple[bool, ...]
+
+
+class SetOutput(Service[SwitchResult], frozen=True, kw_only=True):
+    """Turn an output on or off."""
+
+    output: OutputNumber
+    value: On
+
+
+class SetToolExchange(Service[SwitchResult], frozen=True, kw_only=True):
+    """Turn the output of the tool exchange on or off."""
+
+    value: On
+
+
+class SetGripper(Service[SwitchResult], frozen=True, kw_only=True):
+    """Turn the output of the gripper on or off."""
+
+    value: On
+
+
+class SetLinearAxis(Service[SwitchResult], frozen=True, kw_only=True):
+    """Turn the output of the linear axis (its brake or drive) on or off."""
+
+    value: On

@@ -1,0 +1,72 @@
+"""Reads the changes that other programs commit on its own thread and delivers them on the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from threading import Event, Thread
+
+from engine.errors import StoreError
+from engine.store.contract import ChangeListener
+from engine.store.row_mapping import change_of
+from engine.store.rows import RevisionRow
+from engine.store.table import ChangeSource
+
+_RETRY_S = 1.0
+"""How long to wait before a feed that failed is asked again."""
+
+_log = logging.getLogger("flexcell.store")
+
+
+class ChangeFeed:
+    """Tells listeners the changes of a feed, except those that `writer` committed itself."""
+
+    def __init__(self, feed: ChangeSource, *, writer: str, loop: asyncio.AbstractEventLoop) -> None:
+        self._feed = feed
+        self._writer = writer
+        self._loop = loop
+        self._listeners: dict[object, ChangeListener] = {}
+        self._stop = Event()
+        self._thread = Thread(target=self._run, name="store changes", daemon=True)
+
+    def start(self) -> None:
+        """Begin to listen."""
+        self._thread.start()
+
+    def tell(self, listener: ChangeListener) -> Callable[[], None]:
+        """Call `listener` on the event loop for each change; returns what ends it."""
+        token = object()
+        self._listeners[token] = listener
+
+        def end() -> None:
+            self._listeners.pop(token, None)
+
+        return end
+
+    def stop(self) -> None:
+        """End, and wait until the thread has let go of the database; never on the event loop."""
+        self._stop.set()
+        self._thread.join()
+
+    def _run(self) -> None:
+        failed = False
+        while not self._stop.is_set():
+            try:
+                rows = self._feed.wait(self._stop)
+                failed = False
+            except StoreError as error:
+                if not failed:
+                    _log.warning("changes by other programs are not heard for now: %s", error)
+                failed = True
+                self._stop.wait(_RETRY_S)
+                continue
+            others = tuple(row for row in rows if row.writer != self._writer)
+            if others and not self._stop.is_set():
+                self._loop.call_soon_threadsafe(self._tell, others)
+        self._feed.close()
+
+    def _tell(self, rows: tuple[RevisionRow, ...]) -> None:
+        for row in rows:
+            for listener in tuple(self._listeners.values()):
+                listener(change_of(row))

@@ -1,0 +1,1 @@
+"""Entries exchanged with MongoDB collections of ROS messages."""

@@ -1,0 +1,136 @@
+"""The tables of a store file, and the queries that read rows from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+
+from engine.host.sqlite_migrations import DamagedFile, SqliteMigrations
+from engine.store.rows import EntryQuery, RevisionRow
+from engine.store.search_terms import AFTER_PREFIX, tag_term
+
+SCHEMA = SqliteMigrations(
+    (
+        """
+CREATE TABLE IF NOT EXISTS entry(
+    kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, value TEXT NOT NULL,
+    PRIMARY KEY (kind, name)) STRICT;
+CREATE TABLE IF NOT EXISTS change(
+    seq INTEGER PRIMARY KEY AUTOINCREMENT, kind TEXT NOT NULL, name TEXT NOT NULL,
+    revision INTEGER NOT NULL, value TEXT, UNIQUE (kind, name, revision)) STRICT;
+""",
+        # Entries of a file of version 1 have no words yet; a name that is too long to be one gets none.
+        """
+CREATE TABLE IF NOT EXISTS note(
+    kind TEXT NOT NULL, name TEXT NOT NULL, revision INTEGER NOT NULL, tags TEXT NOT NULL,
+    changed_unix_ms INTEGER NOT NULL, author TEXT NOT NULL, reason TEXT NOT NULL, restores INTEGER,
+    writer TEXT NOT NULL, PRIMARY KEY (kind, name, revision)) STRICT, WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS word(
+    kind TEXT NOT NULL, name TEXT NOT NULL, word TEXT NOT NULL, PRIMARY KEY (kind, name, word)) STRICT, WITHOUT ROWID;
+CREATE INDEX IF NOT EXISTS word_first ON word(word, kind, name);
+CREATE INDEX IF NOT EXISTS name_first ON entry(name, kind, revision);
+INSERT OR IGNORE INTO word(kind, name, word)
+WITH RECURSIVE part(kind, name, word, rest) AS (
+    SELECT kind, name, '',
+        replace(replace(replace(replace(name, '_', ' '), '/', ' '), '.', ' '), '-', ' ') || ' ' FROM entry
+        WHERE length(CAST(name AS BLOB)) <= 128
+    UNION ALL
+    SELECT kind, name, substr(rest, 1, instr(rest, ' ') - 1), substr(rest, instr(rest, ' ') + 1)
+    FROM part WHERE rest <> '')
+SELECT kind, name, word FROM part WHERE word <> '';
+""",
+    )
+)
+_NOTE = "n.tags, n.changed_unix_ms, n.author, n.reason, n.restores, n.writer"
+_JOIN = "LEFT JOIN note n ON n.kind = r.kind AND n.name = r.name AND n.revision = r.revision"
+ENTRY = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM entry r {_JOIN}"
+KEY = f"SELECT r.kind, r.name, r.revision, NULL, {_NOTE} FROM entry r {_JOIN}"
+CHANGE = f"SELECT r.kind, r.name, r.revision, r.value, {_NOTE} FROM change r {_JOIN}"
+MANY = 20_000
+"""Words are counted no further to find the rarest."""
+
+
+class _Columns(msgspec.Struct, frozen=True, array_like=True):
+    kind: str
+    name: str
+    revision: int
+    value: str | None
+    tags: str | None
+    changed_unix_ms: int | None
+    author: str | None
+    reason: str | None
+    restores: int | None
+    writer: str | None
+
+
+def row_of(columns: Sequence[Any]) -> RevisionRow:
+    """Return what one of the queries found.
+
+    Raises:
+        DamagedFile: it is no entry.
+    """
+    try:
+        found = msgspec.convert(columns, _Columns)
+        tags = msgspec.json.decode(found.tags, type=tuple[str, ...]) if found.tags else ()
+    except (msgspec.DecodeError, UnicodeEncodeError) as error:
+        raise DamagedFile(f"a row is none of an entry: {error}") from error
+    return RevisionRow(
+        kind=found.kind,
+        name=found.name,
+        revision=found.revision,
+        value=found.value,
+        tags=tags,
+        changed_unix_ms=found.changed_unix_ms or 0,
+        by=found.author or "",
+        reason=found.reason or "",
+        restores=found.restores,
+        writer=found.writer or "",
+    )
+
+
+def word_ranges(selection: EntryQuery) -> tuple[tuple[str, str], ...]:
+    """Return for each tag and word that is asked for the range its words lie in, the end excluded."""
+    tags = [(tag_term(tag), f"{tag_term(tag)}\x00") for tag in selection.tags]
+    return (*tags, *((word, word + AFTER_PREFIX) for word in selection.words))
+
+
+def conditions(selection: EntryQuery, *, rarest: tuple[str, str] | None) -> tuple[str, list[object]]:
+    """Return the WHERE clause of a selection with its arguments; `rarest` is the word range that is searched."""
+    if rarest is None:
+        where, given = _plain_conditions(selection, "r")
+        return (f" WHERE {where}" if where else ""), given
+    # The index of words leads to the few entries of a page, whichever part of all entries has the word.
+    parts, given = ["w.word >= ? AND w.word < ?"], list[object](rarest)
+    where, more = _plain_conditions(selection, "w")
+    parts += [where] if where else []
+    given += more
+    for span in word_ranges(selection):
+        if span != rarest:
+            parts.append(
+                "EXISTS (SELECT 1 FROM word v WHERE v.kind = w.kind AND v.name = w.name AND v.word >= ? AND v.word < ?)"
+            )
+            given += span
+    found = f"SELECT DISTINCT w.kind, w.name FROM word w WHERE {' AND '.join(parts)} ORDER BY w.kind, w.name LIMIT ?"
+    return f" WHERE (r.kind, r.name) IN ({found})", [*given, limit_of(selection)]
+
+
+def limit_of(selection: EntryQuery) -> int:
+    """Return how many rows are asked for, as SQLite takes it."""
+    return -1 if selection.limit is None else selection.limit
+
+
+def _plain_conditions(selection: EntryQuery, table: str) -> tuple[str, list[object]]:
+    parts: list[str] = []
+    given: list[object] = []
+    if selection.kind:
+        parts.append(f"{table}.kind = ?")
+        given.append(selection.kind)
+    if selection.prefix:
+        parts.append(f"{table}.name >= ? AND {table}.name < ?")
+        given += [selection.prefix, selection.prefix + AFTER_PREFIX]
+    if selection.after is not None:
+        parts.append(f"({table}.kind, {table}.name) > (?, ?)")
+        given += selection.after
+    return " AND ".join(parts), given

@@ -1,0 +1,311 @@
+"""From taught steps in their order to a behavior: approach, grasp, carry, release, taught motions in between."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import cast
+
+from engine.document.yaml_writer import write_yaml
+from engine.errors import SkillFailed
+from engine.messages import Vector3
+from engine.skills.proposing import Proposal, ProposalOptions, TaughtStep, ToolName
+from engine.teaching.proposal_nodes import Node, ProposalNodeBuilder
+from engine.teaching.step_roles import MOTIONS, PLACES, ObservedStep, assign_step_roles, guess_part
+
+_HEADER = "# Proposed from what was taught: {names}.\n# Overwrite an entry, and the next run moves otherwise.\n"
+_UNKNOWN_WIDTH = "Nobody said how wide the part is: whatever is between the fingers counts as held."
+_UNKNOWN_PART = (
+    "Nobody said which part is grasped {where}: in a cell that knows its parts, ways with it cannot be planned."
+)
+_END_HELD = "At the end the tool still holds something."
+_PARAMETERS: Mapping[str, tuple[str, float, float, str]] = {
+    "speed": ("", 0.05, 1.0, "Share of the joint speed limits"),
+    "line_speed_m_s": ("m/s", 0.01, 0.5, "Speed on the straight ways to a part and back"),
+    "approach_m": ("m", 0.01, 0.5, "Straight way in front of a place, along the axis of the tool"),
+}
+
+
+def build_proposal(
+    steps: Sequence[ObservedStep],
+    options: ProposalOptions,
+    *,
+    arm: str,
+    tool: ToolName = "gripper",
+    parts: Mapping[str, Vector3 | None] | None = None,
+) -> Proposal:
+    """Return the behavior that goes through taught steps.
+
+    Args:
+        steps: In their order; those without a role get one.
+        options: Its name, and the defaults of its parameters.
+        arm: Who moves.
+        tool: What the arm holds with.
+        parts: What there is to be grasped, and where its middle is in the world where that is known.
+
+    Raises:
+        SkillFailed: a role does not fit, or nothing moves.
+    """
+    known = parts or {}
+    roles = [_with_part(taught, known) for taught in assign_step_roles(steps)]
+    if all(taught.step.kind not in (*PLACES, *MOTIONS) for taught in roles):
+        raise SkillFailed("nothing moves", where="teach", hint="choose at least one place or motion")
+    plan = _Plan(ProposalNodeBuilder(arm, tool), options)
+    index = 0
+    while index < len(roles):
+        index += plan.take(roles, index)
+    text = plan.text(_HEADER.format(names=", ".join(dict.fromkeys(each.step.name for each in roles))))
+    return Proposal(
+        text=text, steps=tuple(each.step for each in roles), words=tuple(plan.words), remarks=plan.all_remarks(),
+        arm=arm, tool=tool, parts=tuple(known),
+    )  # fmt: skip
+
+
+def _with_part(taught: ObservedStep, parts: Mapping[str, Vector3 | None]) -> ObservedStep:
+    """Name the part of a grasp where nobody did."""
+    step = taught.step
+    if step.role not in ("grasp", "close") or step.part is not None:
+        return taught
+    part = guess_part(taught, parts)
+    return replace(taught, step=TaughtStep(kind=step.kind, name=step.name, role=step.role, part=part))
+
+
+@dataclass
+class _Plan:
+    """The states of the behavior so far, each still to be told what comes after it."""
+
+    nodes: ProposalNodeBuilder
+    options: ProposalOptions
+    states: dict[str, Node] = field(default_factory=dict[str, Node])
+    words: list[str] = field(default_factory=list[str])
+    remarks: dict[str, None] = field(default_factory=dict[str, None])
+    widths: dict[str, float] = field(default_factory=dict[str, float])
+    holds: str | None = None
+    """The part that is held, empty for one without a name, None for nothing."""
+
+    def take(self, steps: Sequence[ObservedStep], index: int) -> int:
+        """Make the states of the step at `index` and of those that belong to it; return how many these are."""
+        taught = steps[index]
+        if taught.role == "approach":
+            following = steps[index + 1] if index + 1 < len(steps) else None
+            if following is not None and following.role in ("grasp", "release"):
+                return 1 + self._at(steps, index + 1, approach=taught)
+            self._via(taught)
+        elif taught.role in ("grasp", "release"):
+            return self._at(steps, index, approach=None)
+        elif taught.role == "follow":
+            self._follow(taught)
+        elif taught.role == "open":
+            self._open()
+        elif taught.role == "close":
+            self._close(taught)
+        else:
+            self._via(taught)
+        return 1
+
+    def text(self, header: str) -> str:
+        """Return the document."""
+        names = [*self.states]
+        for name, following in zip(names, [*names[1:], "finished"], strict=True):
+            _lead_on(self.states[name], following)
+        outcomes = ["finished", *(each for each in ("missed", "blocked") if each in self.nodes.outcomes), "failed"]
+        document: Node = {"flexcell": 1, "name": self.options.name, "description": _summary(self.words)}
+        if self.options.cell:
+            document["cell"] = self.options.cell
+        needed = self._parameters()
+        if needed:
+            document["parameters"] = needed
+        document |= {"outcomes": outcomes, "success": ["finished"]}
+        document["root"] = {"machine": {"initial": names[0], "states": self.states}}
+        return header + write_yaml(document)
+
+    def all_remarks(self) -> tuple[str, ...]:
+        """What the reader should know."""
+        return (*self.remarks, *((_END_HELD,) if self.holds is not None else ()))
+
+    def _via(self, place: ObservedStep) -> None:
+        words = f"Free of collisions to {place.step.name}."
+        self._add(f"to_{place.step.name}", self.nodes.free(place, _NEXT, words), f"Move to {place.step.name}")
+
+    def _follow(self, motion: ObservedStep) -> None:
+        name = motion.step.name
+        start = self.nodes.free_to_start(motion, _NEXT, f"Free of collisions to where {name} begins.")
+        self._add(f"to_start_of_{name}", start, f"Move to the start of {name}")
+        words = f"As it was shown in {name}."
+        self._add(f"along_{name}", self.nodes.follow(motion, _NEXT, words), f"Follow {name}")
+
+    def _open(self) -> None:
+        part = self.holds or ""
+        self._add("let_go", self.nodes.let_go(_NEXT, "The tool lets go.", part=part), "Let go")
+        if part:
+            self._add(f"detach_{part}", self.nodes.detach(part, _NEXT), "")
+        self.holds = None
+
+    def _close(self, taught: ObservedStep) -> None:
+        part = taught.step.part or ""
+        self._missing(part, "where the tool closes")
+        self.nodes.outcomes["missed"] = None
+        words = "The tool closes where it is."
+        node = self.nodes.hold(_NEXT, "missed", words, part=part, width=self._width(taught), like=taught)
+        self._add("hold", node, f"Hold {part or 'what is there'}")
+        if part:
+            self._add(f"attach_{part}", self.nodes.attach(part, _NEXT), "")
+        self.holds = part
+
+    def _at(self, steps: Sequence[ObservedStep], index: int, *, approach: ObservedStep | None) -> int:
+        """Grasp or release at a place; takes the action of the tool there, and the depart, along."""
+        place, count, like = steps[index], 1, None
+        closing = place.role == "grasp"
+        if index + count < len(steps) and steps[index + count].role == ("close" if closing else "open"):
+            like = steps[index + count]
+            count += 1
+        depart = approach
+        if index + count < len(steps) and steps[index + count].role == "depart":
+            depart = steps[index + count]
+            count += 1
+        if closing:
+            self._grasp(place, approach, depart, like)
+        else:
+            self._release(place, approach, depart)
+        return count
+
+    def _grasp(
+        self, place: ObservedStep, approach: ObservedStep | None, depart: ObservedStep | None, like: ObservedStep | None
+    ) -> None:
+        name, nodes = place.step.name, self.nodes
+        part = place.step.part or (like.step.part if like is not None else None) or ""
+        self._missing(part, f"at {name}")
+        nodes.outcomes["missed"] = None
+        inside: dict[str, Node] = {
+            "open": nodes.let_go("approach", "Nothing is in the tool."),
+            "approach": self._in_front(place, approach, "down", "Free of collisions"),
+            "down": nodes.straight(place, "grasp", f"Straight to {name}."),
+            "grasp": nodes.hold(
+                "attach" if part else "up", "let_go", f"The tool takes {part or 'the part'}.",
+                part=part, width=self._width(like), like=like,
+            ),
+        }  # fmt: skip
+        if part:
+            inside["attach"] = nodes.attach(part, "up")
+        inside |= {
+            "up": self._straight_out(place, depart, "check"),
+            "check": nodes.still_held("picked", "let_go", "It came along.", part=part),
+            "let_go": nodes.let_go("detach" if part else "back_off", "Without the part the tool opens again."),
+        }
+        if part:
+            inside["detach"] = nodes.detach(part, "back_off")
+        inside["back_off"] = self._straight_out(place, depart, "missed")
+        words = f"Take {part or 'a part'} at {name}"
+        self._add_machine(f"pick_{part or name}", inside, "open", "picked", words)
+        self.holds = part
+
+    def _release(self, place: ObservedStep, approach: ObservedStep | None, depart: ObservedStep | None) -> None:
+        name, nodes, part = place.step.name, self.nodes, self.holds or ""
+        nodes.outcomes["missed"] = None
+        inside: dict[str, Node] = {
+            "approach": self._in_front(place, approach, "check", "Free of collisions, with the part,"),
+            "check": nodes.still_held("down", "missed", "Only what is still held is put down.", part=part),
+            "down": nodes.straight(place, "let_go", f"Straight to {name}."),
+            "let_go": nodes.let_go("detach" if part else "up", "The part is let go.", part=part),
+        }
+        if part:
+            inside["detach"] = nodes.detach(part, "up")
+        inside["up"] = self._straight_out(place, depart, "placed")
+        words = f"Put {part or 'it'} down at {name}"
+        self._add_machine(
+            f"place_{part}_at_{name}" if part else f"place_at_{name}", inside, "approach", "placed", words
+        )
+        self.holds = None
+
+    def _in_front(self, place: ObservedStep, approach: ObservedStep | None, then: str, words: str) -> Node:
+        if approach is not None:
+            return self.nodes.free(approach, then, f"{words} to {approach.step.name}.")
+        return self.nodes.free(place, then, f"{words} to in front of {place.step.name}.", before=True)
+
+    def _straight_out(self, place: ObservedStep, depart: ObservedStep | None, then: str) -> Node:
+        if depart is not None:
+            return self.nodes.straight(depart, then, f"Straight to {depart.step.name}.")
+        return self.nodes.straight(place, then, f"Straight back from {place.step.name}.", before=True)
+
+    def _width(self, like: ObservedStep | None) -> str:
+        """Return the parameter that has the width of what is grasped; one for each width that was taught."""
+        taught = like is not None and like.step.kind == "gripper" and like.width_m > 0.0
+        width_m = like.width_m if like is not None and taught else self.options.width_m
+        if self.nodes.tool != "gripper":
+            return ""
+        if width_m is None:
+            self.remarks[_UNKNOWN_WIDTH] = None
+            return ""
+        rounded = round(width_m, 4)
+        for name, known in self.widths.items():
+            if known == rounded:
+                return name
+        name = f"width_{len(self.widths) + 1}_m" if self.widths else "width_m"
+        self.widths[name] = rounded
+        return name
+
+    def _missing(self, part: str, where: str) -> None:
+        if not part:
+            self.remarks[_UNKNOWN_PART.format(where=where)] = None
+
+    def _parameters(self) -> Node:
+        defaults = {
+            "speed": self.options.speed,
+            "line_speed_m_s": self.options.line_speed_m_s,
+            "approach_m": self.options.approach_m,
+        }
+        made: Node = {}
+        for name, (unit, least, most, words) in _PARAMETERS.items():
+            if name in self.nodes.needed:
+                default = defaults[name]
+                limits = {"minimum": min(least, default), "maximum": max(most, default)}
+                measured = {"unit": unit} if unit else {}
+                made[name] = {"type": "number", "default": default, **limits, **measured, "description": words}
+        for name, width_m in self.widths.items():
+            words = "Width of what is grasped, between the fingers"
+            limits = {"minimum": 0.0, "maximum": max(1.0, width_m)}
+            made[name] = {"type": "number", "default": width_m, **limits, "unit": "m", "description": words}
+        return made
+
+    def _add_machine(self, name: str, inside: dict[str, Node], initial: str, good: str, words: str) -> None:
+        leads = {
+            str(target) for node in inside.values() for target in _transitions(node).values() if target not in inside
+        }
+        ends = {good: _NEXT, **{each: each for each in ("missed", "blocked", "failed") if each in leads}}
+        machine = {"initial": initial, "states": inside}
+        self._add(name, {"description": f"{words}.", "machine": machine, "transitions": ends}, words)
+
+    def _add(self, name: str, node: Node, words: str) -> None:
+        self.states[_free_name(name, self.states)] = node
+        if words:
+            self.words.append(words)
+
+
+_NEXT = "\0next"
+"""Stands in a transition for whatever comes after a state."""
+
+
+def _transitions(node: Node) -> dict[str, object]:
+    return cast("dict[str, object]", node["transitions"])
+
+
+def _lead_on(node: Node, following: str) -> None:
+    node["transitions"] = {
+        outcome: following if target == _NEXT else target for outcome, target in _transitions(node).items()
+    }
+
+
+def _free_name(wanted: str, taken: Mapping[str, Node]) -> str:
+    base = re.sub(r"[^a-z0-9_]+", "_", wanted)[:58].strip("_")
+    number, name = 1, base
+    while name in taken or name in ("finished", "missed", "blocked", "failed"):
+        number += 1
+        name = f"{base}_{number}"
+    return name
+
+
+def _summary(words: Sequence[str]) -> str:
+    text = ", ".join(word[0].lower() + word[1:] for word in words)
+    text = text[0].upper() + text[1:]
+    return f"{text}." if len(text) <= 300 else f"{text[:297]}..."

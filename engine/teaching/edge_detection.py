@@ -1,0 +1,64 @@
+"""What a trigger makes of a topic's messages: pressed, let go, or nothing new."""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Any
+
+import msgspec
+
+from engine.errors import BusError
+
+_USUAL = ("value", "data", "pressed", "held", "on")
+
+
+class ButtonEdge(Enum):
+    """A change of a button."""
+
+    PRESSED = "pressed"
+    RELEASED = "released"
+
+
+class EdgeDetector:
+    """Compares a field of each message with a value; before the first message the two differ.
+
+    Args:
+        kind: The type of the messages.
+        field: Its field; where it is empty, one of the usual names, or the only boolean field.
+        value: What counts as pressed.
+
+    Raises:
+        BusError: the messages have no such field.
+    """
+
+    def __init__(self, kind: type[Any], *, field: str, value: bool | int | float | str) -> None:
+        self._field = _field_of(kind, field)
+        self._value = value
+        self.pressed = False
+
+    def take(self, message: object) -> ButtonEdge | None:
+        """Return what has changed with this message, None where nothing has."""
+        value = getattr(message, self._field)
+        # True == 1 in Python; a button that says 1 means something else than one that says True.
+        pressed = value == self._value and isinstance(value, bool) == isinstance(self._value, bool)
+        if pressed == self.pressed:
+            return None
+        self.pressed = pressed
+        return ButtonEdge.PRESSED if pressed else ButtonEdge.RELEASED
+
+
+def _field_of(kind: type[Any], field: str) -> str:
+    fields = {one.name: one.type for one in msgspec.structs.fields(kind)}
+    if field:
+        if field not in fields:
+            raise BusError(f"{kind.__name__} has no field {field}", hint=f"it has {', '.join(fields)}")
+        return field
+    for name in _USUAL:
+        if name in fields:
+            return name
+    booleans = [name for name, type_ in fields.items() if type_ is bool]
+    if len(booleans) != 1:
+        raise BusError(
+            f"{kind.__name__} has {len(booleans)} boolean fields", hint=f"name one as `field`: {', '.join(fields)}"
+        )
+    return booleans[0]

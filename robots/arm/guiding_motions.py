@@ -1,0 +1,114 @@
+"""Leading the arm by hand, and writing down where it was led (RCL 4.1.2, RCY 7.1)."""
+
+from __future__ import annotations
+
+import asyncio
+
+import msgspec
+
+from engine.bus import ActiveGoal, SkillBus
+from engine.errors import FlexcellError, GoalRejected, SkillFailed
+from engine.skills.entries import WriteEntry
+from engine.skills.guiding import FinishGuiding, FinishGuidingResult, GuideArm, GuideFeedback, GuideResult
+from engine.store.limits import verify_name
+from robots.arm.demonstration import MOST_SAMPLES, DemonstrationRecorder
+from robots.arm.motion_runner import MotionRunner
+from robots.arm.stream_deadline import StreamDeadline
+from robots.port import MotionStream
+
+_STORE, _KIND = "store", "trajectory"
+
+
+class GuidingMotions:
+    """Answers GuideArm and FinishGuiding."""
+
+    def __init__(self, runner: MotionRunner) -> None:
+        self._runner = runner
+        self._bus: SkillBus | None = None
+        self._stream: MotionStream | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the skills under the arm's name; anybody may finish."""
+        name = self._runner.name
+        self._bus = bus
+        bus.advertise_action(GuideArm, self._guide, namespace=name, exclusive=name)
+        bus.advertise_service(FinishGuiding, self._finish, namespace=name)
+
+    async def _finish(self, request: FinishGuiding) -> FinishGuidingResult:
+        stream = self._stream
+        if stream is None:
+            raise SkillFailed("the arm is not being guided", where=self._runner.name, hint="send guide_arm first")
+        stream.finish()
+        await stream.report()
+        return FinishGuidingResult(joints=self._runner.measured())
+
+    async def _guide(self, goal: GuideArm, handle: ActiveGoal[GuideFeedback]) -> GuideResult:
+        runner = self._runner
+        if goal.record:
+            self._check_record(goal, handle)
+        runner.accept(handle)
+        demonstration = DemonstrationRecorder(runner, handle, sample_s=goal.sample_s)
+        countdown: list[StreamDeadline] = []
+        sampling: list[asyncio.Task[None]] = []
+
+        def start() -> MotionStream:
+            self._stream = stream = runner.port.guide(damping=goal.damping)
+            countdown.append(StreamDeadline(stream, handle, clock=runner.clock, duration_s=goal.duration_s))
+            if goal.record:
+                sampling.append(asyncio.create_task(demonstration.run(), name=f"demonstration on {runner.name}"))
+            return stream
+
+        def tell(stream: MotionStream) -> None:
+            countdown[0].look()
+            if demonstration.full:
+                stream.finish()
+            handle.feedback(
+                GuideFeedback(joints=runner.measured(), pose=runner.measured_pose(), samples=demonstration.count)
+            )
+
+        try:
+            ended = await runner.carry_out(start, handle, tell, mode="guiding")
+        finally:
+            self._stream = None
+            for count in countdown:
+                count.close()
+            for task in sampling:
+                task.cancel()
+                await asyncio.wait((task,))
+        entry = goal.record if goal.record and not handle.cancel_requested else ""
+        if entry:
+            await self._write(entry, demonstration, handle)
+        return GuideResult(
+            joints=runner.measured(),
+            pose=runner.measured_pose(),
+            samples=demonstration.count,
+            duration_s=ended.duration_s,
+            entry=entry,
+        )
+
+    def _check_record(self, goal: GuideArm, handle: ActiveGoal[GuideFeedback]) -> None:
+        """Reject beforehand what would lose the demonstration afterwards."""
+        assert self._bus is not None
+        try:
+            verify_name(_KIND, goal.record)
+            self._bus.request_type(f"{_STORE}/{WriteEntry.skill_name()}")
+        except FlexcellError as error:
+            raise GoalRejected(
+                f"the demonstration could not be stored: {error.message}", where=handle.address, hint=error.hint
+            ) from None
+        if goal.duration_s is not None and goal.duration_s / goal.sample_s > MOST_SAMPLES:
+            raise GoalRejected(
+                f"{goal.duration_s:g} s at a sample every {goal.sample_s:g} s do not fit into an entry",
+                where=handle.address,
+                hint=f"at most {MOST_SAMPLES} samples",
+            )
+
+    async def _write(self, entry: str, demonstration: DemonstrationRecorder, handle: ActiveGoal[GuideFeedback]) -> None:
+        assert self._bus is not None
+        if demonstration.count < 2:
+            raise SkillFailed("the demonstration was too short to be stored", where=handle.address)
+        value = msgspec.to_builtins(demonstration.trajectory())
+        try:
+            await self._bus.call(WriteEntry(kind=_KIND, name=entry, value=value), to=_STORE)
+        except FlexcellError as error:
+            raise SkillFailed("the demonstration was not stored", where=handle.address) from error

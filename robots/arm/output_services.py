@@ -1,0 +1,73 @@
+"""Digital outputs of the robot's controller, by number and by what hangs on them (RCL 4.3.9, tables 10 and 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from engine.bus import SkillBus
+from engine.bus.topic import Topic
+from engine.errors import RobotError
+from engine.skills.digital_outputs import DigitalOutputs, SetGripper, SetLinearAxis, SetOutput, SetToolExchange
+from engine.skills.switch_result import SwitchResult
+from robots.port import OutputPort
+
+
+class OutputServices:
+    """Answers SetOutput, and SetToolExchange, SetGripper and SetLinearAxis where an output is named so.
+
+    Args:
+        name: The arm's name on the bus.
+        port: The outputs.
+        uses: `tool_exchange`, `gripper` and `linear_axis` → the number of its output.
+    """
+
+    def __init__(self, name: str, port: OutputPort, *, uses: Mapping[str, int]) -> None:
+        self._name = name
+        self._port = port
+        self._uses = uses
+        self._topic: Topic[DigitalOutputs] | None = None
+
+    def register(self, bus: SkillBus) -> None:
+        """Advertise the services under the arm's name and publish `<arm>/digital_outputs`."""
+        name, uses = self._name, self._uses
+        self._topic = bus.topic(f"{name}/digital_outputs", DigitalOutputs)
+        self._topic.provide(self._now)
+        self._tell()
+        bus.advertise_service(SetOutput, self._set_output, namespace=name, commands=name)
+        if "tool_exchange" in uses:
+            bus.advertise_service(SetToolExchange, self._set_tool_exchange, namespace=name, commands=name)
+        if "gripper" in uses:
+            bus.advertise_service(SetGripper, self._set_gripper, namespace=name, commands=name)
+        if "linear_axis" in uses:
+            bus.advertise_service(SetLinearAxis, self._set_linear_axis, namespace=name, commands=name)
+
+    async def _set_output(self, request: SetOutput) -> SwitchResult:
+        return self._set(request.output, request.value, f"output {request.output}")
+
+    async def _set_tool_exchange(self, request: SetToolExchange) -> SwitchResult:
+        return self._set_use("tool_exchange", request.value)
+
+    async def _set_gripper(self, request: SetGripper) -> SwitchResult:
+        return self._set_use("gripper", request.value)
+
+    async def _set_linear_axis(self, request: SetLinearAxis) -> SwitchResult:
+        return self._set_use("linear_axis", request.value)
+
+    def _set_use(self, use: str, value: bool) -> SwitchResult:
+        output = self._uses[use]
+        return self._set(output, value, f"{use.replace('_', ' ')} (output {output})")
+
+    def _set(self, output: int, value: bool, words: str) -> SwitchResult:
+        try:
+            self._port.set(output, on=value)
+        except RobotError as error:
+            return SwitchResult(success=False, message=str(error))
+        self._tell()
+        return SwitchResult(success=True, message=f"{words} is {'on' if value else 'off'}")
+
+    def _tell(self) -> None:
+        if self._topic is not None:
+            self._topic.publish(self._now())
+
+    def _now(self) -> DigitalOutputs:
+        return DigitalOutputs(values=self._port.values)

@@ -1,0 +1,184 @@
+"""Finds ways for one arm in the live scene of its cell, and looks ahead on those that it is on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import msgspec
+
+from engine.errors import RobotError
+from engine.messages import Pose
+from engine.skills.planning import PlanOptions
+from robots.planning.request import (
+    CollisionRequest,
+    JointGoal,
+    PathCheck,
+    PathCheckRequest,
+    PathGoal,
+    PathOrientationConstraint,
+    PathPlan,
+    PlanRefusal,
+    PlanRequest,
+    PoseGoal,
+    RefusalReason,
+    SampledTrajectory,
+)
+from robots.planning.scene.planning_scene import NamePair, PlanningScene
+from robots.port import Array, JointTrajectory
+from robots.workspace.path_reservations import describe_names
+from robots.workspace.workspace import Workspace
+
+EXTRA_MARGIN_M = 0.015
+"""Ways are looked for so much farther from obstacles than is watched for: else the next image might block them."""
+
+_SPARE_SHARE = 0.5
+TRANSIENT_REASONS: tuple[RefusalReason, ...] = (
+    "goal_in_collision",
+    "start_in_collision",
+    "no_path_in_time",
+    "way_blocked",
+)
+"""Refusals that may be otherwise without the spare distance, or when what is in the way has gone."""
+
+PlanningGoal = JointGoal | PoseGoal | PathGoal
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathSegment:
+    """A way that was confirmed, timed, and found with `margin_m`."""
+
+    plan: PathPlan
+    way: SampledTrajectory
+    trajectory: JointTrajectory
+    margin_m: float
+
+
+class PathPlanner:
+    """Asks the planners of a workspace on behalf of one goal of one arm.
+
+    Args:
+        arm: Name of the arm.
+        workspace: Whose scene, cameras and planners.
+        goal: Where to.
+        options: How.
+        tool: The tool centre point in the frame of the model's tool link; None for its origin.
+    """
+
+    def __init__(
+        self, arm: str, workspace: Workspace, *, goal: PlanningGoal, options: PlanOptions, tool: Pose | None
+    ) -> None:
+        self.arm = arm
+        self._workspace = workspace
+        self._goal = goal
+        self._options = options
+        self._tool = tool
+
+    async def find(self, start: Array, *, attempt: int = 0) -> PathSegment | PlanRefusal:
+        """Return a way from `start` (n,) through the scene as it is now; other attempts search otherwise.
+
+        Raises:
+            RobotError: the planning process ended.
+            CellError: the scene is wrong.
+        """
+        options = self._options
+        wide = await self._ask(start, options.margin_m + EXTRA_MARGIN_M, options.time_s * _SPARE_SHARE, attempt)
+        if not isinstance(wide, PlanRefusal) or wide.reason not in TRANSIENT_REASONS:
+            return wide
+        return await self._ask(start, options.margin_m, options.time_s * (1.0 - _SPARE_SHARE), attempt)
+
+    async def is_permanently_blocked(self, start: Array) -> bool:
+        """Return whether there is no way even without what goes away by itself: other arms, what cameras see.
+
+        Raises as `find` does.
+        """
+        return isinstance(
+            await self._ask(start, self._options.margin_m, self._options.time_s, 0, lasting=True), PlanRefusal
+        )
+
+    async def check(self, leg: PathSegment, *, from_s: float, margin_m: float) -> PathCheck:
+        """Return where the rest of a way is blocked in the scene as it is now; raises as `find` does."""
+        return await self._workspace.planners.check_path(self._seen(leg.way, from_s, margin_m))
+
+    async def confirm(self, leg: PathSegment) -> PathCheck:
+        """Return where a way that was found just now is blocked in the scene as it is now; raises as `find` does."""
+        return await self._workspace.planners.confirm_path(self._seen(leg.way, 0.0, self.margin_m))
+
+    async def beside(self, joints: Array, *, within_m: float) -> tuple[NamePair, ...]:
+        """Return what is within a distance of the arm standing at `joints` (n,); raises as `find` does."""
+        workspace = self._workspace
+        report = await workspace.planners.look(
+            CollisionRequest(
+                scene=workspace.scene_for(self.arm),
+                arm=self.arm,
+                joints_rad=tuple(float(q) for q in joints),
+                occupancy=workspace.occupancy,
+                margin_m=within_m,
+            )
+        )
+        return tuple((pair.first, pair.second) for pair in report.touching)
+
+    @property
+    def margin_m(self) -> float:
+        """The distance that is watched for."""
+        return self._options.margin_m
+
+    async def _ask(
+        self, start: Array, margin_m: float, time_s: float, attempt: int, *, lasting: bool = False
+    ) -> PathSegment | PlanRefusal:
+        options, workspace = self._options, self._workspace
+        scene = workspace.scene_for(self.arm)
+        answer = await workspace.planners.plan(
+            PlanRequest(
+                scene=_without_others(scene, self.arm) if lasting else scene,
+                arm=self.arm,
+                start_rad=tuple(float(q) for q in start),
+                goal=self._goal,
+                planner=options.planner,
+                time_s=time_s,
+                seed=options.seed + attempt,
+                margin_m=margin_m,
+                keep_orientation=_kept(options),
+                tool=self._tool,
+                speed=options.speed,
+                occupancy=None if lasting else workspace.occupancy,
+            )
+        )
+        if isinstance(answer, PlanRefusal):
+            return msgspec.structs.replace(answer, message=describe_names(answer.message))
+        if answer.timed is None:
+            raise RobotError("the planner returned no trajectory", where=self.arm, hint="plan again")
+        return PathSegment(plan=answer, way=answer.timed, trajectory=answer.timed.trajectory(), margin_m=margin_m)
+
+    def _seen(self, way: SampledTrajectory, from_s: float, margin_m: float) -> PathCheckRequest:
+        workspace = self._workspace
+        return PathCheckRequest(
+            scene=workspace.scene_for(self.arm),
+            arm=self.arm,
+            way=way,
+            from_s=from_s,
+            occupancy=workspace.occupancy,
+            margin_m=margin_m,
+        )
+
+
+def describe_contacts(pairs: tuple[NamePair, ...]) -> str:
+    """Say what would touch: `left/panda_hand would touch wall`."""
+    if not pairs:
+        return "the arm would touch something"
+    first, second = pairs[0]
+    more = f" and {len(pairs) - 1} more" if len(pairs) > 1 else ""
+    return f"{describe_names(first)} would touch {describe_names(second)}{more}"
+
+
+def _without_others(scene: PlanningScene, arm: str) -> PlanningScene:
+    own = tuple(part for part in scene.attached if part.arm == arm)
+    return msgspec.structs.replace(scene, arms=(scene.arm(arm),), attached=own)
+
+
+def _kept(options: PlanOptions) -> PathOrientationConstraint | None:
+    wish = options.keep_orientation
+    return (
+        None
+        if wish is None
+        else PathOrientationConstraint(tolerance_rad=wish.tolerance_rad, free_about=wish.free_about)
+    )

@@ -1,0 +1,192 @@
+"""One arm in a control loop: what it feels, where it is to be, which law holds it, when it stops by itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from msgspec.structs import replace
+
+from robots.control.arm_state import ArmState
+from robots.control.carried_load import CarriedLoad
+from robots.control.cartesian_impedance import CartesianImpedance
+from robots.control.collision_reflex import CollisionReflex
+from robots.control.controller import Controller
+from robots.control.gravity_compensation import GravityCompensation
+from robots.control.joint_impedance import JointImpedance, nominal_stiffness_nm_rad
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, ReflexTripped
+from robots.control.motion_executor import MotionExecutor
+from robots.control.motion_generator import MotionGenerator
+from robots.control.torque_blend import TorqueBlend
+from robots.model.kinematics import ArmKinematics
+from robots.model.transform import RigidTransform
+from robots.port import ArmSettings, Array, ControllerName, MotionEnd, Tolerance
+
+# What is felt passes this low pass, as wrist sensors have one.
+_FELT_HZ = 60.0
+_BLEND_S, _REFLEX_BLEND_S = 0.1, 0.02
+# An arm that has stopped by itself holds with this share of its nominal stiffness.
+_REFLEX_STIFFNESS = 0.2
+
+
+class ArmControlLoop:
+    """Owned by one control loop, which calls `measure`, `advance` and `torque` once a period, in this order.
+
+    Without thresholds in its settings an arm never stops by itself.
+
+    Args:
+        name: Of the arm, for what is told.
+        kinematics: Of the arm, for this loop only.
+        inertia_kg_m2: Diagonal of the mass matrix at home, (n,); joints are damped for it.
+        gravity_m_s2: Gravity in the world, (3,).
+        touching: Says in words what the arm touches, empty for nothing.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        kinematics: ArmKinematics,
+        inertia_kg_m2: Array,
+        gravity_m_s2: Array,
+        touching: Callable[[], str],
+    ) -> None:
+        model, limits = kinematics.model, kinematics.limits
+        self.name = name
+        self.settings = ArmSettings()
+        self.tool_xyz_m: Array = np.array(self.settings.tool_xyz_m)
+        """Where the tool centre point is in the frame of the tool link, (3,), as the settings say."""
+        self.state = ArmState(kinematics)
+        self.motion = MotionExecutor(joints=model.arm_joints, touching=touching)
+        self._kinematics = kinematics
+        self._inertia = inertia_kg_m2
+        self._limit_nm = np.array(limits.effort_nm)
+        self._load = CarriedLoad(kinematics, gravity_m_s2=gravity_m_s2)
+        self._reflex = CollisionReflex(joints=model.arm_joints, touching=touching)
+        cartesian = CartesianImpedance(
+            limits, mass_matrix=kinematics.mass_matrix, base_rotation=kinematics.base.rotation
+        )
+        self._holding: dict[ControllerName, Controller] = {
+            "joint_impedance": JointImpedance(limits),
+            "cartesian_impedance": cartesian,
+        }
+        self._floating = GravityCompensation(limits)
+        self._yielding = JointImpedance(limits)
+        self._law: Controller = self._holding[self.settings.controller]
+        self._blend = TorqueBlend(limit_nm=self._limit_nm)
+        self._untold: list[AnyMotionEvent] = []
+        for law in (*self._holding.values(), self._floating):
+            law.initialize(settings=self.settings, inertia_kg_m2=inertia_kg_m2)
+        soft = tuple((_REFLEX_STIFFNESS * nominal_stiffness_nm_rad(limits)).tolist())
+        self._yielding.initialize(settings=ArmSettings(joint_stiffness_nm_rad=soft), inertia_kg_m2=inertia_kg_m2)
+
+    @property
+    def reflex(self) -> bool:
+        """True when the arm has stopped by itself and was not told to recover."""
+        return bool(self._reflex.reason)
+
+    @property
+    def has_unreported_end(self) -> bool:
+        """True while `advance` has something to tell that happened before it."""
+        return bool(self._untold)
+
+    def initialize(self, position: Array, *, reflex: bool = False) -> None:
+        """Hold `position` from now on, stopped by itself or not; whatever ran or was felt is forgotten."""
+        self.motion.initialize(position)
+        self.state.external_nm[:] = 0.0
+        self.state.wrench[:] = 0.0
+        self._load.forget_motion()
+        self._untold.clear()
+        self._reflex.reason = "it had stopped before" if reflex else ""
+        self._law = self._wanted_law()
+        self._blend.forget()
+
+    def configure(self, settings: ArmSettings) -> None:
+        """Put checked settings into force, without a bump; also while something moves."""
+        before, self.settings = self.settings, settings
+        self.tool_xyz_m = np.array(settings.tool_xyz_m)
+        self.motion.pace = settings.speed_override
+        self._reflex.watch(settings)
+        if _shape(before) == _shape(settings):
+            return
+        if (settings.tool_xyz_m, settings.tool_xyzw) != (before.tool_xyz_m, before.tool_xyzw):
+            tool = RigidTransform.of(settings.tool_xyz_m, settings.tool_xyzw)
+            self.state.kinematics = self._kinematics.with_tool(tool)
+        if (settings.load_kg, settings.load_com_m) != (before.load_kg, before.load_com_m):
+            self._load.take(settings)
+        for law in self._holding.values():
+            law.initialize(settings=settings, inertia_kg_m2=self._inertia)
+        self._blend.start(duration_s=_BLEND_S)
+
+    def start(self, number: int, generator: MotionGenerator, tolerance: Tolerance) -> None:
+        """Start a motion; it ends as failed at once when the arm has stopped by itself meanwhile."""
+        if self.reflex:
+            reason = f"the arm has stopped by itself: {self._reflex.reason}"
+            self._untold.append(MotionFinished(motion=number, end=MotionEnd.FAILED.value, progress=0.0, reason=reason))
+            return
+        self.motion.start(number, generator, tolerance)
+
+    def float_with(self, *, damping_share: float) -> None:
+        """Leave this share of the joints' damping to motions that float."""
+        self._floating.damping_share = damping_share
+
+    def recover(self) -> None:
+        """End a reflex: hold where the arm stands."""
+        if not self.reflex:
+            return
+        self._reflex.reason = ""
+        if self.motion.number == 0:
+            self.motion.initialize(self.state.position)
+
+    def measure(self, position: Array, velocity: Array, *, pull_nm: Array, wrench: Array, step_s: float) -> None:
+        """Take what is measured.
+
+        `pull_nm` (n,) is the joint torque of all that is no part of the arm's model, `wrench` (6,) force and
+        torque of it on the tool about the tool centre point, world axes; the load is taken out of both.
+        """
+        state = self.state
+        state.refill(position, velocity)
+        if not self._load.none:
+            self._load.measure(state, step_s)
+            pull_nm = pull_nm - self._load.felt_nm()
+            wrench = wrench - self._load.felt_at(state.tool.xyz)
+        share = 1.0 - math.exp(-2.0 * math.pi * _FELT_HZ * step_s)
+        state.external_nm += share * (pull_nm - state.external_nm)
+        state.wrench += share * (wrench - state.wrench)
+
+    def advance(self, step_s: float) -> list[AnyMotionEvent]:
+        """Move the set point on by one period and return what happened."""
+        events, self._untold = self._untold, []
+        # A hand that leads the arm is no collision.
+        if self.motion.leads and self._reflex.trips(self.state):
+            self.motion.fail(self._reflex.reason)
+            events.append(ReflexTripped(motion=self.motion.number, arm=self.name, reason=self._reflex.reason))
+        events.extend(self.motion.step(step_s, self.state))
+        return events
+
+    def torque(self, feedforward_nm: Array, *, step_s: float) -> Array:
+        """Return the joint torques, (n,), within the limits; reused by the next call.
+
+        `feedforward_nm` is gravity and Coriolis of the arm's model now, and its inertia along the set point.
+        """
+        law = self._wanted_law()
+        if law is not self._law:
+            self._law.terminate()
+            self._law = law
+            self._blend.start(duration_s=_REFLEX_BLEND_S if law is self._yielding else _BLEND_S)
+        bearing_nm = feedforward_nm
+        if not self._load.none:
+            bearing_nm = feedforward_nm + self._load.bearing_nm(self.motion.acceleration)
+        torque = law.step(self.state, self.motion, feedforward_nm=bearing_nm)
+        return self._blend.after(torque, feedforward_nm=feedforward_nm, step_s=step_s)
+
+    def _wanted_law(self) -> Controller:
+        if not self.motion.leads:
+            return self._floating
+        return self._yielding if self.reflex else self._holding[self.settings.controller]
+
+
+def _shape(settings: ArmSettings) -> ArmSettings:
+    """Return `settings` without what does not change the torques of an arm at rest."""
+    return replace(settings, collision_torque_nm=(), collision_force_n=None, speed_override=1.0)

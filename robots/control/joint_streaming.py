@@ -1,0 +1,109 @@
+"""Direct joint control: the set point follows joint angles that arrive at any rate (RCL 4.3.8)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_state import ArmState
+from robots.control.online_trajectory import OnlineTrajectoryGenerator
+from robots.control.setpoint_stream import SetpointStream
+from robots.model.robot_model import JointLimits
+from robots.port import Array
+
+# Values that come farther apart are single targets, not a stream to be joined by lines.
+_LONGEST_PERIOD_S = 0.1
+_PERIOD_SMOOTHING = 0.2
+# The way to a value takes this many periods, so that a late next one makes no stop.
+_PERIODS = 1.5
+_LEAST_LAG_STEPS = 2.0
+_STANDS_RAD_S = 1e-4
+_BEYOND_RAD = 1e-6
+
+
+class JointStreamGenerator(SetpointStream):
+    """A stream of joint angles, (n,), rad.
+
+    Values that keep coming are joined by straight lines, so the set point follows them smoothly
+    one and a half periods later; single values are gone to as fast as allowed. Angles beyond a
+    limit are taken as the limit, which `warning` remembers.
+
+    Args:
+        limits: Of the joints.
+        joints: Their names, for the warning.
+        start: The arm's set point, at rest, (n,), rad.
+        watchdog_s: Longest silence before it comes to rest.
+    """
+
+    def __init__(self, *, limits: JointLimits, joints: tuple[str, ...], start: Array, watchdog_s: float) -> None:
+        super().__init__(
+            shaper=OnlineTrajectoryGenerator(limits=limits, start=start), values=len(start), watchdog_s=watchdog_s
+        )
+        self._joints = joints
+        self._from = self.position.copy()
+        self._reference = self.position.copy()
+        self._smoothed = self.position.copy()
+        self._rate = np.zeros(len(start))
+        self._rise = np.zeros(len(start))
+        self._period_s = 0.0
+        self._since_s = 0.0
+        self.warning = ""
+
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
+        """Take where to go from now on; the watchdog counts from when it was said, `age_s` ago."""
+        gap_s = self._silence_s
+        self._remember_clipping(values)
+        super().receive(np.clip(values, self._shaper.lower_rad, self._shaper.upper_rad), age_s=age_s)
+        if gap_s > min(_LONGEST_PERIOD_S, self._watchdog_s):
+            self._period_s = 0.0
+        elif self._period_s == 0.0:
+            self._period_s = gap_s
+            self._start_here()
+        elif gap_s > 0.0:
+            self._period_s += _PERIOD_SMOOTHING * (gap_s - self._period_s)
+        self._from[:] = self._reference
+        self._since_s = 0.0
+
+    def data(self) -> bytes:
+        """The warning as UTF-8 text; empty when nothing was beyond a limit."""
+        return self.warning.encode()
+
+    def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
+        self._since_s += step_s
+        way_s = _PERIODS * self._period_s
+        share = self._since_s / way_s if self._since_s < way_s else 1.0
+        self._reference = self._from + share * (self._told - self._from)
+        self._smooth(self._reference, step_s)
+        shaper = self._shaper
+        if way_s == 0.0 or float(np.abs(self._rate).max()) < _STANDS_RAD_S:
+            shaper.go_to(step_s, position=self._told, pace=pace)
+        else:
+            shaper.track(step_s, position=self._smoothed, velocity=self._rate, acceleration=self._rise, pace=pace)
+
+    def _smooth(self, reference: Array, step_s: float) -> None:
+        """Let the smoothed reference follow by the exact step of a critically damped filter."""
+        lag_s = max(self._period_s / 2.0, _LEAST_LAG_STEPS * step_s)
+        decay = np.exp(-step_s / lag_s)
+        error = self._smoothed - reference
+        slope = self._rate + error / lag_s
+        later = error + slope * step_s
+        self._smoothed = reference + later * decay
+        before = self._rate
+        self._rate = (slope - later / lag_s) * decay
+        self._rise = (self._rate - before) / step_s
+
+    def _rest(self, step_s: float) -> None:
+        super()._rest(step_s)
+        self._start_here()
+
+    def _start_here(self) -> None:
+        """Let the line to the next values begin where the set point is."""
+        self._reference = self.position.copy()
+        self._smoothed = self.position.copy()
+        self._rate = self.velocity.copy()
+
+    def _remember_clipping(self, values: Array) -> None:
+        beyond = np.maximum(values - self._shaper.upper_rad, self._shaper.lower_rad - values)
+        worst = int(np.argmax(beyond))
+        if not self.warning and beyond[worst] > _BEYOND_RAD:
+            limit = self._shaper.upper_rad if values[worst] > self.position[worst] else self._shaper.lower_rad
+            self.warning = f"{self._joints[worst]} was told {values[worst]:.3f} rad and kept at {limit[worst]:.3f} rad"

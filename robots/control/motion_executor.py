@@ -1,0 +1,249 @@
+"""One arm's motions over time: let a generator lead, hold, resume, cancel, finish, and judge how it ended."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.control.arm_state import ArmState
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed
+from robots.control.motion_generator import MotionGenerator, StreamGenerator
+from robots.port import Array, MotionEnd, Tolerance
+
+_REST_RAD_S = 0.01
+_REST_S = 0.02
+# An arm that failed gives way to where it is, within this time, so that it presses on nothing.
+_GIVE_WAY_S = 0.1
+_STILL_MOVING_AFTER_S = 3.0
+
+
+@dataclass(kw_only=True)
+class _ActiveMotion:
+    """The motion under way."""
+
+    number: int
+    generator: MotionGenerator
+    tolerance: Tolerance
+    ending: MotionEnd | None = None
+    reason: str = ""
+    stop_cause: str = ""
+    hold: bool = False
+    finishing: bool = False
+    request: int = 0
+    told_held: bool = False
+    tell_resumed: bool = False
+    waited_s: float = 0.0
+
+
+class MotionExecutor:
+    """The set point of one arm; without a motion it stays where it is.
+
+    `position`, `velocity` and `acceleration` are the set point, shape (n,); call `step` once per
+    control period with the measured arm. `pace` is the share of its own speed that every motion runs at.
+    """
+
+    def __init__(self, *, joints: tuple[str, ...], touching: Callable[[], str]) -> None:
+        self._joints = joints
+        self._touching = touching
+        self._following: _ActiveMotion | None = None
+        self._rest_s = 0.0
+        self.pace = 1.0
+        self._give_way: tuple[Array, Array, float] | None = None
+        self.position = np.zeros(len(joints))
+        self.velocity = np.zeros(len(joints))
+        self.acceleration = np.zeros(len(joints))
+
+    def initialize(self, position: Array) -> None:
+        """Hold `position` from now on; whatever ran is forgotten."""
+        self._following, self._give_way, self._rest_s = None, None, 0.0
+        self.position[:] = position
+        self._stand_still()
+
+    @property
+    def number(self) -> int:
+        """The motion under way, 0 when there is none."""
+        return self._following.number if self._following else 0
+
+    @property
+    def progress(self) -> float:
+        """Share of the present trajectory's time passed; 1 when there is none."""
+        return self._following.generator.progress if self._following else 1.0
+
+    @property
+    def leads(self) -> bool:
+        """False while the set point follows the arm and not the arm the set point."""
+        following = self._following
+        return following is None or self._give_way is not None or following.generator.leads
+
+    def start(self, number: int, generator: MotionGenerator, tolerance: Tolerance) -> None:
+        """Start a motion; the generator starts at the set point and no other motion is under way."""
+        self._following = _ActiveMotion(number=number, generator=generator, tolerance=tolerance)
+
+    def fail(self, reason: str) -> None:
+        """End whatever runs as failed: it brakes on its path and gives way."""
+        following = self._following
+        if following and following.ending is not MotionEnd.FAILED:
+            following.ending, following.reason, following.waited_s = MotionEnd.FAILED, reason, 0.0
+
+    def tell(self, number: int, values: Array, *, age_s: float = 0.0) -> None:
+        """Pass on what a stream was told `age_s` ago; ignored where there is no such stream."""
+        following = self._following
+        if following and following.number == number and isinstance(following.generator, StreamGenerator):
+            following.generator.receive(values, age_s=age_s)
+
+    def finish(self, number: int) -> None:
+        """Bring a stream to rest and end it as reached, also one that is held: it need not be resumed for that."""
+        following = self._following
+        if following and following.number == number and isinstance(following.generator, StreamGenerator):
+            following.generator.finish()
+            following.finishing, following.hold = True, False
+
+    def hold(self, number: int, *, request: int = 0) -> None:
+        """Decelerate on the path; what is finishing comes to rest anyway, and ends."""
+        following = self._following
+        if following and following.number == number and not following.finishing:
+            following.hold, following.told_held, following.tell_resumed = True, False, False
+            following.request = request
+
+    def resume(self, number: int, *, request: int = 0) -> None:
+        """Go on along the path."""
+        following = self._following
+        if following and following.number == number:
+            following.hold, following.tell_resumed, following.request = False, True, request
+
+    def cancel(self, number: int) -> None:
+        """Decelerate on the path, then end as canceled."""
+        if self._following and self._following.number == number and self._following.ending is None:
+            self._following.ending = MotionEnd.CANCELED
+
+    def stop(self, cause: str = "") -> None:
+        """Cancel whatever runs; with a `cause` it ends as failed with that. The set point is held."""
+        following = self._following
+        if following and following.ending is None:
+            following.ending, following.stop_cause = MotionEnd.CANCELED, cause
+
+    def step(self, step_s: float, state: ArmState) -> tuple[AnyMotionEvent, ...]:
+        """Move the set point on by one period and return what happened."""
+        position = state.position
+        at_rest = self._measure_rest(step_s, state.velocity)
+        following = self._following
+        if following is None:
+            return ()
+        if self._give_way is not None:
+            self._yield(step_s)
+        else:
+            target = 0.0 if following.hold or following.ending is not None else self.pace
+            following.generator.step(step_s, target_pace=target, state=state)
+            self._take(following.generator)
+            if following.generator.failure:
+                self.fail(following.generator.failure)
+            self._check_path(following, position)
+        return self._judge(following, step_s, position, at_rest)
+
+    def _measure_rest(self, step_s: float, velocity: Array) -> bool:
+        self._rest_s = self._rest_s + step_s if np.maximum.reduce(np.abs(velocity)) < _REST_RAD_S else 0.0
+        return self._rest_s >= _REST_S
+
+    def _take(self, generator: MotionGenerator) -> None:
+        self.position[:] = generator.position
+        self.velocity[:] = generator.velocity
+        self.acceleration[:] = generator.acceleration
+
+    def _stand_still(self) -> None:
+        self.velocity[:] = 0.0
+        self.acceleration[:] = 0.0
+
+    def _check_path(self, following: _ActiveMotion, position: Array) -> None:
+        if following.ending is MotionEnd.FAILED or not following.generator.leads:
+            return
+        error = np.abs(self.position - position)
+        worst = int(error.argmax())
+        if error[worst] > following.tolerance.path_rad:
+            following.ending = MotionEnd.FAILED
+            following.reason = self._reason(worst, float(error[worst]), "behind its set point")
+
+    def _reason(self, joint: int, error_rad: float, what: str) -> str:
+        contact = self._touching()
+        return f"{self._joints[joint]} is {error_rad:.3f} rad {what}" + (f"; {contact}" if contact else "")
+
+    def _judge(
+        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        generator = following.generator
+        if following.tell_resumed and generator.moving:
+            following.tell_resumed = False
+            return (MotionResumed(motion=following.number, request=following.request),)
+        if not generator.stopped:
+            return ()
+        if following.ending is not None:
+            return self._end_when_at_rest(following, step_s, position, at_rest)
+        if following.hold:
+            if not at_rest or following.told_held:
+                return ()
+            following.told_held = True
+            return (MotionHeld(motion=following.number, request=following.request),)
+        return self._settle(following, step_s, position, at_rest) if generator.complete else ()
+
+    def _settle(
+        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        goal = following.generator.goal
+        error = np.abs((position if goal is None else goal) - position)
+        worst = int(np.argmax(error))
+        if at_rest and error[worst] <= following.tolerance.goal_rad:
+            return self._finish(following, MotionEnd.REACHED, "")
+        following.waited_s += step_s
+        if following.waited_s >= following.tolerance.settle_s:
+            following.ending, following.waited_s = MotionEnd.FAILED, 0.0
+            moving = "" if at_rest else " and still moving"
+            settle = f"away from the goal{moving} after {following.tolerance.settle_s:g} s"
+            following.reason = self._reason(worst, float(error[worst]), settle)
+        return ()
+
+    def _end_when_at_rest(
+        self, following: _ActiveMotion, step_s: float, position: Array, at_rest: bool
+    ) -> tuple[AnyMotionEvent, ...]:
+        ending = following.ending or MotionEnd.CANCELED
+        if ending is MotionEnd.FAILED and self._give_way is None:
+            self._give_way = (self.position.copy(), position.copy(), 0.0)
+            return ()
+        following.waited_s += step_s
+        if self._give_way is not None and self._give_way[2] < 1.0:
+            return ()
+        if at_rest:
+            if following.stop_cause and not following.reason:
+                return self._finish(following, MotionEnd.FAILED, following.stop_cause)
+            return self._finish(following, ending, following.reason)
+        if following.waited_s >= _STILL_MOVING_AFTER_S:
+            why = following.reason or following.stop_cause
+            reason = (why + "; " if why else "") + "the arm does not come to rest"
+            return self._finish(following, MotionEnd.FAILED, reason, at_rest=False)
+        return ()
+
+    def _yield(self, step_s: float) -> None:
+        assert self._give_way is not None
+        start, target, share = self._give_way
+        share = min(1.0, share + step_s / _GIVE_WAY_S)
+        self._give_way = (start, target, share)
+        self.position[:] = start + share * (target - start)
+        self._stand_still()
+
+    def _finish(
+        self, following: _ActiveMotion, end: MotionEnd, reason: str, *, at_rest: bool = True
+    ) -> tuple[AnyMotionEvent, ...]:
+        self._following, self._give_way = None, None
+        self._stand_still()
+        generator = following.generator
+        return (
+            MotionFinished(
+                motion=following.number,
+                end=end.value,
+                progress=generator.progress,
+                reason=reason,
+                contact=generator.contact,
+                data=generator.data(),
+                at_rest=at_rest,
+            ),
+        )

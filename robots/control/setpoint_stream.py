@@ -1,0 +1,103 @@
+"""What all streams share: they listen, fall silent, are held, and come to rest to finish."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_state import ArmState
+from robots.control.online_trajectory import OnlineTrajectoryGenerator
+from robots.port import Array
+
+
+class SetpointStream:
+    """A stream generator without its meaning: `_go` says what to do with what was told last.
+
+    It comes to rest within the limits when it is held, when nothing was told for longer than
+    `watchdog_s`, and to finish; after a silence it goes on with the next value.
+    `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
+
+    Args:
+        shaper: The set point, where the arm's is now.
+        values: How many numbers it is told at a time.
+        watchdog_s: Longest silence.
+    """
+
+    def __init__(self, *, shaper: OnlineTrajectoryGenerator, values: int, watchdog_s: float) -> None:
+        self._shaper = shaper
+        self._watchdog_s = watchdog_s
+        self._told = np.zeros(values)
+        self._silence_s = np.inf
+        self._finishing = False
+        self._held = False
+        self.position = shaper.position
+        self.velocity = shaper.velocity
+        self.acceleration = shaper.acceleration
+
+    @property
+    def stopped(self) -> bool:
+        """True when the set point stands still."""
+        return self._shaper.at_rest
+
+    @property
+    def moving(self) -> bool:
+        """True unless it is held: a stream is under way even while it is told to stand still."""
+        return not self._held
+
+    @property
+    def complete(self) -> bool:
+        """True when it was finished and has come to rest."""
+        return self._finishing and self.stopped
+
+    @property
+    def contact(self) -> bool:
+        """False: it ends when it is told to."""
+        return False
+
+    @property
+    def progress(self) -> float:
+        """0 until it is complete, then 1: a stream has no length."""
+        return 1.0 if self.complete else 0.0
+
+    @property
+    def goal(self) -> Array | None:
+        """None: it may end anywhere."""
+        return None
+
+    @property
+    def leads(self) -> bool:
+        """True: the arm follows."""
+        return True
+
+    @property
+    def failure(self) -> str:
+        """Empty: it can always come to rest."""
+        return ""
+
+    def receive(self, values: Array, *, age_s: float = 0.0) -> None:
+        """Take what to do from now on; the watchdog counts from when it was said, `age_s` ago."""
+        self._told[:] = values
+        self._silence_s = age_s
+
+    def finish(self) -> None:
+        """Come to rest, and be complete then."""
+        self._finishing = True
+
+    def step(self, step_s: float, *, target_pace: float, state: ArmState) -> None:
+        """Move the set point on by `step_s` of real time; speeds are limited to `target_pace` of their own."""
+        silent = self._silence_s > self._watchdog_s
+        self._silence_s += step_s
+        self._held = target_pace == 0.0
+        if self._held or self._finishing or silent:
+            self._rest(step_s)
+        else:
+            self._go(step_s, pace=target_pace, state=state)
+
+    def data(self) -> bytes:
+        """Nothing is recorded."""
+        return b""
+
+    def _rest(self, step_s: float) -> None:
+        self._shaper.brake(step_s)
+
+    def _go(self, step_s: float, *, pace: float, state: ArmState) -> None:
+        raise NotImplementedError

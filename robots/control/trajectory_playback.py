@@ -1,0 +1,195 @@
+"""Passage along a trajectory with time scaling: it may slow down, stop and go on, never leave the path."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.errors import RobotError
+from robots.control.arm_state import ArmState
+from robots.port import Array, JointTrajectory
+
+SHORTEST_STOP_S = 0.1
+"""The passage starts or stops in at least this time, so that slow motions do not stop with a jerk."""
+
+# Stopping uses this share of the joints' acceleration; the rest is left to tracking.
+_ACCELERATION_SHARE = 0.9
+_SLOW = 1e-9
+
+
+class TrajectoryPlayback:
+    """Where on a trajectory the set point is; s is the trajectory's own time, ṡ = 1 is its own pace.
+
+    `position`, `velocity` and `acceleration` are the set point now, shape (n,), reused by `step`.
+
+    Args:
+        trajectory: The path over time, from rest to rest.
+        acceleration_rad_s2: Limits of the joints, (n,).
+        shortest_stop_s: Least time from the trajectory's own pace to a stop; it makes slow stops gentle.
+    """
+
+    def __init__(
+        self, trajectory: JointTrajectory, *, acceleration_rad_s2: Array, shortest_stop_s: float = SHORTEST_STOP_S
+    ) -> None:
+        self._shortest_stop_s = shortest_stop_s
+        from robots.control import kernels
+
+        # Copied: what came over a wire is read-only, which the compiled function does not take.
+        self._points = np.array(trajectory.position_rad, dtype=np.float64, order="C")
+        self._slopes = np.array(trajectory.velocity_rad_s, dtype=np.float64, order="C")
+        self._pass_along = kernels.interpolate_setpoint
+        self._dt_s = trajectory.dt_s
+        self._acceleration = acceleration_rad_s2 * _ACCELERATION_SHARE
+        self.duration_s = trajectory.duration_s
+        self.passed_s = 0.0
+        self.pace = 1.0
+        self.position = self._points[0].copy()
+        self.velocity = np.zeros_like(self.position)
+        self.acceleration = np.zeros_like(self.position)
+
+    @property
+    def at_end(self) -> bool:
+        """True when the whole path is passed."""
+        return self.passed_s >= self.duration_s
+
+    @property
+    def stopped(self) -> bool:
+        """True when the passage stands still, on the way or at the end."""
+        return self.pace == 0.0 or self.at_end
+
+    @property
+    def moving(self) -> bool:
+        """True when the passage is under way, or over."""
+        return self.pace > 0.0 or self.at_end
+
+    @property
+    def complete(self) -> bool:
+        """True when the whole path is passed."""
+        return self.at_end
+
+    @property
+    def contact(self) -> bool:
+        """False: it ends at its goal only."""
+        return False
+
+    @property
+    def leads(self) -> bool:
+        """True: the arm follows."""
+        return True
+
+    @property
+    def failure(self) -> str:
+        """Empty: a path can always be passed along."""
+        return ""
+
+    @property
+    def progress(self) -> float:
+        """Share of the trajectory's time passed, 0 to 1."""
+        return self.passed_s / self.duration_s if self.duration_s > 0.0 else 1.0
+
+    @property
+    def goal(self) -> Array | None:
+        """The configuration at the end, shape (n,)."""
+        return self._points[-1]
+
+    def data(self) -> bytes:
+        """Nothing is recorded."""
+        return b""
+
+    def step(self, step_s: float, *, target_pace: float, state: ArmState | None = None) -> None:
+        """Pass on by `step_s` of real time, changing the pace towards `target_pace` (0 to 1) as fast as allowed."""
+        if self.passed_s == 0.0:
+            # It starts at rest, where the pace may be anything.
+            self.pace = target_pace
+        change = 0.0
+        if self.pace != target_pace:
+            change = self._pace_change(*self._derivatives(), target_pace)
+            reached = self.pace + change * step_s
+            if (reached - target_pace) * (self.pace - target_pace) <= 0.0:
+                reached = target_pace
+            change = (reached - self.pace) / step_s
+            middle, self.pace = (self.pace + reached) / 2.0, reached
+            self.passed_s = min(self.passed_s + middle * step_s, self.duration_s)
+        else:
+            self.passed_s = min(self.passed_s + self.pace * step_s, self.duration_s)
+        self._set_point(change)
+
+    def _pace_change(self, slope: Array, curvature: Array, target: float) -> float:
+        """Return s̈ towards the target so that no joint's p″ṡ² + p′s̈ exceeds its acceleration."""
+        fastest = 1.0 / self._shortest_stop_s
+        moving = np.abs(slope) > _SLOW
+        if not moving.any():
+            return fastest if target > self.pace else -fastest
+        direction = np.sign(slope[moving])
+        along = curvature[moving] * direction * self.pace**2
+        room = self._acceleration[moving]
+        speed = np.abs(slope[moving])
+        if target > self.pace:
+            return max(0.0, min(fastest, float(np.min((room - along) / speed))))
+        return min(0.0, max(-fastest, float(np.max((-room - along) / speed))))
+
+    def located(self) -> tuple[int, float]:
+        """Return the sample before the set point, and the share of the way to the next one, 0 to 1."""
+        last = len(self._points) - 2
+        index = min(int(self.passed_s / self._dt_s), last)
+        return index, self.passed_s / self._dt_s - index
+
+    def _derivatives(self) -> tuple[Array, Array]:
+        """Return p′ and p″ by the trajectory's own time."""
+        if self.at_end:
+            return np.zeros_like(self.position), np.zeros_like(self.position)
+        index, u = self.located()
+        h = self._dt_s
+        p0, p1, v0, v1 = self._points[index], self._points[index + 1], self._slopes[index], self._slopes[index + 1]
+        rise = (p1 - p0) / h
+        slope = (6 * u - 6 * u * u) * rise + (1 - 4 * u + 3 * u * u) * v0 + (3 * u * u - 2 * u) * v1
+        curvature = ((6 - 12 * u) * rise + (6 * u - 4) * v0 + (6 * u - 2) * v1) / h
+        return slope, curvature
+
+    def _set_point(self, pace_change: float) -> None:
+        if self.at_end:
+            self.position[:] = self._points[-1]
+            self.velocity[:] = 0.0
+            self.acceleration[:] = 0.0
+            return
+        index, u = self.located()
+        self._pass_along(
+            self._points,
+            self._slopes,
+            index,
+            u,
+            self._dt_s,
+            self.pace,
+            self.pace**2,
+            pace_change,
+            self.position,
+            self.velocity,
+            self.acceleration,
+        )
+
+
+def validate_trajectory(trajectory: JointTrajectory, *, start_rad: Array, joints: tuple[str, ...]) -> JointTrajectory:
+    """Return `trajectory` if an arm at the set point `start_rad` can follow it.
+
+    Raises:
+        RobotError: wrong shape, a number that is not finite, or it does not start at the set point at rest.
+    """
+    position, velocity = np.asarray(trajectory.position_rad), np.asarray(trajectory.velocity_rad_s)
+    if position.ndim != 2 or position.shape != velocity.shape or position.shape[1] != len(joints) or len(position) < 2:
+        raise RobotError(
+            f"positions {position.shape} and velocities {velocity.shape} are no trajectory for {len(joints)} joints",
+            hint="give at least two samples, one column per joint",
+        )
+    if not (np.isfinite(position).all() and np.isfinite(velocity).all() and trajectory.dt_s > 0.0):
+        raise RobotError("the trajectory has numbers that are not finite, or dt_s is not positive")
+    gap = np.abs(position[0] - start_rad)
+    worst = int(np.argmax(gap))
+    if gap[worst] > 0.01:
+        raise RobotError(
+            f"the trajectory starts {gap[worst]:.3f} rad from the set point of {joints[worst]}",
+            hint="plan from ArmSample.desired_rad",
+        )
+    if np.abs(velocity[[0, -1]]).max() > 0.01:
+        raise RobotError(
+            "the trajectory does not start and end at rest", hint="its first and last velocities must be 0"
+        )
+    return trajectory

@@ -1,0 +1,48 @@
+"""Whether a gripper holds what it was told to grasp, judged from pads, opening and force, and in words why not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robots.port import GripperSample
+
+# In motion the force on the pads swings about what was commanded.
+FORCE_SHARE = 0.5
+_UNKNOWN = "?"
+
+
+@dataclass(frozen=True, kw_only=True)
+class GraspCommand:
+    """What was told to be grasped: the least and greatest opening, metres, and the force, newton."""
+
+    least_m: float
+    most_m: float
+    force_n: float
+
+
+def check_grasp(sample: GripperSample, grip: GraspCommand) -> str:
+    """Return why nothing is held, empty when something is."""
+    left, right = sample.contacts
+    width = _millimetres(sample.width_m)
+    if not left and not right:
+        return f"fingers closed to {width} and touch nothing"
+    if not left or not right:
+        side, body = ("left", left) if left else ("right", right)
+        return f"only the {side} pad touches {_name(body)}, fingers at {width}"
+    if left != right and _UNKNOWN not in (left, right):
+        return f"the pads touch different things, {left} and {right}"
+    if not grip.least_m <= sample.width_m <= grip.most_m:
+        bounds = f"{_millimetres(grip.least_m)} to {_millimetres(grip.most_m)}"
+        return f"the fingers stopped at {width} on {_name(left)}, expected {bounds}"
+    if sample.force_n < FORCE_SHARE * grip.force_n:
+        return f"the pads press with {sample.force_n:.1f} N on {_name(left)}, expected {grip.force_n:.1f} N"
+    return ""
+
+
+def _name(body: str) -> str:
+    return "something" if body == _UNKNOWN else body
+
+
+def _millimetres(length_m: float) -> str:
+    # Pads give a little under force: an opening just below zero is closed.
+    return f"{max(0.0, length_m) * 1e3:.1f} mm"

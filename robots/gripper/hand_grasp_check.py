@@ -1,0 +1,41 @@
+"""Whether a hand holds something, judged from what thumb, fingers and palm touch, and in words why not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from robots.port import HandSample
+
+_UNKNOWN = "?"
+_OPEN_SHARE = 0.01
+# Fingers that merely touch take hardly more than closing on nothing.
+_PRESSES_SHARE = 0.03
+
+
+@dataclass(frozen=True, kw_only=True)
+class HandGrasp:
+    """What is held: a body's name, `?` for unknown, empty for nothing, and then `reason` says why."""
+
+    part: str = ""
+    reason: str = ""
+
+
+def check_hand_grasp(sample: HandSample, *, max_force_n: float) -> HandGrasp:
+    """Return what a hand holds: what at least one finger presses against the thumb or the palm."""
+    closed = f"{100.0 * sample.closed_share:.0f} %"
+    if sample.closed_share <= _OPEN_SHARE:
+        return HandGrasp(reason="the hand is open")
+    if not any(sample.contacts):
+        return HandGrasp(reason=f"the hand closed to {closed} and touches nothing")
+    thumb, *fingers, palm = sample.contacts
+    known = tuple(dict.fromkeys(body for body in sample.contacts if body and body != _UNKNOWN))
+    words = " and ".join(known) or "something"
+    if not any(fingers):
+        return HandGrasp(reason=f"only {'the thumb' if thumb else 'the palm'} touches {words}, at {closed}")
+    if sample.force_n < _PRESSES_SHARE * max_force_n:
+        return HandGrasp(reason=f"the hand touches {words} at {closed} and presses with {sample.force_n:.1f} N only")
+    for body in known or (_UNKNOWN,):
+        meant = (body, _UNKNOWN)
+        if (thumb in meant or palm in meant) and any(finger in meant for finger in fingers):
+            return HandGrasp(part=body)
+    return HandGrasp(reason=f"the fingers touch {words} at {closed}, thumb and palm do not hold against")

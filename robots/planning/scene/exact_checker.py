@@ -1,0 +1,273 @@
+"""Tells exactly what an arm touches in a planning scene: convex shapes, all links, held parts and obstacles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from copy import copy
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from robots.model.transform import RigidTransform
+from robots.planning.scene.allowed_collisions import allowed_collision_matrix
+from robots.planning.scene.arm_shapes import arm_shapes
+from robots.planning.scene.coal_shapes import corners_of, pin, placement
+from robots.planning.scene.motion_bound import motion_bound
+from robots.planning.scene.pair_checks import PairChecks
+from robots.planning.scene.planning_scene import OCCUPANCY, AttachedPart, NamePair, PlanningScene
+from robots.planning.scene.shape_cache import CachedShape, cached_shape
+from robots.planning.scene.static_scene import ArmInScene, PlacedSolid, arm_in_scene, held_frame
+from robots.planning.scene.voxels import Voxels
+from robots.port import Array
+
+_STEP_SHARE, _LEAST_STEP_M, _MOST_STEP_M = 0.016, 0.01, 0.04
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clearance:
+    """The smallest distance of two things that must not touch (0 or less where they do), and their names."""
+
+    distance_m: float
+    pair: NamePair
+
+
+@dataclass(frozen=True, kw_only=True)
+class PathCollision:
+    """Where a way first touches: after waypoint `segment`, at `share` of the way to the next, at `joints` (n,)."""
+
+    segment: int
+    share: float
+    joints: Array
+    pairs: tuple[NamePair, ...]
+
+
+class CollisionQuery(Protocol):
+    """What tells whether, and what, an arm touches: a checker, or one that lets it leave from where it is too near."""
+
+    def in_collision(self, joints: Array) -> bool:
+        """Return whether anything touches at `joints`, shape (n,)."""
+        ...
+
+    def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
+        """Return the names of all pairs that touch at `joints`, shape (n,), each once."""
+        ...
+
+
+class ExactChecker:
+    """One arm of a scene against itself, what it holds and everything else.
+
+    Shapes are those of the URDF, meshes as their convex hulls. What cannot move against each other is
+    not looked at. It holds the interpreter lock while it works and serves one thread at a time.
+
+    Args:
+        scene: The scene; later changes need another checker (a millisecond).
+        arm: Name of the arm that moves.
+        margin_m: Nearer than this counts as touching an obstacle or another arm; the arm itself has no margin.
+        among: What `arm_in_scene` returns for them, if that is known already.
+
+    Raises:
+        CellError: there is no such arm, or a shape or model is wrong.
+    """
+
+    def __init__(
+        self, scene: PlanningScene, arm: str, *, margin_m: float = 0.0, among: ArmInScene | None = None
+    ) -> None:
+        among = among or arm_in_scene(scene, arm)
+        self.arm = arm
+        self.scene = scene
+        self.model = among.model
+        self.margin_m = margin_m
+        base = arm_shapes(self.model, among.placed.tool_joints)
+        self._solver = base.solver
+        self._geometry = base.geometry.copy()
+        self._names = [f"{arm}/{link}" for link in base.links]
+        self._world = RigidTransform.from_pose(among.placed.placement.base).inverse()
+        wanted = [(int(pair.first), int(pair.second)) for pair in base.geometry.collisionPairs]
+        wanted += self._attach(among.held)
+        own = len(self._names)
+        self._held = range(len(base.links), own)
+        wanted += self._surround(among.outside)
+        allowed = allowed_collision_matrix(scene, self._names[:own], self._names)
+        pairs = [pair for pair in wanted if not allowed[pair]]
+        self.bound_m = motion_bound(self._solver, self._geometry)
+        self.step_m = min(max(_STEP_SHARE * float(self.bound_m.max()), _LEAST_STEP_M), _MOST_STEP_M)
+        margins = [margin_m if second >= own else 0.0 for _, second in pairs]
+        self._checks = PairChecks(self._solver, self._geometry, self._names, pairs, margins)
+        self._voxels: Voxels | None = None
+        self._seen: PairChecks | None = None
+        self._may_meet: Callable[[Array], bool] = _always
+
+    def seeing(self, voxels: Voxels, *, may_meet: Callable[[Array], bool] | None = None) -> ExactChecker:
+        """Return a checker that has what cameras see as well, under the name `occupancy`; the rest is shared.
+
+        Its octree is made when it is first needed. `may_meet` may say False of configurations (n,) in which surely
+        nothing is nearer to a taken voxel than the margin: an octree takes longer than all the rest.
+        """
+        other = copy(self)
+        other._voxels, other._seen = voxels, None
+        other._may_meet = may_meet or _always
+        return other
+
+    @property
+    def dof(self) -> int:
+        """Number of arm joints n."""
+        return self.model.dof
+
+    @property
+    def first_moving_link(self) -> str:
+        """The link behind the first joint."""
+        frames = self._solver.frames
+        return next(str(f.name) for f in frames if f.parentJoint == 1 and f.type == pin.FrameType.BODY)
+
+    def in_collision(self, joints: Array) -> bool:
+        """Return whether anything touches at `joints`, shape (n,)."""
+        return any(checks.in_collision(joints) for checks in self._checks_at(joints))
+
+    def touches_known_geometry(self, joints: Array) -> bool:
+        """Return whether anything but what cameras see touches at `joints`, shape (n,)."""
+        return self._checks.in_collision(joints)
+
+    def colliding_pairs(self, joints: Array) -> tuple[NamePair, ...]:
+        """Return the names of all pairs that touch at `joints`, shape (n,), each once."""
+        return tuple(pair for checks in self._checks_at(joints) for pair in checks.colliding_pairs(joints))
+
+    @property
+    def looked_at(self) -> frozenset[frozenset[str]]:
+        """The pairs of names that must not touch."""
+        return frozenset(frozenset(pair) for checks in self.checks for pair in checks.pairs)
+
+    def held_points(self, joints: Array) -> Array:
+        """Return the corners of the boxes around everything that the arm holds, at `joints` (n,), shape (points, 3)."""
+        data = self._solver.createData()
+        pin.forwardKinematics(self._solver, data, joints)
+        found = [np.empty((0, 3))]
+        for index in self._held:
+            shape = self._geometry.geometryObjects[index]
+            at = data.oMi[shape.parentJoint] * shape.placement
+            found.append(corners_of(shape.geometry) @ at.rotation.T + at.translation)
+        return np.vstack(found)
+
+    def depth(self, joints: Array, pair: frozenset[str]) -> float:
+        """Return how deep two things, by name, are in one another at `joints`, shape (n,), metres; negative apart."""
+        return -min(
+            (
+                float(distance)
+                for checks in self.checks
+                for one, distance in zip(checks.pairs, checks.distances(joints), strict=True)
+                if frozenset(one) == pair
+            ),
+            default=math.inf,
+        )
+
+    def clearance(self, joints: Array) -> Clearance:
+        """Return the smallest distance of a pair that must not touch, at `joints` (n,); the margin is not in it."""
+        found = Clearance(distance_m=math.inf, pair=("", ""))
+        for checks in self.checks:
+            distances = checks.distances(joints)
+            if len(distances) and float(distances.min()) < found.distance_m:
+                nearest = int(np.argmin(distances))
+                found = Clearance(distance_m=float(distances[nearest]), pair=checks.pairs[nearest])
+        return found
+
+    @property
+    def checks(self) -> tuple[PairChecks, ...]:
+        """The pairs that are looked at: those of the scene, and those with what cameras see."""
+        if self._voxels is None:
+            return (self._checks,)
+        if self._seen is None:
+            self._seen = self._octree_checks(self._voxels)
+        return self._checks, self._seen
+
+    def first_collision(
+        self, path: Array, *, step_m: float | None = None, looking: CollisionQuery | None = None
+    ) -> PathCollision | None:
+        """Return where a way of straight joint lines, shape (waypoints, n), first touches something; None if nowhere.
+
+        No point of the arm moves farther than `step_m` between two configurations that are looked at;
+        by default the checker's own `step_m`, 1.6 % of the arm's reach but 1 cm at least and 4 cm at most.
+        `looking` is asked instead of the checker itself, configuration after configuration.
+        """
+        look = looking or self
+        if len(path) and look.in_collision(path[0]):
+            return PathCollision(segment=0, share=0.0, joints=path[0], pairs=look.colliding_pairs(path[0]))
+        for segment in range(len(path) - 1):
+            start, way = path[segment], path[segment + 1] - path[segment]
+            count = self.steps(path[segment], path[segment + 1], step_m=step_m)
+            for i in range(1, count + 1):
+                joints = start + way * (i / count)
+                if look.in_collision(joints):
+                    return PathCollision(
+                        segment=segment, share=i / count, joints=joints, pairs=look.colliding_pairs(joints)
+                    )
+        return None
+
+    def is_edge_free(self, start: Array, end: Array) -> bool:
+        """Return whether the straight joint line touches nothing; `start` is not looked at.
+
+        The end first, then the middle, then ever finer: what is in the way is met early.
+        """
+        count = self.steps(start, end)
+        way = end - start
+        return not any(self.in_collision(start + way * (i / count)) for i in _ever_finer(count))
+
+    def steps(self, start: Array, end: Array, *, step_m: float | None = None) -> int:
+        """Return into how many parts a straight joint line is cut so that no point moves farther than `step_m`."""
+        return max(1, math.ceil(float(np.abs(end - start) @ self.bound_m) / (step_m or self.step_m)))
+
+    def _checks_at(self, joints: Array) -> Iterator[PairChecks]:
+        """Yield what can touch at `joints`: what cameras see only where something may be near it."""
+        yield self._checks
+        if self._voxels is not None and self._may_meet(joints):
+            yield from self.checks[1:]
+
+    def _attach(self, parts: tuple[AttachedPart, ...]) -> list[tuple[int, int]]:
+        pairs: list[tuple[int, int]] = []
+        for part in parts:
+            frame = held_frame(self.model, self._solver, part)
+            own = range(len(self._names))
+            for solid in part.solids:
+                at = frame.placement * placement(
+                    RigidTransform.from_pose(part.pose).then(RigidTransform.from_pose(solid.pose))
+                )
+                index = self._add(part.name, frame.parentJoint, at, cached_shape(solid.shape, part.name))
+                for other in own:
+                    # What moves along with the part, as the tool that holds it, cannot hit it.
+                    if self._geometry.geometryObjects[other].parentJoint != frame.parentJoint:
+                        pairs.append((other, index))
+        return pairs
+
+    def _surround(self, outside: tuple[PlacedSolid, ...]) -> list[tuple[int, int]]:
+        moving = [i for i, g in enumerate(self._geometry.geometryObjects) if g.parentJoint > 0]
+        added = [self._add(solid.name, 0, placement(self._world.then(solid.pose)), solid.ready) for solid in outside]
+        return [(own, index) for index in added for own in moving]
+
+    def _octree_checks(self, voxels: Voxels) -> PairChecks:
+        geometry, names = pin.GeometryModel(), list[str]()
+        for name, shape in zip(self._names, self._geometry.geometryObjects, strict=True):
+            if shape.parentJoint > 0 and not self.scene.may_touch(name, OCCUPANCY):
+                geometry.addGeometryObject(shape)
+                names.append(name)
+        at = placement(self._world.then(voxels.corner))
+        index = int(geometry.addGeometryObject(pin.GeometryObject(OCCUPANCY, 0, at, voxels.octree)))
+        pairs = [(own, index) for own in range(len(names))]
+        return PairChecks(self._solver, geometry, [*names, OCCUPANCY], pairs, [self.margin_m] * len(names))
+
+    def _add(self, name: str, joint: int, at: Any, ready: CachedShape) -> int:
+        self._names.append(name)
+        unique = f"{name}#{len(self._names)}"
+        return int(self._geometry.addGeometryObject(pin.GeometryObject(unique, joint, at, ready.geometry)))
+
+
+def _always(_joints: Array) -> bool:
+    return True
+
+
+def _ever_finer(count: int) -> Iterator[int]:
+    """Yield 1 … `count`: the last first, then halves, quarters, …"""
+    yield count
+    stride = 1 << max(0, (count - 1).bit_length())
+    while stride > 1:
+        yield from range(stride // 2, count, stride)
+        stride //= 2

@@ -1,0 +1,151 @@
+"""The planning scene as plain data: arms where they stand, obstacles, parts in hands, pairs that may touch.
+
+A scene never changes: `with_…` and `without_…` return another one. It can cross a process border by
+msgspec. Things are named `obstacle`, `part` or `arm/link`, what cameras see `occupancy`. Poses of obstacles
+are in the world frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import msgspec
+
+from engine.errors import CellError
+from engine.messages import Pose
+from engine.messages.shapes import AT_ORIGIN, Obstacle, Solid
+from engine.suggestions import did_you_mean
+from robots.sim.scene.sim_scene import ArmPlacement
+
+NamePair = tuple[str, str]
+
+OCCUPANCY = "occupancy"
+"""The name of all that cameras see and nobody knows, in pairs of names."""
+
+
+class AttachedPart(msgspec.Struct, frozen=True, kw_only=True):
+    """A part that moves with a link of an arm, at `pose` in the frame of that link.
+
+    `link` is the tool link where it is empty. What moves along with that link, as the tool does, may
+    touch it; other links and obstacles only where the scene allows it.
+    """
+
+    name: str
+    arm: str
+    solids: tuple[Solid, ...]
+    pose: Pose = AT_ORIGIN
+    link: str = ""
+
+
+class SceneArm(msgspec.Struct, frozen=True, kw_only=True):
+    """An arm in the scene: what it is and where its base stands, where its joints and its tool's joints are.
+
+    `joints_rad` matters when another arm is planned for; home where it is empty. Tool joints that are
+    not named are at 0.
+    """
+
+    placement: ArmPlacement
+    joints_rad: tuple[float, ...] = ()
+    tool_joints: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The arm's name in the cell."""
+        return self.placement.name
+
+
+class PlanningScene(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a motion must not touch, and `allowed`, the pairs of names that may touch."""
+
+    arms: tuple[SceneArm, ...] = ()
+    obstacles: tuple[Obstacle, ...] = ()
+    attached: tuple[AttachedPart, ...] = ()
+    allowed: tuple[NamePair, ...] = ()
+
+    def arm(self, name: str) -> SceneArm:
+        """Return an arm; raises CellError when there is none of that name."""
+        for arm in self.arms:
+            if arm.name == name:
+                return arm
+        raise _unknown("arm", name, [arm.name for arm in self.arms])
+
+    def with_obstacles(self, *obstacles: Obstacle) -> PlanningScene:
+        """Return the scene with these obstacles; each takes the place of one of the same name.
+
+        Raises:
+            CellError: the name is that of an arm, of a part in a hand or of the occupancy.
+        """
+        for obstacle in obstacles:
+            if obstacle.name in {part.name for part in self.attached} | {arm.name for arm in self.arms} | {OCCUPANCY}:
+                raise CellError(f"{obstacle.name} is in the scene already", hint="give the obstacle another name")
+        new = {obstacle.name: obstacle for obstacle in (*self.obstacles, *obstacles)}
+        return msgspec.structs.replace(self, obstacles=tuple(new.values()))
+
+    def without_obstacle(self, name: str) -> PlanningScene:
+        """Return the scene without an obstacle; raises CellError when there is none of that name."""
+        kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != name)
+        if len(kept) == len(self.obstacles):
+            raise _unknown("obstacle", name, [obstacle.name for obstacle in self.obstacles])
+        return msgspec.structs.replace(self, obstacles=kept)
+
+    def with_joints(
+        self, arm: str, joints_rad: Sequence[float], *, tool_joints: dict[str, float] | None = None
+    ) -> PlanningScene:
+        """Return the scene with an arm at these joints; its tool's joints stay unless given.
+
+        Raises:
+            CellError: there is no such arm.
+        """
+        old = self.arm(arm)
+        tool = old.tool_joints if tool_joints is None else tuple(sorted(tool_joints.items()))
+        new = msgspec.structs.replace(old, joints_rad=tuple(float(q) for q in joints_rad), tool_joints=tool)
+        return msgspec.structs.replace(self, arms=tuple(new if a.name == arm else a for a in self.arms))
+
+    def with_attached(self, part: AttachedPart) -> PlanningScene:
+        """Return the scene with a part in a hand; an obstacle of that name is no longer in the way.
+
+        Raises:
+            CellError: there is no such arm, or the arm holds something of that name.
+        """
+        self.arm(part.arm)
+        if part.name in {held.name for held in self.attached} | {arm.name for arm in self.arms}:
+            raise CellError(f"{part.name} is in the scene already", hint="let go of it first")
+        kept = tuple(obstacle for obstacle in self.obstacles if obstacle.name != part.name)
+        return msgspec.structs.replace(self, obstacles=kept, attached=(*self.attached, part))
+
+    def without_attached(self, name: str) -> PlanningScene:
+        """Return the scene without a part in a hand; raises CellError when nobody holds it."""
+        kept = tuple(part for part in self.attached if part.name != name)
+        if len(kept) == len(self.attached):
+            raise _unknown("part in a hand", name, [part.name for part in self.attached])
+        return msgspec.structs.replace(self, attached=kept)
+
+    def with_allowed(self, first: str, second: str) -> PlanningScene:
+        """Return the scene in which two things, by name, may touch."""
+        if _same(first, second) in {_same(*pair) for pair in self.allowed}:
+            return self
+        return msgspec.structs.replace(self, allowed=(*self.allowed, (first, second)))
+
+    def without_allowed(self, first: str, second: str) -> PlanningScene:
+        """Return the scene in which two things, by name, must not touch (any more)."""
+        kept = tuple(pair for pair in self.allowed if _same(*pair) != _same(first, second))
+        return msgspec.structs.replace(self, allowed=kept)
+
+    def may_touch(self, first: str, second: str) -> bool:
+        """Return whether a pair of names is allowed; an arm's name stands for all its links."""
+        for a, b in self.allowed:
+            if (_means(a, first) and _means(b, second)) or (_means(a, second) and _means(b, first)):
+                return True
+        return False
+
+
+def _means(rule: str, name: str) -> bool:
+    return name == rule or name.startswith(rule + "/")
+
+
+def _same(first: str, second: str) -> frozenset[str]:
+    return frozenset((first, second))
+
+
+def _unknown(what: str, name: str, known: list[str]) -> CellError:
+    return CellError(f"no {what} in the planning scene is called {name}", where=name, hint=did_you_mean(name, known))

@@ -1,0 +1,146 @@
+"""What stands still while one arm of a scene moves: obstacles, and the other arms with what they hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine.errors import CellError
+from engine.messages.shapes import Shape
+from robots.model.robot_model import RobotModel
+from robots.model.transform import RigidTransform
+from robots.planning.scene.arm_shapes import arm_shapes
+from robots.planning.scene.coal_shapes import pin, rigid_of
+from robots.planning.scene.planning_scene import AttachedPart, PlanningScene, SceneArm
+from robots.planning.scene.shape_cache import CachedShape, cached_link_shapes, cached_shape
+from robots.port import Array
+from robots.sim.scene.sim_scene import ArmPlacement
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacedSolid:
+    """A convex shape where it stands in the world, under the name that allowed pairs and reports use."""
+
+    name: str
+    ready: CachedShape
+    pose: RigidTransform
+
+    @property
+    def shape(self) -> Shape:
+        """The shape as data."""
+        return self.ready.shape
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmInScene:
+    """One arm of a scene and everything else in it: what both checkers begin with."""
+
+    scene: PlanningScene
+    placed: SceneArm
+    model: RobotModel
+    held: tuple[AttachedPart, ...]
+    outside: tuple[PlacedSolid, ...]
+
+    @property
+    def name(self) -> str:
+        """The arm's name in the cell."""
+        return self.placed.name
+
+
+def arm_in_scene(
+    scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
+) -> ArmInScene:
+    """Return an arm of a scene among the rest; `robot` loads models.
+
+    Raises:
+        CellError: there is no such arm, a model or a shape is wrong, or an arm's joints are not as many as it has.
+    """
+    placed = scene.arm(arm)
+    return ArmInScene(
+        scene=scene,
+        placed=placed,
+        model=robot(placed.placement),
+        held=tuple(part for part in scene.attached if part.arm == arm),
+        outside=static_solids(scene, arm, robot=robot),
+    )
+
+
+def static_solids(
+    scene: PlanningScene, arm: str, *, robot: Callable[[ArmPlacement], RobotModel] = ArmPlacement.robot
+) -> tuple[PlacedSolid, ...]:
+    """Return everything in the scene that is neither `arm` nor held by it.
+
+    Raises:
+        CellError: a model or a shape is wrong, or an arm's joints are not as many as it has.
+    """
+    found = [
+        PlacedSolid(
+            name=obstacle.name,
+            ready=cached_shape(solid.shape, obstacle.name),
+            pose=RigidTransform.from_pose(obstacle.pose).then(RigidTransform.from_pose(solid.pose)),
+        )
+        for obstacle in scene.obstacles
+        for solid in obstacle.solids
+    ]
+    for other in scene.arms:
+        if other.name != arm:
+            held = tuple(part for part in scene.attached if part.arm == other.name)
+            found.extend(_arm_solids(other, robot(other.placement), held))
+    return tuple(found)
+
+
+def joints_of(arm: SceneArm, model: RobotModel) -> Array:
+    """Return where an arm's joints are, shape (n,); raises CellError when they are not as many as it has."""
+    joints = np.array(arm.joints_rad if arm.joints_rad else model.home_rad, dtype=np.float64)
+    if joints.shape != (model.dof,):
+        raise CellError(f"{len(joints)} joints are given", where=arm.name, hint=f"this arm has {model.dof}")
+    return joints
+
+
+def held_frame(model: RobotModel, solver: Any, part: AttachedPart) -> Any:
+    """Return the frame, of pinocchio's model of the arm, that a held part is attached to.
+
+    Raises:
+        CellError: the arm has no such link.
+    """
+    link = part.link or model.tool_link
+    if not solver.existFrame(link):
+        raise CellError(f"the arm has no link {link}", where=part.name, hint="name a link of the URDF")
+    return solver.frames[solver.getFrameId(link)]
+
+
+def _arm_solids(arm: SceneArm, model: RobotModel, held: tuple[AttachedPart, ...]) -> list[PlacedSolid]:
+    shapes = arm_shapes(model, arm.tool_joints)
+    base = RigidTransform.from_pose(arm.placement.base)
+    data = shapes.solver.createData()
+    pin.forwardKinematics(shapes.solver, data, joints_of(arm, model))
+    found = [
+        PlacedSolid(
+            name=f"{arm.name}/{link}",
+            ready=ready,
+            pose=base.then(rigid_of(data.oMi[shape.parentJoint] * shape.placement)),
+        )
+        for link, shape, ready in zip(
+            shapes.links,
+            shapes.geometry.geometryObjects,
+            cached_link_shapes(model, arm.tool_joints),
+            strict=True,
+        )
+    ]
+    for part in held:
+        frame = held_frame(model, shapes.solver, part)
+        at = base.then(rigid_of(data.oMi[frame.parentJoint] * frame.placement)).then(
+            RigidTransform.from_pose(part.pose)
+        )
+        found.extend(
+            PlacedSolid(
+                name=part.name,
+                ready=cached_shape(solid.shape, part.name),
+                pose=at.then(RigidTransform.from_pose(solid.pose)),
+            )
+            for solid in part.solids
+        )
+    return found

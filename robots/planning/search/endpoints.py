@@ -1,0 +1,184 @@
+"""The two ends of a plan: start and goals within limits and free, exactly; or the reason why not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from engine.errors import CellError, RobotError
+from engine.messages import Pose
+from robots.model.inverse_kinematics import InverseKinematicsSolver, PoseMatch
+from robots.model.kinematics import ArmKinematics
+from robots.model.transform import RigidTransform
+from robots.planning.request import JointGoal, PathGoal, PathOrientationConstraint, PlanRefusal, PlanRequest, PoseGoal
+from robots.planning.scene.compiled_problem import FREE, FULL, TILT, CompiledProblem
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.scene.planning_scene import NamePair
+from robots.planning.search.escape import EscapeChecker, escape_configuration
+from robots.planning.search.fast_search import tilt_at, with_room_for
+from robots.planning.search.kernels import tool_rotation
+from robots.port import Array
+
+_MOST_GOALS = 12
+_BEYOND_RAD = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Endpoints:
+    """A start (n,) and goals (k, n), nearest first, that are free; the problem in which the spheres agree to that.
+
+    `lead` (k, n) are the waypoints before the start: that of the arm, where it stands nearer to something than
+    the margin, else none.
+    """
+
+    lead: Array
+    start: Array
+    goals: Array
+    problem: CompiledProblem
+
+
+def check_endpoints(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem) -> Endpoints | PlanRefusal:
+    """Return the ends of a request, or why there is no way between them at all."""
+    start = np.array(request.start_rad, dtype=np.float64)
+    outside = outside_limits(start, problem, checker)
+    if outside:
+        return PlanRefusal(
+            reason="start_outside_limits", message=f"the start: {outside}", hint="move the arm back first"
+        )
+    looking = EscapeChecker(checker, start)
+    if looking.in_collision(start):
+        return _touching(looking.colliding_pairs(start), hint="move the arm free by hand, or allow the pair to touch")
+    if request.keep_orientation is not None:
+        problem = with_upright_tool(problem, start, request.keep_orientation)
+    goals = _goals(request, checker, problem, start)
+    if isinstance(goals, PlanRefusal):
+        return goals
+    lead = np.empty((0, len(start)))
+    if looking.within_margin:
+        out = escape_configuration(checker, problem, start, goals, seed=request.seed)
+        if out is None:
+            pairs = checker.colliding_pairs(start)
+            return _touching(
+                pairs, hint=f"no way out of the margin of {request.margin_m:g} m was found; make it smaller"
+            )
+        lead, start = start[None], out
+    return Endpoints(lead=lead, start=start, goals=goals, problem=with_room_for(problem, np.vstack((start, goals))))
+
+
+def _touching(pairs: tuple[NamePair, ...], *, hint: str) -> PlanRefusal:
+    return PlanRefusal(
+        reason="start_in_collision", message=f"at the start {describe_touching(pairs)}", hint=hint, pairs=pairs
+    )
+
+
+def _goals(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array) -> Array | PlanRefusal:
+    found = _wanted(request, checker, problem, start)
+    if isinstance(found, PlanRefusal):
+        return found
+    free: list[Array] = []
+    pairs: tuple[NamePair, ...] = ()
+    tilt = np.inf
+    for joints in found[np.argsort(np.abs(found - start).max(axis=1), kind="stable")]:
+        if problem.orientation != FREE:
+            turned = tilt_at(problem, joints)
+            tilt = min(tilt, turned)
+            if turned > problem.tolerance:
+                continue
+        if not checker.in_collision(joints):
+            free.append(joints)
+            if len(free) == _MOST_GOALS:
+                break
+        elif not pairs:
+            pairs = checker.colliding_pairs(joints)
+    if free:
+        return np.array(free)
+    if pairs:
+        return PlanRefusal(
+            reason="goal_in_collision",
+            message=f"at the goal {describe_touching(pairs)}"
+            + (f" (and at {len(found) - 1} more)" if len(found) > 1 else ""),
+            hint="choose another goal, or allow the pair to touch",
+            pairs=pairs,
+        )
+    return PlanRefusal(
+        reason="goal_unreachable",
+        message=f"at the goal the tool is turned by {tilt:.3f} rad, {problem.tolerance:g} are allowed on the way",
+        hint="start with the tool as it is at the goal",
+    )
+
+
+def _wanted(request: PlanRequest, checker: ExactChecker, problem: CompiledProblem, start: Array) -> Array | PlanRefusal:
+    """Return the configurations (k, n) that are a goal, within the limits."""
+    match request.goal:
+        case PathGoal():
+            raise ValueError("a given way has no ends to be looked for")
+        case JointGoal(joints_rad=rows):
+            kept: list[Array] = []
+            reason = "no goal is given"
+            for row in rows:
+                joints = np.array(row, dtype=np.float64)
+                outside = outside_limits(joints, problem, checker)
+                if outside:
+                    reason = outside
+                else:
+                    kept.append(joints)
+            if kept:
+                return np.array(kept)
+            return PlanRefusal(reason="goal_outside_limits", message=f"the goal: {reason}", hint="choose another goal")
+        case PoseGoal(pose=pose, match=match):
+            return _solutions(request, checker, pose, PoseMatch[match.upper()], start)
+
+
+def _solutions(
+    request: PlanRequest, checker: ExactChecker, pose: Pose, match: PoseMatch, start: Array
+) -> Array | PlanRefusal:
+    base = RigidTransform.from_pose(request.scene.arm(request.arm).placement.base)
+    tool = RigidTransform.from_pose(request.tool) if request.tool is not None else None
+    inverse = InverseKinematicsSolver(ArmKinematics(checker.model, base=base, tool=tool))
+    try:
+        return inverse.all_solutions(RigidTransform.from_pose(pose), seed=start, match=match).joints
+    except (RobotError, ValueError) as error:
+        message = error.message if isinstance(error, RobotError) else str(error)
+        hint = error.hint or "" if isinstance(error, RobotError) else ""
+        return PlanRefusal(reason="goal_unreachable", message=message, hint=hint)
+
+
+def with_upright_tool(problem: CompiledProblem, start: Array, wish: PathOrientationConstraint) -> CompiledProblem:
+    """Return the problem in which the tool keeps the orientation that it has at `start` (n,)."""
+    tool = tool_rotation(problem, start)
+    if wish.free_about is None:
+        return problem._replace(
+            orientation=FULL, upright=np.vstack((tool, (0.0, 0.0, 1.0))), tolerance=wish.tolerance_rad
+        )
+    axis = np.array(wish.free_about) / np.linalg.norm(wish.free_about)
+    upright = np.vstack((np.eye(3), axis))
+    upright[:3, 2] = tool @ axis
+    return problem._replace(orientation=TILT, upright=upright, tolerance=wish.tolerance_rad)
+
+
+def outside_limits(joints: Array, problem: CompiledProblem, checker: ExactChecker) -> str:
+    """Return which joint is how far outside its limits at `joints` (n,), empty where none is."""
+    lower, upper = problem.limits[0], problem.limits[1]
+    if joints.shape != lower.shape or not np.isfinite(joints).all():
+        return f"{joints.tolist()} is no configuration of an arm with {len(lower)} joints"
+    beyond = np.maximum(lower - joints, joints - upper)
+    worst = int(np.argmax(beyond))
+    if beyond[worst] <= _BEYOND_RAD:
+        return ""
+    name = checker.model.arm_joints[worst]
+    return f"{name} at {joints[worst]:.4f} rad is outside {lower[worst]:.4f} … {upper[worst]:.4f}"
+
+
+def validate_joints(joints_rad: tuple[float, ...], checker: ExactChecker) -> Array:
+    """Return a configuration (n,); raises CellError when it is none of this arm."""
+    joints = np.array(joints_rad, dtype=np.float64)
+    if joints.shape != (checker.dof,) or not np.isfinite(joints).all():
+        raise CellError(f"{list(joints_rad)} is no configuration", where=checker.arm, hint=f"give {checker.dof} joints")
+    return joints
+
+
+def describe_touching(pairs: tuple[NamePair, ...]) -> str:
+    """Return what touches in words, the first three pairs of it."""
+    shown = ", ".join(f"{a} touches {b}" for a, b in pairs[:3])
+    return shown + (f" and {len(pairs) - 3} more" if len(pairs) > 3 else "")

@@ -1,0 +1,64 @@
+"""Confirms a way that was given, exactly and as it is."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from engine.errors import CellError
+from robots.planning.request import PathGoal, PlanRefusal, PlanRequest
+from robots.planning.scene.compiled_problem import CompiledProblem
+from robots.planning.scene.exact_checker import ExactChecker
+from robots.planning.search.endpoints import Endpoints, describe_touching, outside_limits, with_upright_tool
+from robots.planning.search.escape import EscapeChecker
+from robots.planning.search.fast_search import is_tilted
+from robots.port import Array
+
+_SAME_RAD = 1e-6
+
+
+def validate_path(
+    request: PlanRequest, goal: PathGoal, checker: ExactChecker, problem: CompiledProblem
+) -> tuple[Array, Endpoints] | PlanRefusal:
+    """Return the waypoints (k, n) of a given way and its ends, or why it cannot be gone.
+
+    Raises:
+        CellError: the way does not begin where the arm starts.
+    """
+    start = np.array(request.start_rad, dtype=np.float64)
+    rows = [np.array(row, dtype=np.float64) for row in goal.waypoints_rad]
+    if not rows or rows[0].shape != start.shape or float(np.abs(rows[0] - start).max()) > _SAME_RAD:
+        raise CellError(
+            "a given way does not begin where the arm starts",
+            where=request.arm,
+            hint="let its first waypoint be the start",
+        )
+    for number, row in enumerate(rows):
+        outside = outside_limits(row, problem, checker)
+        if outside:
+            reason = "goal_outside_limits" if number else "start_outside_limits"
+            message = f"waypoint {number} of the given way: {outside}"
+            return PlanRefusal(reason=reason, message=message, hint="plan another way")
+    path = np.vstack(rows)
+    hit = checker.first_collision(path, looking=EscapeChecker(checker, start))
+    if hit is not None:
+        at_start = hit.segment == 0 and hit.share == 0.0
+        where = "at the start" if at_start else f"{hit.share:.0%} of the way from waypoint {hit.segment} to the next"
+        return PlanRefusal(
+            reason="start_in_collision" if at_start else "way_blocked",
+            message=f"{where} {describe_touching(hit.pairs)}",
+            hint="plan another way, or clear this one",
+            pairs=hit.pairs,
+        )
+    if request.keep_orientation is not None:
+        problem = with_upright_tool(problem, start, request.keep_orientation)
+        for before, after in pairwise(path):
+            count = checker.steps(before, after)
+            if any(is_tilted(problem, before + (after - before) * (i / count)) for i in range(1, count + 1)):
+                return PlanRefusal(
+                    reason="way_blocked",
+                    message=f"the tool turns by more than {problem.tolerance:g} rad on the given way",
+                    hint="plan another way, or allow it to turn farther",
+                )
+    return path, Endpoints(lead=path[:0], start=path[0], goals=path[-1:], problem=problem)

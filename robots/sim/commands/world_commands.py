@@ -1,0 +1,119 @@
+"""What a simulation can be told, as messages that also cross the border to its own process."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.messages import Vector3
+from robots.port import Array
+from robots.sim.commands.arm_commands import ArmCommand, SimCommand, to_bytes
+
+
+class CloseFingers(SimCommand, frozen=True, kw_only=True, tag="close_to"):
+    """Move the fingers of `arm` towards an opening, pressing with at most `force_n`."""
+
+    arm: str
+    motion: int
+    width_m: float
+    speed_m_s: float
+    force_n: float
+
+
+class CloseHand(SimCommand, frozen=True, kw_only=True, tag="close_hand"):
+    """Close the hand of `arm` to a share, 0 open to 1, in `time_s`."""
+
+    arm: str
+    motion: int
+    share: float
+    time_s: float
+
+
+class SwitchMagnet(SimCommand, frozen=True, kw_only=True, tag="switch_magnet"):
+    """Switch the magnet of `arm`."""
+
+    arm: str
+    motion: int
+    on: bool
+
+
+ToolCommand = CloseFingers | CloseHand | SwitchMagnet
+
+
+class HoldMotion(SimCommand, frozen=True, kw_only=True, tag="hold"):
+    """Bring a motion to rest on its path; a motion's holds and resumes are numbered from 1 by the sender."""
+
+    motion: int
+    request: int
+
+
+class ResumeMotion(SimCommand, frozen=True, kw_only=True, tag="resume"):
+    """Let a held motion go on."""
+
+    motion: int
+    request: int
+
+
+class CancelMotion(SimCommand, frozen=True, kw_only=True, tag="cancel"):
+    """Bring a motion to rest and end it."""
+
+    motion: int
+
+
+class StopAll(SimCommand, frozen=True, kw_only=True, tag="stop_all"):
+    """Cancel every motion."""
+
+
+class ResetFreeParts(SimCommand, frozen=True, kw_only=True, tag="reset_parts"):
+    """Put the free parts back where the scene has them, at rest."""
+
+
+class PushSimBody(SimCommand, frozen=True, kw_only=True, tag="push"):
+    """Push at a body with a force (world) at a point of its frame for a while, as a hand does."""
+
+    body: str
+    force_n: Vector3
+    duration_s: float
+    at_m: Vector3 = (0.0, 0.0, 0.0)
+
+
+class MovePersonHand(SimCommand, frozen=True, kw_only=True, tag="move_hand"):
+    """Let the hand of a person go to a place (world); it goes back after `stay_s` there, or stays."""
+
+    person: str
+    hand_m: Vector3
+    speed_m_s: float
+    stay_s: float | None = None
+
+
+class RestoreWorld(SimCommand, frozen=True, kw_only=True, tag="restore"):
+    """Go to where an image of this world was made, at rest; `numbers` are float64 as in `ImageLayout`."""
+
+    numbers: bytes
+
+    @classmethod
+    def of(cls, image: Array) -> RestoreWorld:
+        """Return the command to go to `image`."""
+        return cls(numbers=to_bytes(image))
+
+    def image(self) -> Array:
+        """Return the image it carries."""
+        return np.frombuffer(self.numbers)
+
+
+class ShutDownWorld(SimCommand, frozen=True, kw_only=True, tag="shutdown"):
+    """Bring everything to rest, then end the world's process."""
+
+
+AnyCommand = (
+    ArmCommand
+    | ToolCommand
+    | HoldMotion
+    | ResumeMotion
+    | CancelMotion
+    | StopAll
+    | ResetFreeParts
+    | PushSimBody
+    | MovePersonHand
+    | RestoreWorld
+    | ShutDownWorld
+)

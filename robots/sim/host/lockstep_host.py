@@ -1,0 +1,104 @@
+"""A world in this process, stepped by virtual time: it passes only as fast as it is asked to."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from engine.errors import RobotError
+from robots.port import Array
+from robots.sim.commands.world_commands import AnyCommand, RestoreWorld
+from robots.sim.host.world_host import StepHook, WorldListener
+from robots.sim.loop.simulation import Simulation
+from robots.sim.loop.snapshot import CellSummary, SimSnapshot
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.sim_scene import SimScene
+
+
+class LockstepHost:
+    """Steps the simulation on the calling thread; deterministic, faster than real time where it can."""
+
+    def __init__(self, scene: SimScene) -> None:
+        self._scene = scene
+        self._simulation: Simulation | None = None
+        self._listener: WorldListener | None = None
+        self._start_s = 0.0
+        self._start_steps = 0
+
+    @property
+    def simulation(self) -> Simulation:
+        """The simulation itself, for tests and measurements.
+
+        Raises:
+            RobotError: the world is not open.
+        """
+        if self._simulation is None:
+            raise RobotError("the simulated world is not open", hint="enter it with `async with` first")
+        return self._simulation
+
+    @property
+    def summary(self) -> CellSummary:
+        """What the world consists of."""
+        return self.simulation.summary
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way."""
+        return self.simulation.busy
+
+    def snapshot(self) -> SimSnapshot:
+        """The state after the last step."""
+        values = self.simulation.layout.new_array()
+        self.simulation.write_snapshot(values)
+        return SimSnapshot(self.simulation.layout, values)
+
+    def image(self) -> Array:
+        """Everything that the future depends on, after the last step."""
+        image = np.zeros(self.summary.image_size)
+        self.simulation.write_image(image)
+        return image
+
+    async def restore(self, image: Array) -> None:
+        """Go to where an image of this world was made, at rest."""
+        before = self.simulation.steps
+        self.simulation.apply(RestoreWorld.of(image))
+        # The world's clock jumps, the loop's does not.
+        self._start_steps += self.simulation.steps - before
+
+    def send(self, command: AnyCommand) -> None:
+        """Give a command, which acts from the next step on."""
+        self.simulation.apply(command)
+
+    async def open(self, listener: WorldListener) -> None:
+        """Build the world; raises CellError when it cannot be built."""
+        self._simulation = Simulation(build_cell(self._scene))
+        self._listener = listener
+
+    def begin(self, now_s: float) -> None:
+        """Let the world's present be `now_s` of the time that `advance` is asked for."""
+        self._start_s = now_s
+        self._start_steps = self.simulation.steps
+
+    def advance(self, until_s: float, *, after_step: StepHook) -> float:
+        """Step towards `until_s`; return early, with the time reached, once somebody was told something."""
+        simulation, listener = self.simulation, self._listener
+        assert listener is not None
+        step_s = simulation.step_s
+        # A step that ends within a billionth of a step after `until_s` still belongs to it.
+        due = math.inf if math.isinf(until_s) else self._steps_until(until_s)
+        while simulation.steps < due:
+            events = simulation.step()
+            for event in events:
+                listener.happened(event)
+            if after_step() or events:
+                reached = self._start_s + (simulation.steps - self._start_steps) * step_s
+                return min(reached, until_s)
+        return until_s
+
+    def _steps_until(self, until_s: float) -> int:
+        return self._start_steps + math.floor((until_s - self._start_s) / self.simulation.step_s + 1e-9)
+
+    async def close(self) -> None:
+        """Forget the world."""
+        self._listener = None

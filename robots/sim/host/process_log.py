@@ -1,0 +1,17 @@
+"""The log of the world's process: lines on stderr, none of which the control loop ever waits for."""
+
+from __future__ import annotations
+
+import os
+import select
+
+_STDERR = 2
+_LONGEST_BYTES = select.PIPE_BUF
+
+
+def log_nonblocking(line: str) -> None:
+    """Write a line to stderr, or drop it when whoever reads that does not keep up."""
+    _, writable, _ = select.select([], [_STDERR], [], 0.0)
+    if writable:
+        # A pipe that is writable takes this much without waiting.
+        os.write(_STDERR, f"flexcell world: {line}\n".encode()[:_LONGEST_BYTES])

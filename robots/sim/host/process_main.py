@@ -1,0 +1,237 @@
+"""The world's own process: steps in real time, takes commands from a socket, writes its state to shared memory."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import socket
+import sys
+import time
+from types import FrameType
+
+import msgspec
+import numpy as np
+
+from engine.errors import CellError
+from engine.stop import StopLine
+from robots.io.framed_socket import FramedSocket, PeerGone
+from robots.port.control_process import EngineMonitor
+from robots.port.heartbeat import Heartbeat
+from robots.port.stop_monitor import StopMonitor
+from robots.sim.commands.world_commands import AnyCommand, RestoreWorld, ShutDownWorld, StopAll
+from robots.sim.host.loop_timing import SIZE, TimingCounter
+from robots.sim.host.process_log import log_nonblocking
+from robots.sim.host.shared_state import SharedNumbers
+from robots.sim.host.world_report import AnyReport, WorldReady, WorldRefused, WorldRestored
+from robots.sim.loop.simulation import Simulation
+from robots.sim.physics.cell_model import build_cell
+from robots.sim.scene.sim_scene import SimScene
+
+_FIFO_PRIORITY = 20
+_SNAPSHOT_EVERY = 2
+_TIMING_EVERY = 50
+# A loop this far behind gives the lost time up instead of racing after it.
+_LONGEST_LAG_S = 0.05
+_SHUTDOWN_S = 4.0
+
+
+class CommandChannel:
+    """The child's end of the socket, never waiting but for the scene; raises PeerGone once the parent is gone."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        self._connection = connection
+        self._messages = FramedSocket(connection)
+        self._decode = msgspec.msgpack.Decoder(AnyCommand).decode
+        self._encode = msgspec.msgpack.Encoder().encode
+
+    def receive_scene(self) -> SimScene:
+        """Wait for the first message, the scene."""
+        while True:
+            for message in self._messages.receive():
+                self._connection.setblocking(False)
+                return msgspec.msgpack.decode(message, type=SimScene)
+
+    def commands(self) -> list[AnyCommand]:
+        """Return the commands that have arrived."""
+        return [self._decode(message) for message in self._messages.receive()]
+
+    def report(self, message: AnyReport) -> None:
+        """Send a message, or keep it until the socket takes it."""
+        self._messages.post(self._encode(message))
+
+    def flush(self) -> None:
+        """Send what waits, as far as the socket takes it."""
+        self._messages.flush()
+
+
+class ClosedChannel:
+    """What takes the channel's place once the parent is gone: nothing arrives, nobody hears."""
+
+    def commands(self) -> list[AnyCommand]:
+        """Return nothing."""
+        return []
+
+    def report(self, message: AnyReport) -> None:
+        """Drop a message."""
+
+    def flush(self) -> None:
+        """Nothing waits."""
+
+
+class WorldLoop:
+    """Steps a simulation at its own pace against the monotonic clock until told to stop."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        channel: CommandChannel,
+        *,
+        engine: EngineMonitor,
+        stop: StopMonitor,
+        state_fd: int,
+        timing_fd: int,
+    ) -> None:
+        self._simulation = simulation
+        self._channel: CommandChannel | ClosedChannel = channel
+        self._engine = engine
+        self._stop = stop
+        # What is measured, and behind it the image, so that both are of one instant.
+        self._values = np.zeros(simulation.layout.size + simulation.image_layout.size)
+        self._image = self._values[simulation.layout.size :]
+        self._shared = SharedNumbers(state_fd, len(self._values))
+        self._shared_timing = SharedNumbers(timing_fd, SIZE)
+        self._timing = TimingCounter()
+        self._ending_at: float | None = None
+        self.publish()
+
+    def request_end(self, _signal: int = 0, _frame: FrameType | None = None) -> None:
+        """Bring everything to rest, then end; also a signal handler."""
+        if self._ending_at is None:
+            self._ending_at = time.monotonic() + _SHUTDOWN_S
+
+    def publish(self) -> None:
+        """Write the present state where the parent reads it."""
+        self._simulation.write_snapshot(self._values)
+        self._simulation.write_image(self._image)
+        self._shared.write(self._values)
+
+    def run(self) -> None:
+        """Step until told to end, or until the parent is gone or talks nonsense, and everything is at rest."""
+        try:
+            self._step_on()
+        except PeerGone:
+            self._come_to_rest()
+        except Exception:
+            # Whatever it is: nobody else brings to rest what this process controls.
+            self._come_to_rest()
+            raise
+        finally:
+            # The last words to whoever reads the heartbeat: since when everything rests.
+            self._engine.look(time.monotonic())
+
+    def _come_to_rest(self) -> None:
+        self._channel = ClosedChannel()
+        self._engine.engine_is_gone()
+        self.request_end()
+        self._step_on()
+
+    def _step_on(self) -> None:
+        step_s = self._simulation.step_s
+        due = time.monotonic() + step_s
+        while not self._over():
+            wait = due - time.monotonic()
+            if wait > 0.0:
+                time.sleep(wait)
+            late = time.monotonic() - due
+            self._tick()
+            due = self._next_due(due, step_s, late)
+
+    def _over(self) -> bool:
+        if self._ending_at is None:
+            return False
+        self._simulation.apply(StopAll())
+        return self._simulation.at_rest or time.monotonic() > self._ending_at
+
+    def _tick(self) -> None:
+        for command in self._channel.commands():
+            self._take(command)
+        # Before the engine's silence, so that what STOP ends says so.
+        self._stop.look()
+        if self._stop.cut:
+            self.request_end()
+        # After the commands: who sends one has given a pulse before.
+        self._engine.look(time.monotonic())
+        events = self._simulation.step()
+        if events or self._simulation.steps % _SNAPSHOT_EVERY == 0:
+            # The state is written before the event is told, so who hears of an end reads its state.
+            self.publish()
+        for event in events:
+            self._channel.report(event)
+        self._channel.flush()
+        if self._simulation.steps % _TIMING_EVERY == 0:
+            self._shared_timing.write(self._timing.values)
+
+    def _take(self, command: AnyCommand) -> None:
+        if isinstance(command, ShutDownWorld):
+            self.request_end()
+            return
+        self._simulation.apply(command)
+        if isinstance(command, RestoreWorld):
+            self.publish()
+            self._channel.report(WorldRestored())
+
+    def _next_due(self, due: float, step_s: float, late_s: float) -> float:
+        now = time.monotonic()
+        self._timing.count(late_s=late_s, overrun=now > due + step_s)
+        if now - due > _LONGEST_LAG_S:
+            self._timing.slip(now - due)
+            return now + step_s
+        return due + step_s
+
+
+def take_real_time_schedule() -> bool:
+    """Ask for SCHED_FIFO; false, and the ordinary schedule, where the system does not permit it."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_FIFO_PRIORITY))
+    except (AttributeError, OSError):
+        return False
+    return True
+
+
+def main() -> None:
+    """Run the world on the descriptors of socket, state, timing, heartbeat and, where there is one, stop line."""
+    connection_fd, state_fd, timing_fd, heartbeat_fd, *stop_fd = (int(argument) for argument in sys.argv[1:])
+    # Ctrl-C reaches the whole process group; the parent brings the arms to rest first.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    channel = CommandChannel(socket.socket(fileno=connection_fd))
+    try:
+        scene = channel.receive_scene()
+        try:
+            simulation = Simulation(build_cell(scene))
+        except CellError as error:
+            refusal = WorldRefused(
+                message=error.message, where="" if error.where is None else str(error.where), hint=error.hint or ""
+            )
+            channel.report(refusal)
+            return
+        engine = EngineMonitor(Heartbeat(heartbeat_fd), simulation, limit_s=scene.engine_silence_s, log=log_nonblocking)
+        line = StopLine(socket.socket(fileno=stop_fd[0])) if stop_fd else None
+        loop = WorldLoop(
+            simulation,
+            channel,
+            engine=engine,
+            stop=StopMonitor(line, simulation),
+            state_fd=state_fd,
+            timing_fd=timing_fd,
+        )
+        signal.signal(signal.SIGTERM, loop.request_end)
+        fifo = take_real_time_schedule()
+        gc.collect()
+        gc.freeze()
+        # A collection in mid-step would be late by milliseconds; the loop makes no cycles.
+        gc.disable()
+        channel.report(WorldReady(summary=simulation.summary, fifo=fifo))
+        loop.run()
+    except PeerGone:
+        return

@@ -1,0 +1,141 @@
+"""One arm of a simulated world in its loop: physics on one side, what controls and moves it on the other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_control_loop import ArmControlLoop
+from robots.control.force_tracking import ForceTracking
+from robots.control.guarded_motion import GUARDED_STOP_S, GuardedMotion
+from robots.control.guiding import GuidingGenerator
+from robots.control.joint_jogging import JointJogGenerator
+from robots.control.joint_streaming import JointStreamGenerator
+from robots.control.motion_event import AnyMotionEvent
+from robots.control.motion_generator import MotionGenerator
+from robots.control.tool_jogging import ToolJogGenerator
+from robots.control.trajectory_playback import TrajectoryPlayback
+from robots.model.kinematics import ArmKinematics
+from robots.model.transform import RigidTransform
+from robots.port import Array, Tolerance
+from robots.sim.commands.arm_commands import (
+    ArmCommand,
+    ConfigureArm,
+    FinishStream,
+    FollowTrajectory,
+    RecoverArm,
+    Setpoint,
+    StartGuiding,
+    StartStream,
+    TrackForce,
+)
+from robots.sim.physics.cell_model import ArmIndices
+from robots.sim.physics.contacts import ContactReader
+from robots.sim.physics.physics import Physics
+
+# A restored arm stands where it was measured. Its set point may be this far off, as much as a
+# payload takes, so that nothing sags; one that pressed on something lets go.
+_NEAR_RAD = 0.01
+
+
+class SimArmLoop:
+    """Call `move` and then `drive` between the halves of a step of the physics."""
+
+    def __init__(
+        self,
+        indices: ArmIndices,
+        *,
+        base: RigidTransform,
+        physics: Physics,
+        contacts: ContactReader,
+        inertia_kg_m2: Array,
+    ) -> None:
+        model = indices.model
+        self.indices = indices
+        self._physics = physics
+        self._acceleration_rad_s2 = np.array(model.limits.acceleration_rad_s2)
+        self._tool_link = physics.body_number(f"{indices.name}/{model.tool_link}")
+        self._beyond_flange = physics.members(physics.body_number(f"{indices.name}/{model.flange_link}"))
+        self.control = ArmControlLoop(
+            name=indices.name,
+            kinematics=ArmKinematics(model, base=base),
+            inertia_kg_m2=inertia_kg_m2[indices.dof],
+            gravity_m_s2=physics.gravity_m_s2,
+            touching=lambda: contacts.describe(indices),
+        )
+        self.control.initialize(physics.positions[indices.qpos])
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way, or its end is still to be told."""
+        return self.control.motion.number != 0 or self.control.has_unreported_end
+
+    def take(self, command: ArmCommand) -> None:
+        """Take a command for this arm; it acts from the next step on. Other motions' numbers are ignored."""
+        control = self.control
+        match command:
+            case FollowTrajectory():
+                control.start(command.motion, self._passage(command), command.closeness.tolerance())
+            case TrackForce():
+                model = self.indices.model
+                tracking = ForceTracking(command.task(), limits=model.limits, joints=model.arm_joints)
+                control.start(command.motion, tracking, command.closeness.tolerance())
+            case StartStream():
+                control.start(command.motion, self._listener(command), Tolerance())
+            case StartGuiding():
+                control.float_with(damping_share=command.damping)
+                start = self._physics.positions[self.indices.qpos]
+                control.start(
+                    command.motion, GuidingGenerator(limits=self.indices.model.limits, start=start), Tolerance()
+                )
+            case Setpoint():
+                control.motion.tell(command.motion, np.array(command.values), age_s=command.age_s)
+            case FinishStream():
+                control.motion.finish(command.motion)
+            case ConfigureArm():
+                control.configure(command.settings)
+            case RecoverArm():
+                control.recover()
+
+    def move(self, step_s: float) -> list[AnyMotionEvent]:
+        """Read what is measured, move the set point on, and return what happened."""
+        physics, indices, control = self._physics, self.indices, self.control
+        tool = physics.point_of(self._tool_link, control.tool_xyz_m)
+        control.measure(
+            physics.positions[indices.qpos],
+            physics.velocities[indices.dof],
+            pull_nm=physics.pull[indices.dof],
+            wrench=physics.wrench_on(self._beyond_flange, tool),
+            step_s=step_s,
+        )
+        return control.advance(step_s)
+
+    def drive(self, inertia_torque: Array, *, step_s: float) -> None:
+        """Set the motors; `inertia_torque` (nv,) is what accelerates along the set points of all arms."""
+        physics, dof = self._physics, self.indices.dof
+        feedforward = physics.bias[dof] + inertia_torque[dof]
+        physics.motors[self.indices.motor] = self.control.torque(feedforward, step_s=step_s)
+
+    def rest_near(self, set_point: Array, *, reflex: bool) -> None:
+        """Hold from now on where the arm is measured, or a little off it where its set point was."""
+        measured = self._physics.positions[self.indices.qpos]
+        near = np.clip(set_point, measured - _NEAR_RAD, measured + _NEAR_RAD)
+        self.control.initialize(near, reflex=reflex)
+
+    def _passage(self, command: FollowTrajectory) -> MotionGenerator:
+        contact, way = command.contact(), command.way.trajectory()
+        if contact is None:
+            return TrajectoryPlayback(way, acceleration_rad_s2=self._acceleration_rad_s2)
+        inner = TrajectoryPlayback(way, acceleration_rad_s2=self._acceleration_rad_s2, shortest_stop_s=GUARDED_STOP_S)
+        return GuardedMotion(inner, contact)
+
+    def _listener(self, command: StartStream) -> MotionGenerator:
+        model, start = self.indices.model, self.control.motion.position
+        match command.kind:
+            case "joint_position":
+                return JointStreamGenerator(
+                    limits=model.limits, joints=model.arm_joints, start=start, watchdog_s=command.watchdog_s
+                )
+            case "joint_velocity":
+                return JointJogGenerator(limits=model.limits, start=start, watchdog_s=command.watchdog_s)
+            case "tool_twist":
+                return ToolJogGenerator(limits=model.limits, start=start, watchdog_s=command.watchdog_s)

@@ -1,0 +1,48 @@
+"""Hands from outside the cell that push at bodies of a simulated world, for a while."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robots.port import Array
+from robots.sim.commands.world_commands import PushSimBody
+from robots.sim.physics.physics import Physics
+
+
+@dataclass(kw_only=True)
+class _Push:
+    """One push under way."""
+
+    force: Array
+    at: Array
+    left_s: float
+
+
+class ExternalPushes:
+    """At most one push at a body; call `step` between the halves of a step of the physics."""
+
+    def __init__(self, physics: Physics) -> None:
+        self._physics = physics
+        self._hands: dict[int, _Push] = {}
+
+    def push(self, command: PushSimBody) -> None:
+        """Push from the next step on; an earlier push at the same body is over."""
+        body = self._physics.body_number(command.body)
+        force, at = np.array(command.force_n), np.array(command.at_m)
+        self._hands[body] = _Push(force=force, at=at, left_s=command.duration_s)
+
+    def let_go(self) -> None:
+        """End all pushes."""
+        self._hands.clear()
+
+    def step(self, step_s: float) -> None:
+        """Push for one step."""
+        if not self._hands:
+            return
+        for body, hand in list(self._hands.items()):
+            self._physics.attract(body, force=hand.force, point=self._physics.point_of(body, hand.at))
+            hand.left_s -= step_s
+            if hand.left_s <= step_s / 2.0:
+                del self._hands[body]

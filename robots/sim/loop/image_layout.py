@@ -1,0 +1,35 @@
+"""Everything that the future of a world depends on as one flat array of numbers: its image."""
+
+from __future__ import annotations
+
+from robots.sim.loop.snapshot import ArmSummary
+
+TOOL_FIELDS = 4
+"""How many numbers say what a tool does; a kind that needs fewer leaves the others 0."""
+
+
+class ImageLayout:
+    """Where each quantity lies in an image.
+
+    First the steps done, then the physics as MuJoCo hands it out, then for each arm its set point
+    and whether it has stopped by itself (1 or 0), and for each tool what it does, as
+    `robots.sim.grip.mechanics.ToolMechanics` says it; last what people do and have touched, as
+    `robots.sim.people.people_loop` writes it.
+    """
+
+    def __init__(self, arms: tuple[ArmSummary, ...], *, state_size: int, people_size: int = 0) -> None:
+        self.steps = 0
+        self.physics = slice(1, 1 + state_size)
+        at = self.physics.stop
+        self.set_points: dict[str, slice] = {}
+        self.reflexes: dict[str, int] = {}
+        self.tools: dict[str, slice] = {}
+        for arm in arms:
+            self.set_points[arm.name] = slice(at, at + len(arm.joints))
+            self.reflexes[arm.name] = at + len(arm.joints)
+            at += len(arm.joints) + 1
+            if arm.tool is not None:
+                self.tools[arm.name] = slice(at, at + TOOL_FIELDS)
+                at += TOOL_FIELDS
+        self.people = slice(at, at + people_size)
+        self.size = self.people.stop

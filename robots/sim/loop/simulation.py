@@ -1,0 +1,248 @@
+"""A world that steps: physics, the controllers of its arms and fingers, and what they report."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.control.arm_control_loop import ArmControlLoop
+from robots.control.motion_event import AnyMotionEvent
+from robots.control.motion_executor import MotionExecutor
+from robots.model.transform import RigidTransform
+from robots.port import Array
+from robots.sim.commands.arm_commands import CommandToArm
+from robots.sim.commands.world_commands import (
+    AnyCommand,
+    CancelMotion,
+    CloseFingers,
+    CloseHand,
+    HoldMotion,
+    MovePersonHand,
+    PushSimBody,
+    ResetFreeParts,
+    RestoreWorld,
+    ResumeMotion,
+    ShutDownWorld,
+    StopAll,
+    SwitchMagnet,
+)
+from robots.sim.grip.mechanics import ToolDrive, ToolMechanics
+from robots.sim.grip.mechanics_factory import new_mechanics
+from robots.sim.grip.tool_summary import tool_summary
+from robots.sim.loop.arm_loop import SimArmLoop
+from robots.sim.loop.external_pushes import ExternalPushes
+from robots.sim.loop.image_layout import TOOL_FIELDS, ImageLayout
+from robots.sim.loop.snapshot import ArmFields, ArmSummary, CellSummary, SnapshotLayout
+from robots.sim.people.people_loop import PeopleLoop
+from robots.sim.physics.cell_model import CellModel
+from robots.sim.physics.contacts import ContactReader
+from robots.sim.physics.fingerprint import fingerprint
+from robots.sim.physics.physics import Physics
+
+_REST_RAD_S = 0.01
+
+
+class Simulation:
+    """The one place where a simulated world changes.
+
+    A step reads the state (mj_step1), moves the set points on, computes torques from quantities of
+    this very state, and integrates (mj_step2): equal commands at equal steps give equal bits.
+    """
+
+    def __init__(self, cell: CellModel) -> None:
+        self._cell = cell
+        self._physics = physics = Physics(cell.model)
+        self.step_s = physics.step_s
+        self.steps = 0
+        self._qpos, self._qvel = physics.positions, physics.velocities
+        self._ctrl, self._bias = physics.motors, physics.bias
+        self._wanted_acceleration = np.zeros(physics.dof_count)
+        self._inertia_torque = np.zeros(physics.dof_count)
+        self._start_poses = self._qpos[cell.part_qpos].copy()
+        self._set_home()
+        self._contacts = ContactReader(cell, physics)
+        inertia = physics.inertia_diagonal()
+        bases = {arm.name: RigidTransform.from_pose(arm.base) for arm in cell.scene.arms}
+        self._arms = {
+            arm.name: SimArmLoop(
+                arm, base=bases[arm.name], physics=physics, contacts=self._contacts, inertia_kg_m2=inertia
+            )
+            for arm in cell.arms
+        }
+        self._hands = ExternalPushes(physics)
+        self._people = PeopleLoop(cell, physics, step_s=self.step_s)
+        tools = {arm.name: new_mechanics(arm, physics, self._contacts) for arm in cell.arms}
+        self._tools: dict[str, ToolMechanics] = {name: tool for name, tool in tools.items() if tool is not None}
+        arms = _arm_summaries(cell)
+        self._tool_names = {arm.name: f"{arm.name}/{arm.tool.device}" for arm in arms if arm.tool is not None}
+        self._arm_dof = np.concatenate([np.zeros(0, dtype=np.intp), *(arm.dof for arm in cell.arms)])
+        self.image_layout = ImageLayout(arms, state_size=physics.state_size, people_size=self._people.image_size)
+        self.summary = _summary(cell, arms, image_size=self.image_layout.size)
+        self.layout = SnapshotLayout(self.summary)
+
+    @property
+    def time_s(self) -> float:
+        """Time of the world: steps done times step."""
+        return self.steps * self.step_s
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way."""
+        return any(a.busy for a in self._arms.values()) or any(t.drive.number for t in self._tools.values())
+
+    @property
+    def at_rest(self) -> bool:
+        """True when no motion is under way and no arm is measured to move."""
+        return not self.busy and bool((np.abs(self._qvel[self._arm_dof]) < _REST_RAD_S).all())
+
+    def brake(self, cause: str) -> None:
+        """Bring every motion to rest within its limits; each ends as failed with `cause` and its device's name."""
+        for name, arm in self._arms.items():
+            arm.control.motion.stop(f"{cause}; {name} came to rest by itself")
+        for name, tool in self._tools.items():
+            tool.drive.stop(f"{cause}; {self._tool_names[name]} came to rest by itself")
+
+    def control(self, arm: str) -> ArmControlLoop:
+        """Return what controls an arm, for tests and measurements."""
+        return self._arms[arm].control
+
+    def touching(self, arm: str) -> str:
+        """Say in words what an arm touches after the last step, empty for nothing; for tests and measurements."""
+        return self._contacts.describe(self._arms[arm].indices)
+
+    def apply(self, command: AnyCommand) -> None:
+        """Take a command; it acts from the next step on. Unknown motion numbers are ignored."""
+        match command:
+            case CommandToArm():
+                self._arms[command.arm].take(command)
+            case CloseFingers() | CloseHand() | SwitchMagnet():
+                self._tools[command.arm].begin(command)
+            case HoldMotion():
+                for device in self._devices():
+                    device.hold(command.motion, request=command.request)
+            case ResumeMotion():
+                for device in self._devices():
+                    device.resume(command.motion, request=command.request)
+            case CancelMotion():
+                for device in self._devices():
+                    device.cancel(command.motion)
+            case PushSimBody():
+                self._hands.push(command)
+            case MovePersonHand():
+                self._people.send(command)
+            case ResetFreeParts():
+                self._qpos[self._cell.part_qpos] = self._start_poses
+                self._qvel[self._cell.part_dof] = 0.0
+            case RestoreWorld():
+                self._restore(command.image())
+            case StopAll() | ShutDownWorld():
+                for device in self._devices():
+                    device.stop()
+
+    def step(self) -> list[AnyMotionEvent]:
+        """Let one step pass and return what happened to the motions."""
+        events: list[AnyMotionEvent] = []
+        self._people.place()
+        self._physics.start_step()
+        for tool in self._tools.values():
+            events.extend(tool.step(self.step_s))
+        accelerated = False
+        for arm in self._arms.values():
+            events.extend(arm.move(self.step_s))
+            self._wanted_acceleration[arm.indices.dof] = arm.control.motion.acceleration
+            accelerated |= arm.control.motion.number != 0
+        if accelerated:
+            self._physics.inertia_times(self._wanted_acceleration, out=self._inertia_torque)
+        else:
+            self._inertia_torque[:] = 0.0
+        for arm in self._arms.values():
+            arm.drive(self._inertia_torque, step_s=self.step_s)
+        self._hands.step(self.step_s)
+        self._physics.finish_step()
+        self._people.count()
+        self.steps += 1
+        return events
+
+    def write_snapshot(self, values: Array) -> None:
+        """Write the present state into an array made for `layout`."""
+        layout = self.layout
+        values[layout.time] = self.time_s
+        for name, arm in self._arms.items():
+            self._write_arm(values, layout.arms[name], arm)
+            if name in self._tools:
+                tool = self._tools[name]
+                values[layout.arms[name].tool] = (tool.drive.number, *tool.measured())
+        xyz, wxyz = self._physics.body_poses(self._cell.frame_bodies)
+        values[layout.positions] = xyz.reshape(-1)
+        values[layout.quaternions] = wxyz.reshape(-1)
+        self._people.write_report(values[layout.people])
+
+    def write_image(self, image: Array) -> None:
+        """Write everything that the future depends on into an array of `image_layout`'s size."""
+        layout = self.image_layout
+        image[layout.steps] = self.steps
+        self._physics.read_state(image[layout.physics])
+        for name, arm in self._arms.items():
+            image[layout.set_points[name]] = arm.control.motion.position
+            image[layout.reflexes[name]] = arm.control.reflex
+        for name, tool in self._tools.items():
+            command = tool.command()
+            image[layout.tools[name]] = (*command, *(0.0,) * (TOOL_FIELDS - len(command)))
+        self._people.write_image(image[layout.people])
+
+    def _restore(self, image: Array) -> None:
+        """Stand still where an image was made; what was gripped stays gripped, and people go on with what they did."""
+        layout = self.image_layout
+        self.steps = int(image[layout.steps])
+        self._hands.let_go()
+        self._physics.rest_at(image[layout.physics])
+        for name, arm in self._arms.items():
+            arm.rest_near(image[layout.set_points[name]], reflex=bool(image[layout.reflexes[name]]))
+        for name, tool in self._tools.items():
+            tool.take_over(tuple(image[layout.tools[name]].tolist()))
+        self._people.take_over(image[layout.people])
+
+    def state_hash(self) -> str:
+        """Return the SHA-256 of everything that the future of the physics depends on."""
+        return self._physics.state_hash()
+
+    def _set_home(self) -> None:
+        for arm in self._cell.arms:
+            self._qpos[arm.qpos] = arm.model.home_rad
+            if arm.tool is not None:
+                self._qpos[arm.tool.qpos] = arm.tool.home
+        self._physics.refresh()
+
+    def _devices(self) -> tuple[MotionExecutor | ToolDrive, ...]:
+        return (*(a.control.motion for a in self._arms.values()), *(t.drive for t in self._tools.values()))
+
+    def _write_arm(self, values: Array, fields: ArmFields, arm: SimArmLoop) -> None:
+        control, indices = arm.control, arm.indices
+        values[fields.number] = control.motion.number
+        values[fields.progress] = control.motion.progress
+        values[fields.reflex] = control.reflex
+        values[fields.wrench] = control.state.wrench
+        block = values[fields.joints].reshape(5, fields.dof)
+        block[0] = self._qpos[indices.qpos]
+        block[1] = self._qvel[indices.dof]
+        block[2] = self._ctrl[indices.motor]
+        block[3] = control.motion.position
+        block[4] = control.state.external_nm
+
+
+def _arm_summaries(cell: CellModel) -> tuple[ArmSummary, ...]:
+    return tuple(
+        ArmSummary(name=arm.name, joints=arm.model.arm_joints, tool=tool_summary(arm.model.tool)) for arm in cell.arms
+    )
+
+
+def _summary(cell: CellModel, arms: tuple[ArmSummary, ...], *, image_size: int) -> CellSummary:
+    return CellSummary(
+        step_s=cell.scene.step_s,
+        arms=arms,
+        frames=cell.frames,
+        parts=cell.parts,
+        bodies=cell.body_names,
+        model=fingerprint(cell.model),
+        image_size=image_size,
+        people=tuple(person.name for person in cell.people),
+    )

@@ -1,0 +1,165 @@
+"""The newest state of a world as one flat array of numbers, the same in process and in shared memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import msgspec
+import numpy as np
+
+from engine.messages import Quaternion, Vector3
+from robots.port import ArmSample, Array, GripperSample, HandSample, MagnetSample
+from robots.sim.grip.tool_summary import ToolSummary
+from robots.sim.people.person_report import PersonSample, person_sample, report_size
+
+# Motion number, progress, three measures of the device, then the contacts.
+_TOOL_FIELDS = 5
+
+
+class ArmSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """What one needs to know of an arm to command it; `tool` is None for a bare flange."""
+
+    name: str
+    joints: tuple[str, ...]
+    tool: ToolSummary | None = None
+
+
+class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """What a built world consists of, as far as the outside needs it.
+
+    `bodies` are all names that a contact can have; `parts` are the last of `frames`. `model` is the
+    fingerprint of the compiled world, `image_size` how many numbers an image of it has.
+    """
+
+    step_s: float
+    arms: tuple[ArmSummary, ...]
+    frames: tuple[str, ...]
+    parts: tuple[str, ...]
+    bodies: tuple[str, ...]
+    model: str
+    image_size: int
+    people: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmFields:
+    """Where one arm's numbers lie: `joints` is a block of 5 x n, rows as in `ArmSample`; `wrench` are six."""
+
+    number: int
+    progress: int
+    reflex: int
+    wrench: slice
+    joints: slice
+    dof: int
+    tool: slice
+
+
+class SnapshotLayout:
+    """Where each quantity lies in the array; made alike on both sides from the summary.
+
+    A tool has motion number, progress, three measures, and the body numbers that it touches (-1 for
+    none) at the places its summary counts. The measures of a gripper are width, velocity, force; of a
+    hand closed share, pull and nothing; of a magnet on (1 or 0), pull and nothing. Frames have
+    x y z and quaternion w x y z as MuJoCo keeps them.
+    """
+
+    def __init__(self, summary: CellSummary) -> None:
+        self.summary = summary
+        self.time = 0
+        at = 1
+        arms: dict[str, ArmFields] = {}
+        for arm in summary.arms:
+            n = len(arm.joints)
+            wrench = slice(at + 3, at + 9)
+            joints = slice(wrench.stop, wrench.stop + 5 * n)
+            tool = slice(joints.stop, joints.stop + (_TOOL_FIELDS + arm.tool.contacts if arm.tool else 0))
+            arms[arm.name] = ArmFields(
+                number=at, progress=at + 1, reflex=at + 2, wrench=wrench, joints=joints, dof=n, tool=tool
+            )
+            at = tool.stop
+        self.arms = arms
+        frames = len(summary.frames)
+        self.positions = slice(at, at + 3 * frames)
+        self.quaternions = slice(at + 3 * frames, at + 7 * frames)
+        at += 7 * frames
+        self.people = slice(at, at + report_size(len(summary.people), body_count=len(summary.bodies)))
+        self.size = self.people.stop
+
+    def new_array(self) -> Array:
+        """Return an array of the right size, zero."""
+        return np.zeros(self.size)
+
+
+class SimSnapshot:
+    """One consistent state of the world, read-only."""
+
+    def __init__(self, layout: SnapshotLayout, values: Array) -> None:
+        self._layout = layout
+        self._values = values
+
+    @property
+    def time_s(self) -> float:
+        """Time of the world."""
+        return float(self._values[0])
+
+    def arm(self, name: str) -> ArmSample:
+        """The measurement of one arm."""
+        fields = self._layout.arms[name]
+        block = self._values[fields.joints].reshape(5, fields.dof)
+        return ArmSample(
+            time_s=self.time_s,
+            position_rad=block[0],
+            velocity_rad_s=block[1],
+            effort_nm=block[2],
+            desired_rad=block[3],
+            external_nm=block[4],
+            wrench=self._values[fields.wrench],
+            reflex=bool(self._values[fields.reflex]),
+        )
+
+    def arm_progress(self, name: str, motion: int) -> float | None:
+        """The progress of an arm's motion, None when the arm does not carry out this one."""
+        fields = self._layout.arms[name]
+        return float(self._values[fields.progress]) if self._values[fields.number] == motion else None
+
+    def gripper(self, name: str) -> GripperSample:
+        """The measurement of the gripper on an arm."""
+        (width, velocity, force), contacts = self._tool(name)
+        left, right = contacts
+        return GripperSample(
+            time_s=self.time_s, width_m=width, velocity_m_s=velocity, force_n=force, contacts=(left, right)
+        )
+
+    def hand(self, name: str) -> HandSample:
+        """The measurement of the hand on an arm."""
+        (closed, pull, _), contacts = self._tool(name)
+        return HandSample(time_s=self.time_s, closed_share=closed, force_n=pull, contacts=contacts)
+
+    def magnet(self, name: str) -> MagnetSample:
+        """The measurement of the magnet on an arm."""
+        (on, pull, _), (contact,) = self._tool(name)
+        return MagnetSample(time_s=self.time_s, on=on > 0.0, pull_n=pull, contact=contact)
+
+    def person(self, name: str) -> PersonSample:
+        """What one of the people does and has touched."""
+        summary = self._layout.summary
+        return person_sample(self._values[self._layout.people], summary.people, name, bodies=summary.bodies)
+
+    def tool_progress(self, name: str, motion: int) -> float | None:
+        """The progress of a tool's motion, None when the tool does not carry out this one."""
+        fields = self._values[self._layout.arms[name].tool]
+        return float(fields[1]) if fields[0] == motion else None
+
+    def frames(self) -> tuple[tuple[Vector3, ...], tuple[Quaternion, ...]]:
+        """Positions and quaternions x y z w of all frames of the summary, in its order."""
+        xyz = self._values[self._layout.positions].reshape(-1, 3).tolist()
+        wxyz = self._values[self._layout.quaternions].reshape(-1, 4)
+        xyzw = np.roll(wxyz, -1, axis=1).tolist()
+        return tuple((x, y, z) for x, y, z in xyz), tuple((x, y, z, w) for x, y, z, w in xyzw)
+
+    def _tool(self, name: str) -> tuple[tuple[float, float, float], tuple[str, ...]]:
+        _, _, a, b, c, *touched = self._values[self._layout.arms[name].tool].tolist()
+        return (a, b, c), tuple(self._body(body) for body in touched)
+
+    def _body(self, number: float) -> str:
+        return self._layout.summary.bodies[int(number)] if number >= 0 else ""

@@ -1,0 +1,90 @@
+"""What the arm of one person does from step to step: rest, reach, stay for a while, go back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robots.port import Array
+from robots.sim.commands.world_commands import MovePersonHand
+from robots.sim.people.hand_trajectory import HandMotion, HandTrajectory, plan_hand_trajectory
+from robots.sim.physics.limb import Limb, LimbPose
+from robots.sim.scene.sim_scene import PersonBody
+
+MOTION_FIELDS = 16
+"""How many numbers say all that the future of a person's motion depends on."""
+
+_FOR_EVER = -1.0
+
+
+class PersonMotion:
+    """Its hand goes where it was sent last; the bodies follow. Nothing stops it."""
+
+    def __init__(self, person: PersonBody, *, step_s: float) -> None:
+        self._rest = np.array(person.hand_rests)
+        self._limb = Limb(person)
+        self._step_s = step_s
+        self._way = HandTrajectory(start=_standing(self._rest), goal=self._rest, duration_s=0.0)
+        self._steps = 0
+        self._stay_s = _FOR_EVER
+        self._speed_m_s = 1.0
+        self._side = self._limb.hanging(self._rest)
+        self._still = False
+        self.pose: LimbPose = self._limb.pose(self._rest, self._side)
+
+    @property
+    def hand(self) -> HandMotion:
+        """Where the hand is, and how fast it moves."""
+        return self._way.at(self._steps * self._step_s)
+
+    @property
+    def arrives_in_s(self) -> float:
+        """How long the hand is still on its way, 0 when it is there."""
+        return max(0.0, self._way.duration_s - self._steps * self._step_s)
+
+    def send(self, command: MovePersonHand) -> None:
+        """Let the hand go to a place from now on, whatever it does."""
+        self._go(np.array(command.hand_m), speed_m_s=command.speed_m_s)
+        self._stay_s = _FOR_EVER if command.stay_s is None else command.stay_s
+
+    def step(self) -> bool:
+        """Let one step pass; false when nothing has moved."""
+        if self._still:
+            return False
+        self._steps += 1
+        if self._stay_s >= 0.0 and self._steps * self._step_s >= self._way.duration_s + self._stay_s:
+            self._go(self._rest, speed_m_s=self._speed_m_s)
+            self._stay_s = _FOR_EVER
+        hand = self.hand.xyz
+        side = self._limb.carried_on(self._side, hand, step_s=self._step_s)
+        before, self._side = self.pose, side
+        self.pose = self._limb.pose(hand, side)
+        there_for_ever = self.arrives_in_s == 0.0 and self._stay_s < 0.0
+        self._still = there_for_ever and np.array_equal(before.xyz, self.pose.xyz)
+        return True
+
+    def write(self, out: Array) -> None:
+        """Write all that the future of the motion depends on, shape (`MOTION_FIELDS`,)."""
+        way = self._way
+        out[0:3], out[3:6], out[6:9] = way.start.xyz, way.start.velocity, way.goal
+        out[9:13] = way.duration_s, self._steps, self._stay_s, self._speed_m_s
+        out[13:16] = self._side
+
+    def take_over(self, numbers: Array) -> None:
+        """Go on where `write` was called."""
+        start = HandMotion(xyz=numbers[0:3].copy(), velocity=numbers[3:6].copy())
+        self._way = HandTrajectory(start=start, goal=numbers[6:9].copy(), duration_s=float(numbers[9]))
+        self._steps = int(numbers[10])
+        self._stay_s, self._speed_m_s = float(numbers[11]), float(numbers[12])
+        self._side = numbers[13:16].copy()
+        self._still = False
+        self.pose = self._limb.pose(self.hand.xyz, self._side)
+
+    def _go(self, goal: Array, *, speed_m_s: float) -> None:
+        self._way = plan_hand_trajectory(self.hand, goal, speed_m_s=speed_m_s)
+        self._steps = 0
+        self._speed_m_s = speed_m_s
+        self._still = False
+
+
+def _standing(xyz: Array) -> HandMotion:
+    return HandMotion(xyz=xyz, velocity=np.zeros(3))

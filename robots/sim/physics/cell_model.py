@@ -1,0 +1,220 @@
+"""A scene as a compiled MuJoCo model, and where in its arrays each arm, finger and part lies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from engine.errors import CellError
+from engine.messages import Pose
+from robots.model.robot_model import RobotModel
+from robots.sim.physics.arm_spec import arm_spec
+from robots.sim.physics.person_spec import PersonIndices, add_person, body_names, let_people_touch, person_indices
+from robots.sim.physics.physics import mujoco
+from robots.sim.physics.tool_indices import ToolIndices, tool_indices
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, SimScene
+
+Indices = NDArray[np.intp]
+
+_BOX, _CYLINDER = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
+_SPHERE = mujoco.mjtGeom.mjGEOM_SPHERE
+# The skin of what gives way is soft at first touch: where MuJoCo's default of 0.9 spreads a force over the
+# corners of flat pads, what slides on it loses contact again and again (`benchmarks/contact_sliding.py`).
+_SKIN_SOLIMP = (0.5, 0.95, 0.001, 0.5, 2.0)
+# Its contact counts, whatever touches it; pads have 1.
+_SKIN_PRIORITY = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArmIndices:
+    """Addresses of one arm's joints in the model's arrays, and the bodies it is made of."""
+
+    name: str
+    model: RobotModel
+    qpos: Indices
+    dof: Indices
+    motor: Indices
+    bodies: frozenset[int]
+    tool: ToolIndices | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellModel:
+    """The compiled world (`model` is MuJoCo's). `frames` are the bodies whose poses are published, by public name."""
+
+    scene: SimScene
+    model: Any
+    arms: tuple[ArmIndices, ...]
+    frames: tuple[str, ...]
+    frame_bodies: Indices
+    parts: tuple[str, ...]
+    part_qpos: Indices
+    """Addresses of the parts' poses, seven a part, in the order of `parts`."""
+    part_dof: Indices
+    """Addresses of the parts' velocities, six a part."""
+    body_names: tuple[str, ...]
+    people: tuple[PersonIndices, ...] = ()
+
+
+def build_cell(scene: SimScene) -> CellModel:
+    """Compile a scene.
+
+    Raises:
+        CellError: a robot model is unknown, a shape is wrong, or MuJoCo refuses the result.
+    """
+    spec = _empty_world(scene)
+    for fixture in scene.fixtures:
+        _add_fixture(spec, fixture)
+    for part in scene.parts:
+        _add_part(spec, part)
+    models = {arm.name: arm.robot() for arm in scene.arms}
+    for arm in scene.arms:
+        _add_arm(spec, arm, models[arm.name], scene.fixtures)
+    _add_people(spec, scene)
+    try:
+        compiled = spec.compile()
+    except ValueError as error:
+        raise CellError(f"the cell cannot be simulated: {error}", hint="check names, sizes and masses") from error
+    ferrous = tuple(part.name for part in scene.parts if part.magnetic)
+    arms = tuple(_arm_indices(compiled, arm.name, models[arm.name], ferrous=ferrous) for arm in scene.arms)
+    frames = tuple(f"{arm.name}/{link}" for arm in scene.arms for link in _links(compiled, arm.name))
+    frames += tuple(body for person in scene.people for body in body_names(person.name))
+    parts = tuple(part.name for part in scene.parts)
+    return CellModel(
+        scene=scene,
+        model=compiled,
+        arms=arms,
+        frames=frames + parts,
+        frame_bodies=np.array([compiled.body(name).id for name in frames + parts], dtype=np.intp),
+        parts=parts,
+        part_qpos=_ints(compiled.joint(name).qposadr[0] + i for name in parts for i in range(7)),
+        part_dof=_ints(compiled.joint(name).dofadr[0] + i for name in parts for i in range(6)),
+        body_names=tuple(compiled.body(i).name for i in range(compiled.nbody)),
+        people=tuple(person_indices(compiled, person) for person in scene.people),
+    )
+
+
+def _empty_world(scene: SimScene) -> Any:
+    spec = mujoco.MjSpec()
+    spec.compiler.degree = False
+    option = spec.option
+    option.timestep = scene.step_s
+    if not scene.gravity:
+        option.gravity = [0.0, 0.0, 0.0]
+    option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    option.impratio = 20.0
+    return spec
+
+
+def _wxyz(pose: Pose) -> list[float]:
+    x, y, z, w = pose.xyzw
+    return [w, x, y, z]
+
+
+def _add_fixture(spec: Any, fixture: FixtureBody) -> None:
+    body = spec.worldbody.add_body(name=fixture.name, pos=list(fixture.pose.xyz), quat=_wxyz(fixture.pose))
+    if fixture.shape != "tray":
+        geom = _add_shape(body, fixture.name, fixture.shape, fixture.size_m, condim=3)
+        if fixture.spring_n_m > 0.0:
+            _add_spring(body, geom, fixture)
+        return
+    for centre, size in tray_boxes(fixture):
+        body.add_geom(type=_BOX, pos=list(centre), size=[edge / 2 for edge in size])
+
+
+def _add_spring(body: Any, geom: Any, fixture: FixtureBody) -> None:
+    joint = body.add_joint(name=fixture.name, type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0.0, 0.0, 1.0])
+    joint.stiffness[0] = fixture.spring_n_m
+    joint.damping[0] = fixture.spring_ns_m
+    geom.mass = fixture.sprung_kg
+    geom.priority, geom.solimp = _SKIN_PRIORITY, list(_SKIN_SOLIMP)
+    geom.friction[0] = fixture.skin_friction
+
+
+def tray_boxes(
+    tray: FixtureBody,
+) -> tuple[tuple[tuple[float, float, float], tuple[float, float, float]], ...]:
+    """Return centre (in the tray's frame) and full edge lengths of the floor and the four walls."""
+    length, width, height = tray.size_m
+    wall = tray.wall_m
+    rise = height - wall
+    across, along, up = (length - wall) / 2, (width - wall) / 2, wall + rise / 2
+    return (
+        ((0.0, 0.0, wall / 2), (length, width, wall)),
+        ((across, 0.0, up), (wall, width, rise)),
+        ((-across, 0.0, up), (wall, width, rise)),
+        ((0.0, along, up), (length - 2 * wall, wall, rise)),
+        ((0.0, -along, up), (length - 2 * wall, wall, rise)),
+    )
+
+
+def _add_part(spec: Any, part: PartBody) -> None:
+    body = spec.worldbody.add_body(name=part.name, pos=list(part.pose.xyz), quat=_wxyz(part.pose))
+    body.add_freejoint(name=part.name)
+    # Rolling friction (condim 6) keeps round parts where they are put down.
+    geom = _add_shape(body, part.name, part.shape, part.size_m, condim=3 if part.shape == "box" else 6)
+    geom.mass = part.mass_kg
+
+
+def _add_shape(body: Any, name: str, shape: str, size_m: tuple[float, ...], *, condim: int) -> Any:
+    half = [edge / 2 for edge in size_m]
+    match shape, len(half):
+        case "box", 3:
+            kind, size = _BOX, half
+        case "cylinder", 2:
+            kind, size = _CYLINDER, [half[0], half[1], 0.0]
+        case "sphere", 1:
+            kind, size = _SPHERE, [half[0], 0.0, 0.0]
+        case _:
+            raise CellError(
+                f"a {shape} cannot have the size {list(size_m)}",
+                where=name,
+                hint="box: three edge lengths; cylinder: diameter and length; sphere: diameter",
+            )
+    return body.add_geom(name=name, type=kind, size=size, condim=condim)
+
+
+def _add_arm(spec: Any, arm: ArmPlacement, model: RobotModel, fixtures: tuple[FixtureBody, ...]) -> None:
+    frame = spec.worldbody.add_frame(pos=list(arm.base.xyz), quat=_wxyz(arm.base))
+    spec.attach(arm_spec(model), frame=frame, prefix=f"{arm.name}/")
+    # The first moving link's shape reaches into whatever the base is bolted to.
+    shoulder = spec.joint(f"{arm.name}/{model.arm_joints[0]}").parent.name
+    for fixture in fixtures:
+        spec.add_exclude(bodyname1=shoulder, bodyname2=fixture.name)
+
+
+def _add_people(spec: Any, scene: SimScene) -> None:
+    if not scene.people:
+        return
+    for person in scene.people:
+        add_person(spec, person)
+    let_people_touch(spec, scene.fixtures)
+
+
+def _links(model: Any, arm: str) -> list[str]:
+    prefix = f"{arm}/"
+    names = (str(model.body(i).name) for i in range(model.nbody))
+    return [name.removeprefix(prefix) for name in names if name.startswith(prefix)]
+
+
+def _arm_indices(model: Any, name: str, robot: RobotModel, *, ferrous: tuple[str, ...]) -> ArmIndices:
+    joints = [f"{name}/{joint}" for joint in robot.arm_joints]
+    prefix = f"{name}/"
+    return ArmIndices(
+        name=name,
+        model=robot,
+        qpos=_ints(model.joint(j).qposadr[0] for j in joints),
+        dof=_ints(model.joint(j).dofadr[0] for j in joints),
+        motor=_ints(model.actuator(j).id for j in joints),
+        bodies=frozenset(i for i in range(model.nbody) if str(model.body(i).name).startswith(prefix)),
+        tool=tool_indices(model, name, robot.tool, ferrous=ferrous) if robot.tool is not None else None,
+    )
+
+
+def _ints(values: Iterable[Any]) -> Indices:
+    return np.array([int(value) for value in values], dtype=np.intp)

@@ -1,0 +1,202 @@
+"""The edge to MuJoCo: a compiled model and its state behind typed arrays and calls.
+
+MuJoCo's Python bindings carry no types, so its objects are `Any` in here and in the two modules
+that build specifications, and nowhere else.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robots.model.transform import cross
+from robots.port import Array
+from robots.sim.physics.mujoco_library import load_mujoco
+
+mujoco: Any = load_mujoco()
+
+
+class Physics:
+    """One MuJoCo world. The arrays are views of its state and stay valid.
+
+    Shapes: `positions` (nq,), `velocities`, `bias`, `pull` (nv,), `motors` (nu,), `gravity_m_s2` (3,).
+    `bias` is gravity and Coriolis force at the state that `start_step` has read. `pull` is what else
+    than motors, bias and the joints' own dampers has accelerated them in the last step: the torque that
+    the rest of the world exerts, as torque sensors in the joints and a model of the arm would tell it.
+    """
+
+    def __init__(self, model: Any) -> None:
+        self._model = model
+        self._data: Any = mujoco.MjData(model)
+        self._state_kind: Any = mujoco.mjtState.mjSTATE_INTEGRATION
+        self._step1, self._step2 = mujoco.mj_step1, mujoco.mj_step2
+        self._wrench = np.zeros(6)
+        self._attractions: dict[int, Array] = {}
+        self.step_s = float(model.opt.timestep)
+        self.dof_count = int(model.nv)
+        self.state_size = int(mujoco.mj_stateSize(model, self._state_kind))
+        self.geom_body: list[int] = model.geom_bodyid.tolist()
+        self.positions: Array = self._data.qpos
+        self.velocities: Array = self._data.qvel
+        self.motors: Array = self._data.ctrl
+        self.bias: Array = self._data.qfrc_bias
+        self.pull: Array = np.zeros(self.dof_count)
+        self.gravity_m_s2: Array = model.opt.gravity.copy()
+        self._motor_torque: Array = self._data.qfrc_actuator
+        self._passive: Array = self._data.qfrc_passive
+        self._change: Array = np.zeros(self.dof_count)
+        self._xpos: Array = self._data.xpos
+        self._xquat: Array = self._data.xquat
+        self._rotations: Array = self._data.xmat.reshape(-1, 3, 3)
+        self._body_wrenches: Array = self._data.cfrc_ext
+        self._tree_centres: Array = self._data.subtree_com
+        self._pushes: Array = self._data.xfrc_applied
+        self._roots: list[int] = model.body_rootid.tolist()
+
+    def refresh(self) -> None:
+        """Recompute everything that follows from positions and velocities."""
+        mujoco.mj_forward(self._model, self._data)
+
+    def start_step(self) -> None:
+        """Compute poses, contacts and bias of the present state."""
+        self._step1(self._model, self._data)
+        self._attractions.clear()
+
+    def finish_step(self) -> None:
+        """Apply the motors and what pushes, integrate over one step, and work out `pull` and the wrenches."""
+        np.negative(self.velocities, out=self._change)
+        pushes = self._pushes
+        before = {body: pushes[body].copy() for body in self._attractions}
+        for body, attraction in self._attractions.items():
+            pushes[body] += attraction
+        self._step2(self._model, self._data)
+        self._change += self.velocities
+        self._change /= self.step_s
+        mujoco.mj_mulM(self._model, self._data, self.pull, self._change)
+        self.pull += self.bias
+        self.pull -= self._passive
+        self.pull -= self._motor_torque
+        mujoco.mj_rnePostConstraint(self._model, self._data)
+        for body, push in before.items():
+            pushes[body] = push
+
+    def body_number(self, name: str) -> int:
+        """Return the number of a body."""
+        return int(self._model.body(name).id)
+
+    def members(self, body: int) -> NDArray[np.intp]:
+        """Return the numbers of a body and of all that hang on it."""
+        found = {body}
+        # A body's parent has a lower number.
+        for child, parent in enumerate(self._model.body_parentid.tolist()):
+            if parent in found:
+                found.add(child)
+        return np.array(sorted(found), dtype=np.intp)
+
+    def point_of(self, body: int, offset: Array) -> Array:
+        """Return a point of a body, given in its frame, in the world at the start of the last step, both (3,)."""
+        return self._xpos[body] + self._rotations[body] @ offset
+
+    def wrench_on(self, bodies: NDArray[np.intp], point: Array) -> Array:
+        """Return force and torque about `point` (6,), world axes, that contacts and pushes exerted on bodies.
+
+        It is of the last step; the bodies belong to one tree. A force sensor before the first of them
+        would tell the same, once their own weight and inertia are taken out.
+        """
+        sums = np.add.reduce(self._body_wrenches[bodies])
+        centre = self._tree_centres[self._roots[bodies[0]]]
+        force = sums[3:]
+        return np.concatenate((force, sums[:3] + cross(centre - point, force)))
+
+    def inertia_times(self, acceleration: Array, *, out: Array) -> None:
+        """Write the forces that would accelerate by `acceleration`, both (nv,)."""
+        mujoco.mj_mulM(self._model, self._data, out, acceleration)
+
+    def inertia_diagonal(self) -> Array:
+        """Return the diagonal of the mass matrix, (nv,)."""
+        full = np.zeros((self.dof_count, self.dof_count))
+        mujoco.mj_fullM(self._model, self._data, full)
+        return np.diag(full).copy()
+
+    def contact_pairs(self) -> list[tuple[int, int]]:
+        """Return the two geometries of each contact of the last step."""
+        return [(a, b) for a, b in self._data.contact.geom.tolist()] if self._data.ncon else []
+
+    def contact_geoms(self) -> NDArray[np.int32]:
+        """Return the same as an array, (m, 2), valid until the next step."""
+        return self._data.contact.geom
+
+    def contact_depth_m(self, contact: int) -> float:
+        """Return how deep two geometries were in one another at a contact of the last step, negative for a gap."""
+        return -float(self._data.contact.dist[contact])
+
+    def normal_force_n(self, contact: int) -> float:
+        """Return the normal force of a contact of the last step."""
+        mujoco.mj_contactForce(self._model, self._data, contact, self._wrench)
+        return float(self._wrench[0])
+
+    def pressing_force_n(self, contact: int, axis: Array) -> float:
+        """Return how hard a contact of the last step presses along a unit `axis` (world), friction included."""
+        mujoco.mj_contactForce(self._model, self._data, contact, self._wrench)
+        frame: Array = self._data.contact.frame[contact].reshape(3, 3)
+        return abs(float(axis @ (self._wrench[:3] @ frame)))
+
+    def geom_axes(self, geom: int) -> Array:
+        """Return the axes of a geometry in the world as columns, (3, 3)."""
+        return self._data.geom_xmat[geom].reshape(3, 3)
+
+    def geom_position(self, geom: int) -> Array:
+        """Return the centre of a geometry in the world, (3,)."""
+        return self._data.geom_xpos[geom]
+
+    def geom_distance(self, geom: int, point: Array) -> float:
+        """Return a lower bound of the distance from a point (world) to a geometry: to the sphere about it."""
+        return float(np.linalg.norm(self._data.geom_xpos[geom] - point)) - float(self._model.geom_rbound[geom])
+
+    def ray(self, geom: int, start: Array, direction: Array) -> float:
+        """Return how far from `start` a ray (world, unit direction) meets a primitive geometry, -1 if it does not."""
+        data, model = self._data, self._model
+        matrix, size, kind = data.geom_xmat[geom], model.geom_size[geom], model.geom_type[geom]
+        return float(mujoco.mju_rayGeom(data.geom_xpos[geom], matrix, size, start, direction, int(kind)))
+
+    def tendon(self, tendon: int) -> tuple[float, float]:
+        """Return the length of a tendon and how fast it grows."""
+        return float(self._data.ten_length[tendon]), float(self._data.ten_velocity[tendon])
+
+    def speed(self, body: int) -> float:
+        """Return how fast the origin of a free body moves, m/s."""
+        dof = int(self._model.body_dofadr[body])
+        return float(np.linalg.norm(self.velocities[dof : dof + 3]))
+
+    def attract(self, body: int, *, force: Array, point: Array) -> None:
+        """Add a field's or hand's force (3,) at a point, both in the world, to the step begun by `start_step` alone."""
+        attraction = self._attractions.setdefault(body, np.zeros(6))
+        attraction[:3] += force
+        attraction[3:] += cross(point - self._data.xipos[body], force)
+
+    def body_poses(self, bodies: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Return positions (m, 3) and quaternions w x y z (m, 4) of bodies at the start of the last step."""
+        return self._xpos[bodies], self._xquat[bodies]
+
+    def read_state(self, out: Array) -> None:
+        """Write everything that the future depends on, shape (`state_size`,)."""
+        mujoco.mj_getState(self._model, self._data, out, self._state_kind)
+
+    def rest_at(self, state: Array) -> None:
+        """Go to where a state was read, and stand still there."""
+        # What is no part of the state but left over from before must not reach the future either.
+        mujoco.mj_resetData(self._model, self._data)
+        mujoco.mj_setState(self._model, self._data, state, self._state_kind)
+        self.velocities[:] = 0.0
+        self._pushes[:] = 0.0
+        self.pull[:] = 0.0
+        self.refresh()
+
+    def state_hash(self) -> str:
+        """Return the SHA-256 of everything that the future depends on."""
+        state = np.zeros(self.state_size)
+        self.read_state(state)
+        return hashlib.sha256(state.tobytes()).hexdigest()

@@ -1,0 +1,85 @@
+"""What a cell looks like: the drawable bodies of its arms, fixtures, parts and people."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from engine.messages import Pose, SceneDescription, VisualGeometry
+from engine.messages.pose_algebra import compose_poses
+from robots.model.visual_mesh import LinkVisual, link_visuals
+from robots.sim.physics.cell_model import tray_boxes
+from robots.sim.physics.person_drawing import person_geometries
+from robots.sim.scene.sim_scene import FixtureBody, PartBody, SimScene
+
+
+def describe_scene(scene: SimScene, *, cache: Path | None = None) -> SceneDescription:
+    """Return everything that can be drawn; meshes come from `cache` (the user's folder by default) when there.
+
+    Frames are those of `FramePoses`: `<arm>/<link>`, `<person>/<body>` and part names; fixtures are fixed to `world`.
+    """
+    geometries = [
+        _mesh(arm.name, index, visual)
+        for arm in scene.arms
+        for index, visual in enumerate(link_visuals(arm.robot(), cache=cache))
+    ]
+    for fixture in scene.fixtures:
+        geometries += _fixture(fixture)
+    geometries += [_part(part) for part in scene.parts]
+    geometries += [geometry for person in scene.people for geometry in person_geometries(person)]
+    return SceneDescription(geometries=tuple(geometries))
+
+
+def _mesh(arm: str, index: int, visual: LinkVisual) -> VisualGeometry:
+    return VisualGeometry(
+        name=f"{arm}/{visual.link}/{index}",
+        frame=f"{arm}/{visual.link}",
+        kind="mesh",
+        vertices=visual.mesh.vertices,
+        faces=visual.mesh.faces,
+        rgba=visual.mesh.rgba,
+        xyz=visual.xyz,
+        xyzw=visual.xyzw,
+    )
+
+
+def _fixture(fixture: FixtureBody) -> list[VisualGeometry]:
+    pose = fixture.pose
+    if fixture.shape != "tray":
+        kind, size = _shape(fixture.shape, fixture.size_m)
+        return [
+            VisualGeometry(
+                name=fixture.name,
+                frame="world",
+                kind=kind,
+                size_m=size,
+                rgba=fixture.rgba,
+                xyz=pose.xyz,
+                xyzw=pose.xyzw,
+            )
+        ]
+    return [
+        VisualGeometry(
+            name=f"{fixture.name}/{index}",
+            frame="world",
+            kind="box",
+            size_m=size,
+            rgba=fixture.rgba,
+            xyz=compose_poses(pose, Pose(xyz=centre)).xyz,
+            xyzw=pose.xyzw,
+        )
+        for index, (centre, size) in enumerate(tray_boxes(fixture))
+    ]
+
+
+def _part(part: PartBody) -> VisualGeometry:
+    kind, size = _shape(part.shape, part.size_m)
+    return VisualGeometry(name=part.name, frame=part.name, kind=kind, size_m=size, rgba=part.rgba)
+
+
+def _shape(shape: str, size_m: tuple[float, ...]) -> tuple[str, tuple[float, ...]]:
+    if shape == "cylinder":
+        diameter, length = size_m
+        return "cylinder", (diameter / 2, length)
+    if shape == "sphere":
+        return "sphere", (size_m[0] / 2,)
+    return shape, size_m

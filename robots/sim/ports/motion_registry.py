@@ -1,0 +1,164 @@
+"""The motions under way in a world, by number: the side that states' skills wait on."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from engine.errors import CONNECT_AGAIN, RobotError
+from robots.control.motion_event import AnyMotionEvent, MotionFinished, MotionHeld, MotionResumed, ReflexTripped
+from robots.port import MotionEnd, MotionReport
+from robots.sim.commands.world_commands import AnyCommand, CancelMotion, HoldMotion, ResumeMotion
+
+
+class SimMotion:
+    """One motion in a simulated world; implements `robots.port.Motion`."""
+
+    def __init__(
+        self, number: int, *, send: Callable[[AnyCommand], None], progress: Callable[[], float | None]
+    ) -> None:
+        self.number = number
+        self._send = send
+        self._measure = progress
+        self._last_progress = 0.0
+        self._loop = asyncio.get_running_loop()
+        self._end: asyncio.Future[MotionReport] = self._loop.create_future()
+        self._asked = 0
+        self._waiters: list[tuple[int, asyncio.Future[None]]] = []
+
+    @property
+    def ended(self) -> bool:
+        """True once it has a report."""
+        return self._end.done()
+
+    @property
+    def progress(self) -> float:
+        """Share of the trajectory's time passed, 0 to 1; frozen at the end."""
+        if not self._end.done():
+            measured = self._measure()
+            if measured is not None:
+                self._last_progress = measured
+        return self._last_progress
+
+    async def report(self) -> MotionReport:
+        """Wait for the end; cancelling one waiter leaves the motion and the others alone."""
+        return await asyncio.shield(self._end)
+
+    async def hold(self) -> None:
+        """Decelerate on the path and return when at rest, or when the motion ended or was resumed meanwhile."""
+        self._asked += 1
+        await self._ask(HoldMotion(motion=self.number, request=self._asked))
+
+    async def resume(self) -> None:
+        """Go on along the path and return when moving, or when the motion ended or was held meanwhile."""
+        self._asked += 1
+        await self._ask(ResumeMotion(motion=self.number, request=self._asked))
+
+    def cancel(self) -> None:
+        """Ask to decelerate on the path; `report` then returns CANCELED once at rest."""
+        if not self._end.done():
+            self._send(CancelMotion(motion=self.number))
+
+    async def _ask(self, command: HoldMotion | ResumeMotion) -> None:
+        if self._end.done():
+            return
+        self._send(command)
+        answer: asyncio.Future[None] = self._loop.create_future()
+        self._waiters.append((command.request, answer))
+        await answer
+
+    def take(self, event: AnyMotionEvent) -> None:
+        """Record what happened in the world."""
+        match event:
+            case MotionHeld() | MotionResumed():
+                # Of a hold and a resume close together only the last is told; it answers both. What was
+                # asked since then is not answered: it is still on its way to the world.
+                self._answer(event.request)
+            case ReflexTripped():
+                # Its end follows, with the reason.
+                pass
+            case MotionFinished():
+                self._last_progress = event.progress
+                end = MotionEnd(event.end)
+                self.end_with(
+                    MotionReport(
+                        end=end, reason=event.reason, contact=event.contact, data=event.data, at_rest=event.at_rest
+                    )
+                )
+
+    def end_with(self, report: MotionReport) -> None:
+        """End it; a second end is ignored."""
+        if not self._end.done():
+            self._end.set_result(report)
+        self._answer(self._asked)
+
+    def _answer(self, up_to: int) -> None:
+        for request, waiter in self._waiters:
+            if request <= up_to and not waiter.done():
+                waiter.set_result(None)
+        self._waiters = [entry for entry in self._waiters if not entry[1].done()]
+
+
+class MotionRegistry:
+    """Numbers motions and passes what happens in the world on to them; a `HostListener`."""
+
+    def __init__(self, *, on_lost: Callable[[str], None]) -> None:
+        self._on_lost = on_lost
+        self._motions: dict[int, SimMotion] = {}
+        self._last_number = 0
+        self.lost_reason = ""
+        self.closed_reason = ""
+        """Why no motion may start for now, empty when they may."""
+        self.reflexes: dict[str, str] = {}
+        """Why the arms that have stopped by themselves last did."""
+        self._reflex_listeners: dict[str, list[Callable[[str], None]]] = {}
+
+    def next_number(self) -> int:
+        """Return a number that no motion has had.
+
+        Raises:
+            RobotError: the world is gone, or no motion may start for now.
+        """
+        if self.lost_reason:
+            raise RobotError(self.lost_reason, hint=CONNECT_AGAIN)
+        if self.closed_reason:
+            raise RobotError(self.closed_reason, hint="wait a moment")
+        self._last_number += 1
+        return self._last_number
+
+    def add(self, motion: SimMotion) -> None:
+        """Pass on to `motion` what happens to it."""
+        self._motions[motion.number] = motion
+
+    def under_way(self) -> tuple[SimMotion, ...]:
+        """The motions that have not ended."""
+        return tuple(self._motions.values())
+
+    def when_reflex(self, arm: str, tell: Callable[[str], None]) -> None:
+        """Call `tell` with the reason whenever an arm stops by itself."""
+        self._reflex_listeners.setdefault(arm, []).append(tell)
+
+    def happened(self, event: AnyMotionEvent) -> None:
+        """Pass an event on to its motion; tell of a reflex also where none is under way."""
+        if isinstance(event, ReflexTripped):
+            self.reflexes[event.arm] = event.reason
+            for tell in self._reflex_listeners.get(event.arm, ()):
+                tell(event.reason)
+        motion = self._motions.get(event.motion)
+        if motion is None:
+            return
+        motion.take(event)
+        if motion.ended:
+            del self._motions[event.motion]
+
+    def found(self) -> None:
+        """Take motions again: the world is back."""
+        self.lost_reason = ""
+
+    def lost(self, reason: str) -> None:
+        """Fail all motions: the world is gone."""
+        self.lost_reason = reason
+        motions, self._motions = self._motions, {}
+        for motion in motions.values():
+            motion.end_with(MotionReport(end=MotionEnd.FAILED, reason=reason))
+        self._on_lost(reason)

@@ -1,0 +1,190 @@
+"""The ports of simulated arms, alike over both hosts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from engine.errors import RobotError
+from robots.control.force_task_validation import validate_force_task
+from robots.control.settings_validation import validate_settings
+from robots.control.trajectory_playback import validate_trajectory
+from robots.model.robot_model import JointLimits
+from robots.port import (
+    ArmSample,
+    ArmSettings,
+    Array,
+    ContactCondition,
+    ForceTask,
+    JointTrajectory,
+    StreamKind,
+    Tolerance,
+)
+from robots.sim.commands.arm_commands import (
+    ConfigureArm,
+    FollowTrajectory,
+    RecoverArm,
+    StartGuiding,
+    StartStream,
+    TrackForce,
+)
+from robots.sim.host.world_host import WorldHost
+from robots.sim.loop.snapshot import ArmSummary
+from robots.sim.ports.exclusive_motion import ExclusiveMotion
+from robots.sim.ports.motion_registry import MotionRegistry, SimMotion
+from robots.sim.ports.sim_stream import SimStream
+
+_TWIST = 6
+_REFLEX_REASON = "external force or torque limit exceeded"
+
+
+class SimArmPort:
+    """Implements `robots.port.ArmPort` for one arm of a simulated world.
+
+    What starts a motion raises RobotError while another one is under way, while a reflex is not
+    recovered from, and when the world is gone.
+    """
+
+    def __init__(self, host: WorldHost, board: MotionRegistry, arm: ArmSummary, limits: JointLimits) -> None:
+        self._host = host
+        self._board = board
+        self._arm = arm
+        self._limits = limits
+        self._settings = ArmSettings()
+        self._one = ExclusiveMotion(arm.name, board)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names in order."""
+        return self._arm.joints
+
+    @property
+    def settings(self) -> ArmSettings:
+        """What is in force."""
+        return self._settings
+
+    @property
+    def reflex_reason(self) -> str:
+        """Why the arm has stopped by itself; empty where it has not.
+
+        That it has is seen in its state, the reason is told a moment later: until then it is said in general.
+        """
+        return self._board.reflexes.get(self._arm.name, _REFLEX_REASON) if self.sample().reflex else ""
+
+    def when_reflex(self, tell: Callable[[str], None]) -> None:
+        """Call `tell` with the reason whenever the arm stops by itself."""
+        self._board.when_reflex(self._arm.name, tell)
+
+    def sample(self) -> ArmSample:
+        """The newest measurement."""
+        return self._host.snapshot().arm(self._arm.name)
+
+    def follow(
+        self, trajectory: JointTrajectory, *, tolerance: Tolerance, until: ContactCondition | None = None
+    ) -> SimMotion:
+        """Start following; with `until` a contact on the way ends the motion.
+
+        Raises:
+            RobotError: as for all motions; the trajectory does not start at the set point at rest, or the
+                contact is none.
+        """
+        number = self._next_number()
+        if until is not None:
+            self._check_contact(until)
+        checked = validate_trajectory(trajectory, start_rad=self._set_point(), joints=self._arm.joints)
+        motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
+        return self._one.start(
+            motion, self._host, FollowTrajectory.of(self._arm.name, number, checked, tolerance, until)
+        )
+
+    def track_force(self, task: ForceTask, *, tolerance: Tolerance) -> SimMotion:
+        """Start following a tool path while pressing as wanted; the report carries a `ForceRecord`.
+
+        Raises:
+            RobotError: as for all motions, or the task cannot be done from the present set point.
+        """
+        number = self._next_number()
+        checked = validate_force_task(task, start_rad=self._set_point(), joints=self._arm.joints)
+        motion = SimMotion(number, send=self._host.send, progress=lambda: self._progress(number))
+        return self._one.start(motion, self._host, TrackForce.of(self._arm.name, number, checked, tolerance))
+
+    def stream(self, kind: StreamKind, *, watchdog_s: float) -> SimStream:
+        """Start doing what is sent.
+
+        Raises:
+            RobotError: as for all motions, or the watchdog is no time.
+        """
+        number = self._next_number()
+        if not (math.isfinite(watchdog_s) and watchdog_s > 0.0):
+            raise RobotError(f"watchdog_s cannot be {watchdog_s}", where=self._arm.name, hint="give a time above 0")
+        command = StartStream(arm=self._arm.name, motion=number, kind=kind, watchdog_s=watchdog_s)
+        return self._start_stream(command, width=_TWIST if kind == "tool_twist" else len(self._arm.joints))
+
+    def guide(self, *, damping: float = 0.0) -> SimStream:
+        """Float in gravity compensation.
+
+        Raises:
+            RobotError: as for all motions, or the damping is no share.
+        """
+        number = self._next_number()
+        if not 0.0 <= damping <= 1.0:
+            raise RobotError(f"damping cannot be {damping}", where=self._arm.name, hint="give a share from 0 to 1")
+        return self._start_stream(StartGuiding(arm=self._arm.name, motion=number, damping=damping), width=0)
+
+    def configure(self, settings: ArmSettings) -> None:
+        """Put settings into force from the next control period on.
+
+        Raises:
+            RobotError: a value is out of its range for this arm, or the world is gone.
+        """
+        checked = validate_settings(settings, arm=self._arm.name, joints=self._arm.joints, limits=self._limits)
+        self._host.send(ConfigureArm(arm=self._arm.name, settings=checked))
+        self._settings = checked
+
+    def recover(self) -> None:
+        """End a reflex; the arm holds itself where it stands."""
+        self._host.send(RecoverArm(arm=self._arm.name))
+        # Should it stop once more, the old reason is not the new one.
+        self._board.reflexes.pop(self._arm.name, None)
+
+    def begin(self) -> None:
+        """Know that the world is a new one, with settings as they are at first."""
+        self._settings = ArmSettings()
+
+    def _next_number(self) -> int:
+        number = self._one.number()
+        if self.sample().reflex:
+            why = self._board.reflexes.get(self._arm.name, _REFLEX_REASON)
+            raise RobotError(
+                f"the arm has stopped by itself: {why}",
+                where=self._arm.name,
+                hint="see that its way is free, then recover it",
+            )
+        return number
+
+    def _set_point(self) -> Array:
+        return np.asarray(self.sample().desired_rad)
+
+    def _progress(self, number: int) -> float | None:
+        return self._host.snapshot().arm_progress(self._arm.name, number)
+
+    def _start_stream(self, command: StartStream | StartGuiding, *, width: int) -> SimStream:
+        number = command.motion
+        stream = SimStream(
+            number, arm=self._arm.name, width=width, send=self._host.send, progress=lambda: self._progress(number)
+        )
+        self._one.start(stream, self._host, command)
+        return stream
+
+    def _check_contact(self, contact: ContactCondition) -> None:
+        length = math.hypot(*contact.direction)
+        if not (math.isfinite(contact.force_n) and contact.force_n > 0.0):
+            raise RobotError(
+                f"a contact cannot be {contact.force_n} N", where=self._arm.name, hint="give more than 0 N"
+            )
+        if length != 0.0 and not abs(length - 1.0) < 1e-3:
+            raise RobotError(
+                f"{contact.direction} is no direction", where=self._arm.name, hint="give a unit vector, or zero for any"
+            )

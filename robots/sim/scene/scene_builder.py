@@ -1,0 +1,116 @@
+"""From a cell document to the scene that a world is built from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import msgspec
+
+from engine.document.cell import CellDocument, Fixture, RobotSpec
+from engine.document.cell_perception import Person
+from engine.errors import CellError
+from robots.model.registry import model_location
+from robots.sim.scene.jitter import jitter_pose
+from robots.sim.scene.sim_scene import ArmPlacement, FixtureBody, PartBody, PersonBody, Rgba, SimScene
+
+Resolve = Callable[[str], Path]
+
+
+def build_scene(document: CellDocument, *, seed: int | None = None, resolve: Resolve = Path) -> SimScene:
+    """Return the scene of a cell; with a `seed`, parts lie off by their jitter.
+
+    Robots with another driver than `sim` are left out. `resolve` opens the document's paths
+    (`Cell.resolve`).
+
+    Raises:
+        CellError: a robot or gripper model is unknown, or the cell has no world.
+        DocumentError: a model folder or a calibration file is wrong.
+    """
+    world = document.world
+    if world is None:
+        raise CellError("the cell has no world to simulate", where=document.cell, hint="add `world: {kind: mujoco}`")
+    return SimScene(
+        step_s=world.step_s,
+        gravity=world.gravity,
+        engine_silence_s=world.engine_silence_s,
+        world_silence_s=world.world_silence_s,
+        arms=tuple(_arm(name, robot, resolve) for name, robot in document.robots.items() if robot.simulated),
+        fixtures=tuple(_fixture(name, fixture) for name, fixture in document.fixtures.items()),
+        parts=tuple(_parts(document, seed)),
+        people=tuple(_person(name, person) for name, person in document.people.items()),
+    )
+
+
+def _fixture(name: str, fixture: Fixture) -> FixtureBody:
+    body = FixtureBody(
+        name=name,
+        shape=fixture.shape,
+        size_m=fixture.size_m,
+        wall_m=fixture.wall_m,
+        pose=fixture.at.pose(),
+        rgba=_rgba(fixture.color),
+    )
+    spring = fixture.spring
+    if spring is None:
+        return body
+    return msgspec.structs.replace(
+        body,
+        spring_n_m=spring.stiffness_n_m,
+        spring_ns_m=spring.damping_ns_m,
+        sprung_kg=spring.mass_kg,
+        skin_friction=spring.friction,
+    )
+
+
+def _arm(name: str, robot: RobotSpec, resolve: Resolve) -> ArmPlacement:
+    placement = ArmPlacement(
+        name=name,
+        model=model_location(robot.model, resolve),
+        base=robot.base.pose(),
+        gripper=model_location(robot.gripper.model, resolve) if robot.gripper is not None else None,
+        calibration=str(resolve(robot.calibration)) if robot.calibration is not None else None,
+        coupled_joints=robot.coupled_joints,
+    )
+    try:
+        placement.robot()
+    except CellError as error:
+        raise CellError(error.message, where=f"robot {name}", hint=error.hint) from error
+    return placement
+
+
+def _parts(document: CellDocument, seed: int | None) -> list[PartBody]:
+    bodies: list[PartBody] = []
+    for name, part in document.parts.items():
+        pose = part.at.pose()
+        if seed is not None:
+            pose = jitter_pose(pose, name=name, seed=seed, xy_m=part.jitter.xy_m, yaw_rad=part.jitter.yaw_rad)
+        bodies.append(
+            PartBody(
+                name=name,
+                shape=part.shape,
+                size_m=part.size_m,
+                mass_kg=part.mass_kg,
+                magnetic=part.magnetic,
+                pose=pose,
+                rgba=_rgba(part.color),
+            )
+        )
+    return bodies
+
+
+def _person(name: str, person: Person) -> PersonBody:
+    return PersonBody(
+        name=name,
+        shoulder=person.shoulder,
+        hand_rests=person.hand_rests,
+        upper_arm_m=person.upper_arm_m,
+        forearm_m=person.forearm_m,
+        radius_m=person.radius_m,
+        rgba=_rgba(person.color),
+    )
+
+
+def _rgba(color: str) -> Rgba:
+    red, green, blue = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return (red, green, blue, 1.0)

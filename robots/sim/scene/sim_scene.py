@@ -1,0 +1,120 @@
+"""What a simulated cell consists of, as plain data that can cross a process border.
+
+All poses are in the world frame; sizes are metres. `box` has full edge lengths, `cylinder`
+(diameter, length along z), `sphere` its diameter; a `tray` has outer edge lengths and
+its pose is the centre of its bottom face, every other pose is the centre of the body.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from engine.document.cell_perception import arm_reach_m
+from engine.messages import Pose, Vector3
+from robots.model.registry import OWN_TOOL, robot_model
+from robots.model.robot_model import RobotModel
+from robots.port.heartbeat import CONTROL_SILENCE_S, ENGINE_SILENCE_S
+
+Rgba = tuple[float, float, float, float]
+GREY: Rgba = (0.7, 0.7, 0.7, 1.0)
+
+
+class ArmPlacement(msgspec.Struct, frozen=True, kw_only=True):
+    """One arm: its name in the cell, what it is made of, where its base stands.
+
+    `model` and `gripper` are names or folders of models; `gripper` is None for a bare flange.
+    `calibration` is the path of the arm's factory calibration file.
+    """
+
+    name: str
+    model: str
+    base: Pose
+    gripper: str | None = OWN_TOOL
+    calibration: str | None = None
+    coupled_joints: bool = False
+
+    def robot(self) -> RobotModel:
+        """Return the model of the arm with its tool.
+
+        Raises:
+            CellError: a model is unknown, or the arm has no such option.
+            DocumentError: a document of a model folder is wrong.
+        """
+        return robot_model(
+            self.model,
+            gripper=self.gripper,
+            calibration=Path(self.calibration) if self.calibration is not None else None,
+            coupled_joints=self.coupled_joints,
+        )
+
+
+class FixtureBody(msgspec.Struct, frozen=True, kw_only=True):
+    """A body that stays where it is; `wall_m` is the thickness of a tray's floor and walls.
+
+    With `spring_n_m` above 0 it rests on a spring and a damper and gives way along its z axis, as foam
+    or a workpiece on a compliant table does; it then weighs `sprung_kg`, and its soft skin has
+    `skin_friction` whatever touches it.
+    """
+
+    name: str
+    shape: str
+    size_m: tuple[float, ...]
+    pose: Pose
+    wall_m: float = 0.005
+    spring_n_m: float = 0.0
+    spring_ns_m: float = 60.0
+    sprung_kg: float = 0.1
+    skin_friction: float = 0.3
+    rgba: Rgba = GREY
+
+
+class PartBody(msgspec.Struct, frozen=True, kw_only=True):
+    """A free body with uniform density; a magnet pulls at those that are `magnetic`."""
+
+    name: str
+    shape: str
+    size_m: tuple[float, ...]
+    mass_kg: float
+    pose: Pose
+    magnetic: bool = False
+    rgba: Rgba = GREY
+
+
+class PersonBody(msgspec.Struct, frozen=True, kw_only=True):
+    """A person's arm: `shoulder` stays, the middle of the hand, a ball, begins at `hand_rests`.
+
+    `upper_arm_m` is from shoulder to elbow, `forearm_m` from there to the middle of the hand. It is moved,
+    whatever is in its way, passes through fixtures and other people, and collides with robots and parts.
+    """
+
+    name: str
+    shoulder: Vector3
+    hand_rests: Vector3
+    upper_arm_m: float = 0.32
+    forearm_m: float = 0.36
+    radius_m: float = 0.05
+    rgba: Rgba = GREY
+
+    @property
+    def reach_m(self) -> tuple[float, float]:
+        """Least and greatest distance of the hand from the shoulder."""
+        return arm_reach_m(self.upper_arm_m, self.forearm_m, self.radius_m)
+
+
+class SimScene(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a simulated world is built from; equal scenes give equal worlds, bit for bit.
+
+    In real time, `engine_silence_s` and `world_silence_s` are how long engine and world may each be silent before the
+    other acts, see `robots.port.control_process`.
+    """
+
+    step_s: float = 0.001
+    engine_silence_s: float = ENGINE_SILENCE_S
+    world_silence_s: float = CONTROL_SILENCE_S
+    gravity: bool = True
+    arms: tuple[ArmPlacement, ...] = ()
+    fixtures: tuple[FixtureBody, ...] = ()
+    parts: tuple[PartBody, ...] = ()
+    people: tuple[PersonBody, ...] = ()

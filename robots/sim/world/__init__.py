@@ -1,0 +1,4 @@
+"""The simulated world as a device of a cell: its topics, services, snapshots and connection.
+
+For cell composition, vision and workspace.
+"""

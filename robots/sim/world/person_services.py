@@ -1,0 +1,101 @@
+"""Answers what can be asked of the people of a simulated cell: reach, withdraw, count contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from engine.bus import SkillBus
+from engine.errors import SkillFailed
+from engine.messages import Vector3
+from engine.skills.people import ContactCount, CountContacts, Reach, ReachResult, Withdraw
+from engine.suggestions import did_you_mean
+from robots.port import Array
+from robots.sim.commands.world_commands import MovePersonHand
+from robots.sim.host.world_host import WorldHost
+from robots.sim.people.hand_trajectory import HandMotion, plan_hand_trajectory
+from robots.sim.people.person_report import PersonSample
+from robots.sim.physics.limb import Limb
+from robots.sim.scene.sim_scene import PersonBody
+
+
+class PersonServices:
+    """Refuses what an arm cannot do; what it can the world is told to do."""
+
+    def __init__(self, world: str, people: tuple[PersonBody, ...], host: WorldHost) -> None:
+        self._world = world
+        self._people = {person.name: person for person in people}
+        self._host = host
+
+    def register(self, bus: SkillBus) -> None:
+        """Answer on the bus, where there are people."""
+        if not self._people:
+            return
+        bus.advertise_service(Reach, self.reach, namespace=self._world)
+        bus.advertise_service(Withdraw, self.withdraw, namespace=self._world)
+        bus.advertise_service(CountContacts, self.count_contacts, namespace=self._world)
+
+    async def reach(self, request: Reach) -> ReachResult:
+        """Send a hand to a place; raises SkillFailed where it cannot get there, RobotError when the world is gone."""
+        person = self._person(request.person)
+        arrives_in_s = self._look(person, request.hand_m, request.speed_m_s, and_back=request.stay_s is not None)
+        return self._send(person, request.hand_m, request.speed_m_s, request.stay_s, arrives_in_s)
+
+    async def withdraw(self, request: Withdraw) -> ReachResult:
+        """Send a hand back; raises as `reach` does."""
+        person = self._person(request.person)
+        arrives_in_s = self._look(person, person.hand_rests, request.speed_m_s, and_back=False)
+        return self._send(person, person.hand_rests, request.speed_m_s, None, arrives_in_s)
+
+    async def count_contacts(self, request: CountContacts) -> ContactCount:
+        """Return the count of the physics."""
+        return self._sample(self._person(request.person)).count
+
+    def _send(
+        self, person: PersonBody, goal: Vector3, speed_m_s: float, stay_s: float | None, arrives_in_s: float
+    ) -> ReachResult:
+        self._host.send(MovePersonHand(person=person.name, hand_m=goal, speed_m_s=speed_m_s, stay_s=stay_s))
+        return ReachResult(person=person.name, hand_m=goal, arrives_in_s=arrives_in_s)
+
+    def _look(self, person: PersonBody, goal: Vector3, speed_m_s: float, *, and_back: bool) -> float:
+        """Return how long the way takes; raises SkillFailed where it cannot be gone."""
+        limb, place = Limb(person), np.array(goal)
+        least_m, greatest_m = person.reach_m
+        away_m = limb.away_m(place)
+        if not least_m <= away_m <= greatest_m:
+            raise SkillFailed(
+                f"{person.name} cannot reach {_written(goal)}: it is {away_m:.3f} m from the shoulder, "
+                f"{least_m:.3f} to {greatest_m:.3f} m can be reached",
+                where=self._world,
+                hint=f"the shoulder is at {_written(person.shoulder)}",
+            )
+        way = plan_hand_trajectory(self._sample(person).hand, place, speed_m_s=speed_m_s)
+        ways = [way.places()]
+        if and_back:
+            there = HandMotion(xyz=place, velocity=np.zeros(3))
+            ways.append(plan_hand_trajectory(there, np.array(person.hand_rests), speed_m_s=speed_m_s).places())
+        if any(_through(places, person, limb) for places in ways):
+            raise SkillFailed(
+                f"the hand of {person.name} would go through the shoulder on its way to {_written(goal)}",
+                where=self._world,
+                hint="let it reach to a place beside the shoulder first",
+            )
+        return way.duration_s
+
+    def _sample(self, person: PersonBody) -> PersonSample:
+        return self._host.snapshot().person(person.name)
+
+    def _person(self, name: str) -> PersonBody:
+        if name not in self._people:
+            raise SkillFailed(
+                f"there is no person {name}", where=self._world, hint=did_you_mean(name, tuple(self._people))
+            )
+        return self._people[name]
+
+
+def _through(places: Array, person: PersonBody, limb: Limb) -> bool:
+    least_m = person.reach_m[0]
+    return any(limb.away_m(place) < least_m * 0.999 for place in places)
+
+
+def _written(xyz: Vector3) -> str:
+    return f"({', '.join(f'{value:.3f}' for value in xyz)})"

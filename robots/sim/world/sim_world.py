@@ -1,0 +1,410 @@
+"""The simulated world of a cell as a device: opens its host, gives ports to its robots, publishes on the bus."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable
+from contextlib import AsyncExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from engine.bus import LeaseTable, SkillBus
+from engine.clock import VirtualLoop
+from engine.errors import RobotError, SkillFailed
+from engine.messages import Vector3
+from engine.robot import DeviceStatus, Robot
+from engine.skills.simulated_world import PushBody, PushBodyResult, ResetParts, ResetPartsResult
+from robots.port import ArmPort, GripperPort, HandPort, MagnetPort
+from robots.sim.commands.world_commands import PushSimBody, StopAll
+from robots.sim.commands.world_commands import ResetFreeParts as ResetPartsCommand
+from robots.sim.grip.tool_summary import tool_summary
+from robots.sim.host.lockstep_host import LockstepHost
+from robots.sim.host.process_host import NewStopLine, ProcessHost
+from robots.sim.host.world_host import StepHook, WorldHost
+from robots.sim.loop.snapshot import ArmSummary, SimSnapshot
+from robots.sim.physics.scene_description import describe_scene
+from robots.sim.ports.motion_registry import MotionRegistry
+from robots.sim.ports.sim_outputs import SimOutputPort
+from robots.sim.ports.sim_ports import SimArmPort
+from robots.sim.ports.tool_ports import ToolPorts
+from robots.sim.scene.sim_scene import ArmPlacement, SimScene
+from robots.sim.world.person_services import PersonServices
+from robots.sim.world.sim_robot import SimRobot, StatefulDevice, WorldDependentDevice
+from robots.sim.world.snapshot_codec import WorldImage, decode_snapshot, encode_snapshot
+from robots.sim.world.world_publisher import FRAME_RATE_HZ, JOINT_RATE_HZ, WorldPublisher
+
+RobotMaker = Callable[["SimWorld"], tuple[SimRobot, ...]]
+
+
+def no_robots(_world: SimWorld) -> tuple[SimRobot, ...]:
+    """Make no skill servers: for who uses the ports directly."""
+    return ()
+
+
+class SimWorld:
+    """Implements `engine.robot.World`; with a lockstep host also `engine.clock.LockstepSimulation`:
+    it attaches itself to a `VirtualLoop` while it is open.
+
+    `make_robots` puts the skill servers on the ports, `arm(name)` and `gripper(name)`, which exist
+    before the world is opened and work while it is open. Those of the made that are on no arm are devices of
+    the world itself, such as what watches it: they are entered, registered and left along with the world.
+    """
+
+    def __init__(
+        self, scene: SimScene, *, host: WorldHost, make_robots: RobotMaker = no_robots, cache: Path | None = None
+    ) -> None:
+        self._scene = scene
+        self._host = host
+        self._cache = cache
+        self._board = MotionRegistry(on_lost=self._lost)
+        self._arms = {placement.name: _summary(placement) for placement in scene.arms}
+        self._arm_ports = {
+            placement.name: SimArmPort(host, self._board, self._arms[placement.name], placement.robot().limits)
+            for placement in scene.arms
+        }
+        self._tools = ToolPorts(host, self._board, self._arms)
+        self._outputs = {
+            placement.name: SimOutputPort(placement.name, count=count)
+            for placement in scene.arms
+            if (count := placement.robot().digital_outputs)
+        }
+        self._status = DeviceStatus.DISCONNECTED
+        self._at_loss = b""
+        self._tell_connection: Callable[[], None] = _nothing
+        self._publisher: WorldPublisher | None = None
+        self._bus: SkillBus | None = None
+        self._timer: asyncio.Task[None] | None = None
+        self._joint_steps = max(1, round(1.0 / (JOINT_RATE_HZ * scene.step_s)))
+        self._frame_steps = max(1, round(1.0 / (FRAME_RATE_HZ * scene.step_s)))
+        self._hooked_steps = 0
+        self._hooks: list[tuple[StepHook, Callable[[], bool]]] = []
+        self.people = PersonServices(self.name, scene.people, host)
+        self._robots = make_robots(self)
+        self._devices = tuple(robot for robot in self._robots if robot.name not in self._arms)
+        self._opened_devices = AsyncExitStack()
+
+    @property
+    def name(self) -> str:
+        """Its namespace on the bus."""
+        return "cell"
+
+    @property
+    def status(self) -> DeviceStatus:
+        """FAULT once the world's process is lost."""
+        if self._status is DeviceStatus.READY and self._board.under_way():
+            return DeviceStatus.MOVING
+        return self._status
+
+    @property
+    def host(self) -> WorldHost:
+        """Where it runs."""
+        return self._host
+
+    def robots(self) -> tuple[Robot, ...]:
+        """The simulated robots, not yet connected."""
+        return tuple(robot for robot in self._robots if robot.name in self._arms)
+
+    def devices(self) -> tuple[Robot, ...]:
+        """The devices of the world itself, entered, registered and left along with it."""
+        return self._devices
+
+    def each_step(self, hook: StepHook, *, busy: Callable[[], bool]) -> None:
+        """Call `hook` after every step in lockstep, from now on; time passes while `busy` says so."""
+        self._hooks.append((hook, busy))
+
+    def arm_names(self) -> tuple[str, ...]:
+        """The arms of this world, in document order."""
+        return tuple(self._arm_ports)
+
+    def arm(self, name: str) -> ArmPort:
+        """The port of one arm."""
+        return self._arm_ports[name]
+
+    def gripper(self, name: str) -> GripperPort:
+        """The port of the gripper on one arm."""
+        return self._tools.gripper(name)
+
+    def hand(self, name: str) -> HandPort:
+        """The port of the hand on one arm."""
+        return self._tools.hand(name)
+
+    def magnet(self, name: str) -> MagnetPort:
+        """The port of the magnet on one arm."""
+        return self._tools.magnet(name)
+
+    def outputs(self, name: str) -> SimOutputPort | None:
+        """The digital outputs of one arm's controller, None where it has none."""
+        return self._outputs.get(name)
+
+    def measured(self) -> SimSnapshot:
+        """The newest measurement of everything."""
+        return self._host.snapshot()
+
+    def snapshot(self) -> bytes:
+        """Everything needed to go on from here later, in this process or another: see `restore`."""
+        grips = {name: grip for robot in self._robots for name, grip in robot.grips().items()}
+        settings = {name: port.settings for name, port in self._arm_ports.items()}
+        reflexes = {name: reason for name, port in self._arm_ports.items() if (reason := port.reflex_reason)}
+        outputs = {name: port.values for name, port in self._outputs.items()}
+        memos = {
+            robot.name: memo for robot in self._robots if isinstance(robot, StatefulDevice) and (memo := robot.memo())
+        }
+        image = WorldImage.of(self._host.image(), grips, settings, reflexes, outputs, memos)
+        return encode_snapshot(image, model=self._host.summary.model)
+
+    async def restore(self, snapshot: bytes) -> None:
+        """Bring everything to where a snapshot was made, at rest: set points are held, grippers keep their grip.
+
+        The arms have the settings and digital outputs that they had.
+
+        Raises:
+            RobotError: something moves, the world is gone, or the snapshot is none of this very world.
+        """
+        if self._board.under_way():
+            raise RobotError("something moves", where=self.name, hint="restore before the first goal, or stop it")
+        await self._take_over(self._unsealed(snapshot))
+
+    def _unsealed(self, snapshot: bytes) -> WorldImage:
+        summary = self._host.summary
+        return decode_snapshot(snapshot, model=summary.model, size=summary.image_size)
+
+    async def _take_over(self, image: WorldImage) -> None:
+        self._board.closed_reason = "the world is being restored"
+        try:
+            for name, settings in image.settings.items():
+                self._arm_ports[name].configure(settings)
+            await self._host.restore(image.array())
+            self._board.reflexes = dict(image.reflexes)
+        finally:
+            self._board.closed_reason = ""
+        for name, values in image.outputs.items():
+            self._outputs[name].recall(values)
+        for robot in self._robots:
+            robot.recall(image.grips)
+            if isinstance(robot, StatefulDevice):
+                robot.remember(image.memos.get(robot.name, b""))
+
+    @property
+    def lost_reason(self) -> str:
+        """Why the world is gone; empty while it is there."""
+        return self._board.lost_reason if self._status is DeviceStatus.FAULT else ""
+
+    def when_connection_changes(self, tell: Callable[[], None]) -> None:
+        """Call `tell` when the world is lost and when it is back."""
+        self._tell_connection = tell
+
+    async def reconnect(self) -> str:
+        """Start a new process for a world that was lost, and bring it to the last instant of the old one, at rest.
+
+        Raises:
+            RobotError: the process does not start, or is lost again at once.
+        """
+        if not self.lost_reason:
+            return ""
+        await self._host.close()
+        await self._open_host()
+        note = await self._go_on_after_loss()
+        self._board.found()
+        self._status, self._at_loss = DeviceStatus.READY, b""
+        self._publish_on()
+        for robot in self._robots:
+            if isinstance(robot, WorldDependentDevice):
+                robot.world_restored()
+        self._tell_connection()
+        return note
+
+    async def _go_on_after_loss(self) -> str:
+        try:
+            image = self._unsealed(self._at_loss)
+        except RobotError as error:
+            self._begin_ports()
+            self._board.reflexes = {}
+            for robot in self._robots:
+                robot.recall({})
+            return f"the world has begun anew, with everything where the cell document has it: {error.message}"
+        await self._take_over(image)
+        return ""
+
+    async def _open_host(self) -> None:
+        await self._host.open(self._board)
+        if isinstance(self._host, LockstepHost):
+            self._host.begin(asyncio.get_running_loop().time())
+
+    def _begin_ports(self) -> None:
+        for port in (*self._arm_ports.values(), *self._outputs.values()):
+            port.begin()
+
+    def push(self, body: str, *, force_n: Vector3, duration_s: float, at_m: Vector3 = (0.0, 0.0, 0.0)) -> None:
+        """Let a hand push at a body from now on, in world axes, at a point of its frame; replaces its last push.
+
+        `body` is one of `host.summary.bodies`: `left/panda_hand`, the name of a part.
+
+        Raises:
+            RobotError: there is no such body, a number is not finite, or the world is gone.
+        """
+        if body not in self._host.summary.bodies:
+            raise RobotError(f"there is no body {body}", where=self.name, hint="see the names in `host.summary.bodies`")
+        if not all(map(math.isfinite, (*force_n, *at_m, duration_s))):
+            raise RobotError("a push has numbers that are not finite", where=self.name)
+        self._host.send(PushSimBody(body=body, force_n=force_n, duration_s=duration_s, at_m=at_m))
+
+    def register(self, bus: SkillBus) -> None:
+        """Publish scene, frames, parts, joints and grippers; the world is open."""
+        self._publisher = WorldPublisher(
+            bus,
+            self._host,
+            lambda: describe_scene(self._scene, cache=self._cache),
+            joint_maps={placement.name: placement.robot().joint_map for placement in self._scene.arms},
+        )
+        self._bus = bus
+        bus.advertise_service(ResetParts, self._reset_parts, namespace=self.name)
+        bus.advertise_service(PushBody, self._push_body, namespace=self.name)
+        self.people.register(bus)
+        for device in self._devices:
+            device.register(bus)
+        self._publish_on()
+
+    def _publish_on(self) -> None:
+        """Publish in real time; in lockstep every step does."""
+        if self._publisher is not None and not isinstance(self._host, LockstepHost):
+            self._timer = asyncio.get_running_loop().create_task(self._publish_in_real_time(), name="world publisher")
+
+    async def _push_body(self, request: PushBody) -> PushBodyResult:
+        self.push(request.body, force_n=request.force_n, duration_s=request.duration_s, at_m=request.at_m)
+        return PushBodyResult(body=request.body)
+
+    async def _reset_parts(self, request: ResetParts) -> ResetPartsResult:
+        """Put the parts back; raises SkillFailed while a run holds an arm or something moves."""
+        leases = self._bus.leases if self._bus is not None else LeaseTable()
+        owners = {arm: owner for arm in self._arms if (owner := leases.owner(arm)) is not None}
+        for arm, owner in owners.items():
+            raise SkillFailed(f"{arm} is commanded by run {owner}", where=self.name, hint="wait for its end or stop it")
+        if self._board.under_way():
+            raise SkillFailed("something moves", where=self.name, hint="stop it first")
+        self._host.send(ResetPartsCommand())
+        return ResetPartsResult(parts=tuple(part.name for part in self._scene.parts))
+
+    async def stop(self) -> None:
+        """Cancel every motion and return when all have ended at rest.
+
+        Raises:
+            RobotError: an arm did not come to rest, or the world is gone.
+        """
+        motions = self._board.under_way()
+        self._host.send(StopAll())
+        reports = await asyncio.gather(*(motion.report() for motion in motions))
+        moving = [report.reason for report in reports if not report.at_rest]
+        if moving or self._board.lost_reason:
+            raise RobotError("; ".join(moving) or self._board.lost_reason, where=self.name)
+
+    async def __aenter__(self) -> Self:
+        await self._open_host()
+        self._begin_ports()
+        self._status = DeviceStatus.READY
+        loop = asyncio.get_running_loop()
+        if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
+            loop.attach(self)
+        try:
+            for device in self._devices:
+                await self._opened_devices.enter_async_context(device)
+        except BaseException:
+            # Whatever stopped a device from opening, cancellation included, the world must not be left open.
+            await self.__aexit__(None, None, None)
+            raise
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            await self._stop_publishing()
+            await self._opened_devices.aclose()
+            if self._status is DeviceStatus.READY:
+                await self.stop()
+        finally:
+            # Also when this is cancelled while it waits, the world ends.
+            loop = asyncio.get_running_loop()
+            if isinstance(self._host, LockstepHost) and isinstance(loop, VirtualLoop):
+                loop.detach(self)
+            self._status = DeviceStatus.DISCONNECTED
+            await self._host.close()
+
+    async def _stop_publishing(self) -> None:
+        timer, self._timer = self._timer, None
+        if timer is not None:
+            timer.cancel()
+            await asyncio.wait((timer,))
+
+    @property
+    def busy(self) -> bool:
+        """True while a motion is under way or a topic is read (lockstep)."""
+        if self._lockstep().busy or (self._publisher is not None and self._publisher.read):
+            return True
+        return any(busy() for _, busy in self._hooks)
+
+    def advance(self, until_s: float) -> float:
+        """Step towards `until_s`; returns early, with the time reached, once somebody was told something."""
+        return self._lockstep().advance(until_s, after_step=self._after_step)
+
+    def _lockstep(self) -> LockstepHost:
+        if not isinstance(self._host, LockstepHost):
+            raise RobotError("a world in real time cannot be stepped", hint="open the cell with the virtual clock")
+        return self._host
+
+    def _after_step(self) -> bool:
+        self._hooked_steps += 1
+        publisher, told = self._publisher, False
+        if publisher is not None:
+            if self._hooked_steps % self._joint_steps == 0:
+                told = publisher.publish_joints()
+            if self._hooked_steps % self._frame_steps == 0:
+                told = publisher.publish_frames() or told
+        for hook, _ in self._hooks:
+            told = hook() or told
+        return told
+
+    async def _publish_in_real_time(self) -> None:
+        assert self._publisher is not None
+        loop = asyncio.get_running_loop()
+        every = max(1, round(JOINT_RATE_HZ / FRAME_RATE_HZ))
+        start, tick = loop.time(), 0
+        while not self._board.lost_reason:
+            tick = max(tick + 1, int((loop.time() - start) * JOINT_RATE_HZ))
+            await asyncio.sleep(max(0.0, start + tick / JOINT_RATE_HZ - loop.time()))
+            self._publisher.publish_joints()
+            if tick % every == 0:
+                self._publisher.publish_frames()
+
+    def _lost(self, reason: str) -> None:
+        if self._status is not DeviceStatus.READY:
+            return
+        self._at_loss = self.snapshot()
+        self._status = DeviceStatus.FAULT
+        for robot in self._robots:
+            if isinstance(robot, WorldDependentDevice):
+                robot.world_lost(reason)
+        self._tell_connection()
+
+
+def _nothing() -> None:
+    """Tell nobody."""
+
+
+def new_world(
+    scene: SimScene,
+    *,
+    virtual: bool,
+    make_robots: RobotMaker = no_robots,
+    cache: Path | None = None,
+    new_stop_line: NewStopLine | None = None,
+) -> SimWorld:
+    """Return a world for virtual time (in this process, in lockstep) or real time (in its own process)."""
+    host = LockstepHost(scene) if virtual else ProcessHost(scene, new_stop_line=new_stop_line)
+    return SimWorld(scene, host=host, make_robots=make_robots, cache=cache)
+
+
+def _summary(placement: ArmPlacement) -> ArmSummary:
+    robot = placement.robot()
+    return ArmSummary(name=placement.name, joints=robot.arm_joints, tool=tool_summary(robot.tool))

@@ -1,0 +1,124 @@
+"""A snapshot of a world as bytes: what it holds, and the marks by which damage and mix-ups are noticed."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TypeVar
+
+import msgspec
+import numpy as np
+
+from engine.errors import RobotError
+from robots.gripper.grasp_check import GraspCommand
+from robots.port import ArmSettings, Array
+from robots.sim.physics.physics import mujoco
+
+FORMAT = 2
+"""Raised whenever the meaning of the bytes changes."""
+
+S = TypeVar("S", bound=msgspec.Struct)
+
+_NUMBER = np.dtype("<f8")
+
+
+class WorldImage(msgspec.Struct, frozen=True, kw_only=True):
+    """A world at one instant: its numbers as an `ImageLayout` has them, what each gripper was told to grasp,
+    the settings of each arm, why those that have stopped by themselves did, and the digital outputs of those
+    that have some. `memos` are what devices of the world have to know again, by their names, in their own words.
+    """
+
+    numbers: bytes
+    grips: dict[str, GraspCommand]
+    settings: dict[str, ArmSettings]
+    reflexes: dict[str, str]
+    outputs: dict[str, tuple[bool, ...]]
+    memos: dict[str, bytes] = {}
+
+    @classmethod
+    def of(
+        cls,
+        numbers: Array,
+        grips: dict[str, GraspCommand],
+        settings: dict[str, ArmSettings],
+        reflexes: dict[str, str],
+        outputs: dict[str, tuple[bool, ...]],
+        memos: dict[str, bytes] | None = None,
+    ) -> WorldImage:
+        """Return the image with these numbers."""
+        data = numbers.astype(_NUMBER, copy=False).tobytes()
+        return cls(numbers=data, grips=grips, settings=settings, reflexes=reflexes, outputs=outputs, memos=memos or {})
+
+    def array(self) -> Array:
+        """Return the numbers."""
+        return np.frombuffer(self.numbers, dtype=_NUMBER).astype(np.float64)
+
+
+class _FormatHeader(msgspec.Struct, frozen=True, kw_only=True):
+    """What every format begins with."""
+
+    flexcell_world: int
+
+
+class _SnapshotFile(_FormatHeader, frozen=True, kw_only=True):
+    simulator: str
+    model: str
+    digest: bytes
+    content: bytes
+
+
+def encode_snapshot(image: WorldImage, *, model: str) -> bytes:
+    """Return the snapshot of a world whose compiled model has the fingerprint `model`."""
+    content = msgspec.msgpack.encode(image)
+    return msgspec.msgpack.encode(
+        _SnapshotFile(
+            flexcell_world=FORMAT,
+            simulator=_simulator(),
+            model=model,
+            digest=hashlib.sha256(content).digest(),
+            content=content,
+        )
+    )
+
+
+def decode_snapshot(snapshot: bytes, *, model: str, size: int) -> WorldImage:
+    """Return the image in a snapshot of this very world; it has `size` numbers.
+
+    Raises:
+        RobotError: it is no snapshot, is damaged, or was made by another version or of another world.
+    """
+    label = _decoded(snapshot, _FormatHeader)
+    if label.flexcell_world != FORMAT:
+        raise RobotError(
+            f"the snapshot has format {label.flexcell_world}, this version reads {FORMAT}",
+            hint="continue with the version that made it",
+        )
+    seal = _decoded(snapshot, _SnapshotFile)
+    if hashlib.sha256(seal.content).digest() != seal.digest:
+        raise RobotError("the snapshot of the world is damaged", hint="start again from the beginning")
+    if seal.simulator != _simulator():
+        raise RobotError(
+            f"the snapshot was made with {seal.simulator}, this is {_simulator()}",
+            hint="continue with the simulator that made it",
+        )
+    if seal.model != model:
+        raise RobotError(
+            "the snapshot is of another world", hint="open the same cell with the same seed as when it was made"
+        )
+    return _sound(_decoded(seal.content, WorldImage), size)
+
+
+def _decoded(data: bytes, kind: type[S]) -> S:
+    try:
+        return msgspec.msgpack.decode(data, type=kind)
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise RobotError("these bytes are no snapshot of a simulated world") from error
+
+
+def _simulator() -> str:
+    return f"MuJoCo {mujoco.__version__}"
+
+
+def _sound(image: WorldImage, size: int) -> WorldImage:
+    if len(image.numbers) != size * _NUMBER.itemsize or not np.isfinite(image.array()).all():
+        raise RobotError("the snapshot holds a world that cannot be", hint="start again from the beginning")
+    return image

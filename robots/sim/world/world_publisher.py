@@ -1,0 +1,85 @@
+"""What a world tells on the bus, at which rate: scene, frames, parts, joints, forces, tools.
+
+Latest values are made on demand, streams only while somebody subscribes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from engine.bus import SkillBus
+from engine.messages import FramePoses, PartPoses, Pose, SceneDescription
+from robots.model.joint_map import JointMap
+from robots.sim.host.world_host import WorldHost
+from robots.sim.loop.snapshot import SimSnapshot
+from robots.sim.world.arm_topics import arm_topics
+from robots.sim.world.tool_topics import tool_topic
+
+FRAME_RATE_HZ = 30.0
+JOINT_RATE_HZ = 100.0
+
+
+class WorldPublisher:
+    """Publishes the state of one world on one bus."""
+
+    def __init__(
+        self,
+        bus: SkillBus,
+        host: WorldHost,
+        describe: Callable[[], SceneDescription],
+        *,
+        joint_maps: Mapping[str, JointMap],
+    ) -> None:
+        self._host = host
+        summary = host.summary
+        self._frames = summary.frames
+        self._parts = frozenset(summary.parts)
+        self._part_rows = [(row, name) for row, name in enumerate(summary.frames) if name in self._parts]
+        arms = tuple(topic for arm in summary.arms for topic in arm_topics(bus, host, arm, joint_maps[arm.name]))
+        topics = (tool_topic(bus, host, arm, parts=self._parts) for arm in summary.arms)
+        self._fast = (*arms, *(topic for topic in topics if topic is not None))
+        self._frame_topic = bus.topic("cell/frames", FramePoses)
+        self._part_topic = bus.topic("cell/parts", PartPoses)
+        self._frame_topic.provide(lambda: self._frame_poses(host.snapshot()))
+        self._part_topic.provide(lambda: self._part_poses(host.snapshot()))
+        bus.topic("cell/scene", SceneDescription).publish(describe())
+
+    @property
+    def read(self) -> bool:
+        """True while somebody subscribes to anything that changes."""
+        slow = self._frame_topic.subscriber_count + self._part_topic.subscriber_count
+        return slow > 0 or self._fast_read()
+
+    def publish_joints(self) -> bool:
+        """Publish joints, forces and tools to who subscribes; true if anybody did."""
+        if not self._fast_read():
+            return False
+        snapshot = self._host.snapshot()
+        for topic in self._fast:
+            if topic.read:
+                topic.publish(snapshot)
+        return True
+
+    def publish_frames(self) -> bool:
+        """Publish frames and parts to who subscribes; true if anybody did."""
+        frames, parts = self._frame_topic.subscriber_count > 0, self._part_topic.subscriber_count > 0
+        if not (frames or parts):
+            return False
+        snapshot = self._host.snapshot()
+        if frames:
+            self._frame_topic.publish(self._frame_poses(snapshot))
+        if parts:
+            self._part_topic.publish(self._part_poses(snapshot))
+        return True
+
+    def _fast_read(self) -> bool:
+        return any(topic.read for topic in self._fast)
+
+    def _frame_poses(self, snapshot: SimSnapshot) -> FramePoses:
+        xyz, xyzw = snapshot.frames()
+        return FramePoses(time_s=snapshot.time_s, names=self._frames, xyz=xyz, xyzw=xyzw)
+
+    def _part_poses(self, snapshot: SimSnapshot) -> PartPoses:
+        xyz, xyzw = snapshot.frames()
+        poses = {name: Pose(xyz=xyz[row], xyzw=xyzw[row]) for row, name in self._part_rows}
+        return PartPoses(time_s=snapshot.time_s, poses=poses)

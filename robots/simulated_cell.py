@@ -1,0 +1,90 @@
+"""The world of a cell document with skill servers on its arms and grippers: the entry point `mujoco`."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from engine.bus import SkillBus
+from engine.clock import Clock
+from engine.document.cell import Cell
+from engine.errors import CellError
+from robots.arm.arm_server import ArmServer
+from robots.arm.output_services import OutputServices
+from robots.model.robot_model import RobotModel
+from robots.sim.host.process_host import NewStopLine
+from robots.sim.scene.scene_builder import build_scene
+from robots.sim.scene.sim_scene import ArmPlacement, SimScene
+from robots.sim.world.sim_robot import SimRobot
+from robots.sim.world.sim_world import SimWorld
+from robots.sim.world.sim_world import new_world as new_sim_world
+from robots.tool_servers import tool_server
+from robots.vision.cell_cameras import cell_cameras
+from robots.workspace.live_scene import LiveScene
+from robots.workspace.planning_services import PlanningServices
+from robots.workspace.workspace import Workspace
+from robots.workspace.world_snapshot import WorldPoseReader
+
+
+def new_world(
+    cell: Cell, *, bus: SkillBus, virtual: bool, seed: int | None, new_stop_line: NewStopLine | None = None
+) -> SimWorld:
+    """Return the simulated world of a cell, not yet open; its robots answer the motion and gripper skills.
+
+    In real time it takes STOP on a line of `new_stop_line`, where there is one.
+
+    Raises:
+        CellError: a model is unknown, or a size or gripper does not fit.
+    """
+    scene = build_scene(cell.document, seed=seed, resolve=cell.resolve)
+
+    def make_robots(world: SimWorld) -> tuple[SimRobot, ...]:
+        cameras = cell_cameras(cell.document, scene=scene, world=world, seed=seed)
+        workspace = Workspace(
+            partial(_live_scene, scene, world),
+            planners=PlanningServices(bus.clock),
+            clock=bus.clock,
+            occupancy=cameras if cell.document.occupancy is not None else None,
+        )
+        arms = tuple(_arm(cell, world, placement, bus.clock, workspace) for placement in scene.arms)
+        return (*((cameras,) if cameras is not None else ()), workspace, *arms)
+
+    return new_sim_world(scene, virtual=virtual, make_robots=make_robots, new_stop_line=new_stop_line)
+
+
+def _live_scene(scene: SimScene, world: SimWorld) -> LiveScene:
+    # Coal is loaded by who needs a scene, not by every cell that is opened.
+    from robots.planning.scene.cell_planning_scene import planning_scene
+
+    parts = tuple(part.name for part in scene.parts)
+    return LiveScene(planning_scene(scene), parts=parts, look=WorldPoseReader(world, scene))
+
+
+def _arm(cell: Cell, world: SimWorld, placement: ArmPlacement, clock: Clock, workspace: Workspace) -> ArmServer:
+    model = placement.robot()
+    return ArmServer(
+        name=placement.name,
+        model=model,
+        base=placement.base,
+        port=world.arm(placement.name),
+        clock=clock,
+        gripper=tool_server(world, placement.name, model.tool),
+        outputs=_outputs(cell, world, placement.name, model),
+        workspace=workspace,
+    )
+
+
+def _outputs(cell: Cell, world: SimWorld, name: str, model: RobotModel) -> OutputServices | None:
+    """Return the outputs of an arm that has some; raises CellError where the cell names one that it has not."""
+    uses = cell.document.robots[name].outputs
+    for use, output in uses.items():
+        if output >= model.digital_outputs:
+            has = f"the outputs 0 to {model.digital_outputs - 1}" if model.digital_outputs else "no outputs"
+            raise CellError(
+                f"{name} has no output {output} for {use}",
+                where=cell.source.position(("robots", name, "outputs", use)),
+                hint=f"a {model.name} has {has}",
+            )
+    port = world.outputs(name)
+    if port is None:
+        return None
+    return OutputServices(name, port, uses={str(use): output for use, output in uses.items()})

@@ -1,0 +1,62 @@
+"""Carries a goal through its motion: feedback on the way, hold, resume and cancel, and how the motion ended."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from engine.bus import ActiveGoal
+from engine.errors import RobotError, SkillFailed
+from robots.port import Motion, MotionEnd, MotionReport
+
+FEEDBACK_S = 0.05
+
+
+async def supervise_goal(
+    motion: Motion, handle: ActiveGoal[Any], *, tell: Callable[[], None], device: str, words: str
+) -> None:
+    """Return once `motion` is over and its device at rest; so it is with a cancelled goal.
+
+    `tell` gives feedback, also at the end; `device` is the bus name of what moves and `words` what people call it.
+
+    Raises:
+        SkillFailed: the device stopped by itself, or was stopped by somebody else than the goal's sender.
+        CancelledError: this task was cancelled; the device is at rest all the same.
+    """
+    handle.on_cancel(motion.cancel)
+    handle.on_hold(motion.hold)
+    handle.on_resume(motion.resume)
+    report = asyncio.ensure_future(motion.report())
+    try:
+        while not (await asyncio.wait((report,), timeout=FEEDBACK_S))[0]:
+            tell()
+    finally:
+        await _at_rest(motion, report)
+    tell()
+    _judge(report.result(), handle, device=device, words=words)
+
+
+async def _at_rest(motion: Motion, report: asyncio.Future[MotionReport]) -> None:
+    """Bring the motion to its end and wait for it, however often this task is cancelled meanwhile."""
+    cancelled: asyncio.CancelledError | None = None
+    if not report.done():
+        # A device that takes no more commands is lost, and its report says so.
+        with suppress(RobotError):
+            motion.cancel()
+    while not report.done():
+        try:
+            await asyncio.wait((report,))
+        except asyncio.CancelledError as error:
+            cancelled = error
+    if cancelled is not None:
+        raise cancelled
+
+
+def _judge(report: MotionReport, handle: ActiveGoal[Any], *, device: str, words: str) -> None:
+    if report.end is MotionEnd.FAILED:
+        cause = RobotError(report.reason or "the port gives no reason", where=device)
+        raise SkillFailed(f"{words} stopped before the goal", where=handle.address) from cause
+    if report.end is MotionEnd.CANCELED and not handle.cancel_requested:
+        raise SkillFailed(f"{words} was told to stop", where=handle.address)

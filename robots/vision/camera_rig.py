@@ -1,0 +1,108 @@
+"""Looks at a simulated cell through its cameras and keeps the map: one call for each moment, wherever it runs."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from engine.errors import CellError
+from engine.messages.sensing import DepthImage, OccupancyGrid
+from engine.skills.vision import Detections
+from robots.planning.scene.cell_planning_scene import known_obstacles
+from robots.vision.camera import CameraSpec
+from robots.vision.depth_image import frame_number, measured_image
+from robots.vision.depth_renderer import new_depth_renderer
+from robots.vision.known_geometry import ArmConfiguration, KnownGeometry, MeasuredState
+from robots.vision.occupancy_mapper import OccupancyMapper
+from robots.vision.part_detector import PartDetector
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
+from robots.vision.physics_copy import PhysicsCopy
+
+
+class CameraRig:
+    """Looks with cameras of a simulated cell; belongs to the thread that made it.
+
+    Args:
+        sight: What to look at.
+        repeatable: Whether the images must be the same on every machine.
+
+    Raises:
+        CellError: the cell cannot be built, or images cannot be made as the environment asks.
+    """
+
+    def __init__(self, sight: PerceptionSetup, *, repeatable: bool) -> None:
+        self._sight = sight
+        self._cameras = {camera.name: camera for camera in sight.cameras}
+        self._cell = PhysicsCopy(sight.scene)
+        self._depth = new_depth_renderer(self._cell, sight.cameras, box=sight.box, repeatable=repeatable)
+        self._detector = PartDetector(self._cell, sight.scene.parts, seed=sight.seed)
+        self._mapper = OccupancyMapper(sight.box, sight.scene.arms) if sight.box is not None else None
+        self.know(KnownGeometry(obstacles=known_obstacles(sight.scene)))
+
+    @property
+    def words(self) -> str:
+        """How images are made, for people."""
+        return self._depth.words
+
+    def know(self, known: KnownGeometry) -> None:
+        """Leave out these obstacles and held parts from the next look on."""
+        if self._mapper is not None:
+            self._mapper.know(known)
+
+    def look(self, look: PerceptionRequest) -> PerceptionResult:
+        """Take the images, bring the map up to date and find what is looked for.
+
+        Raises:
+            CellError: something known of the cell does not fit it; the map is as it was.
+        """
+        unknown = [name for name in (*look.cameras, *look.detecting) if name not in self._cameras]
+        if unknown:
+            raise CellError(f"there is no camera {unknown[0]}", where="cameras", hint=f"there are {[*self._cameras]}")
+        started_s = time.perf_counter()
+        self._cell.go_to(np.frombuffer(look.state))
+        images = tuple(self._image(self._cameras[name], look.time_s) for name in look.cameras)
+        rendered_s = time.perf_counter()
+        grid = self._mapped(look, images)
+        mapped_s = time.perf_counter()
+        return PerceptionResult(
+            grid=grid,
+            images=tuple(image for image in images if image.camera in look.wanted),
+            detections=tuple(self._found(self._cameras[name], look.time_s) for name in look.detecting),
+            render_s=rendered_s - started_s,
+            map_s=mapped_s - rendered_s,
+        )
+
+    def warm(self) -> None:
+        """Have everything compiled and loaded that a first look would wait for; the map stays empty."""
+        home = {arm.name: ArmConfiguration(joints=arm.robot().home_rad) for arm in self._sight.scene.arms}
+        images = [self._image(camera, 0.0) for camera in self._sight.cameras]
+        if self._mapper is not None:
+            self._mapper.update(images, MeasuredState(time_s=0.0, arms=home))
+            self._mapper.forget()
+
+    def close(self) -> None:
+        """Let go of the graphics."""
+        self._depth.close()
+
+    def _mapped(self, look: PerceptionRequest, images: tuple[DepthImage, ...]) -> OccupancyGrid | None:
+        if self._mapper is None or not images:
+            return None
+        if look.forget:
+            self._mapper.forget()
+        return self._mapper.update(images, self._cell.moment(look.time_s))
+
+    def _found(self, camera: CameraSpec, time_s: float) -> Detections:
+        if camera.detector is None:
+            raise CellError(f"{camera.name} detects nothing", where="cameras", hint="give it `detect: {}` in the cell")
+        return self._detector.detections(camera, camera.detector, time_s=time_s)
+
+    def _image(self, camera: CameraSpec, time_s: float) -> DepthImage:
+        return measured_image(
+            camera,
+            self._depth.exact(camera),
+            intrinsics=self._depth.intrinsics(camera),
+            time_s=time_s,
+            frame=frame_number(camera, time_s),
+            seed=self._sight.seed,
+        )

@@ -1,0 +1,99 @@
+"""The cameras in virtual time: images are taken between two steps of the world, the map comes some steps later."""
+
+from __future__ import annotations
+
+import math
+from types import TracebackType
+from typing import Protocol, Self
+
+import msgspec
+
+from engine.errors import CellError
+from engine.robot import DeviceStatus
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.known_geometry import KnownGeometry
+from robots.vision.perception_device import PROCESSING_S, PerceptionDevice
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
+
+
+class _CameraRig(Protocol):
+    @property
+    def words(self) -> str: ...
+
+    def know(self, known: KnownGeometry) -> None: ...
+
+    def look(self, look: PerceptionRequest) -> PerceptionResult: ...
+
+    def close(self) -> None: ...
+
+
+class LockstepPerception(PerceptionDevice):
+    """Looks on the event loop's own thread; the copy of the cell is built at the first look: most runs need none.
+
+    What `OccupancyState` tells of computing times is 0 here: no two runs would tell the same.
+    """
+
+    def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
+        step_s = sight.scene.step_s
+        self._steps = 0
+        super().__init__(sight, world=world, now_s=lambda: self._steps * step_s)
+        self._every = {camera.name: max(1, round(1.0 / (camera.rate_hz * step_s))) for camera in sight.cameras}
+        # What all periods are whole numbers of: between, nothing can be due.
+        self._tick = math.gcd(*self._every.values())
+        self._later = max(1, round(PROCESSING_S / step_s))
+        self._coming: tuple[int, PerceptionResult] | None = None
+        self._eye: _CameraRig | None = None
+        self._told_known = self.known
+        world.each_step(self._after_step, busy=lambda: self.needed or self._coming is not None)
+
+    async def __aenter__(self) -> Self:
+        self.status = DeviceStatus.READY
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.status = DeviceStatus.DISCONNECTED
+        self.desk.fail("the cell is closed")
+        eye, self._eye = self._eye, None
+        if eye is not None:
+            eye.close()
+
+    def _after_step(self) -> bool:
+        """Hand in what is ready, look if it is time to; return whether somebody was told."""
+        self._steps += 1
+        told = False
+        if self._coming is not None and self._steps >= self._coming[0] + self._later:
+            (taken, seen), self._coming = self._coming, None
+            self.take_result(seen, looked_at_s=taken * self.sight.scene.step_s)
+            told = True
+        if self._steps % self._tick == 0 and self.needed:
+            told = self._look_if_due() or told
+        return told
+
+    def _look_if_due(self) -> bool:
+        """Look if it is time to; return whether somebody was told that it cannot be done."""
+        due = tuple(camera for camera in self.sight.cameras if self._steps % self._every[camera.name] == 0)
+        if due and self._coming is not None:
+            self.dropped += 1
+        elif due:
+            order = self.next_look(due, now_s=self._steps * self.sight.scene.step_s)
+            try:
+                self._coming = (self._steps, self._look(order)) if order is not None else None
+            except CellError as error:
+                # Who waits for detections is told; who needs the map hears that it is stale.
+                self.fail(str(error))
+                return True
+        return False
+
+    def _look(self, order: PerceptionRequest) -> PerceptionResult:
+        if self._eye is None:
+            # It loads the compiled kernels and coal.
+            from robots.vision.camera_rig import CameraRig
+
+            self._eye = CameraRig(self.sight, repeatable=True)
+            self.set_rendering(self._eye.words)
+        if self.known is not None and self.known is not self._told_known:
+            self._eye.know(self.known)
+            self._told_known = self.known
+        return msgspec.structs.replace(self._eye.look(order), render_s=0.0, map_s=0.0)

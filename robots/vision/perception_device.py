@@ -1,0 +1,229 @@
+"""The cameras of a simulated cell as a device: takes images while somebody needs them, and tells what is in them."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Mapping
+
+import msgspec
+
+from engine.bus import SkillBus
+from engine.bus.topic import Topic
+from engine.messages.sensing import CameraInfo, DepthImage, OccupancyGrid, OccupancyState
+from engine.robot import DeviceStatus
+from robots.gripper.grasp_check import GraspCommand
+from robots.planning.scene.planning_scene import PlanningScene
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.camera import CameraSpec
+from robots.vision.detection_service import DetectionService
+from robots.vision.known_geometry import KnownGeometry
+from robots.vision.occupancy_map import LiveOccupancyMap
+from robots.vision.occupancy_source import Unsubscribe
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup, state_bytes
+
+PROCESSING_S = 0.03
+"""Time from an image to the map in virtual time: near the 99th percentile that `benchmarks/perception.py` measures."""
+
+_FRESH_IMAGES = 3
+_LEAST_FRESH_S = 0.5
+_log = logging.getLogger("flexcell.vision")
+
+
+class PerceptionDevice:
+    """Implements `engine.robot.Robot` for a world and `OccupancySource` for planners.
+
+    How images come is up to `LockstepWatch` and `RealTimeWatch`, which ask here what to look at and hand in
+    here what was seen.
+    """
+
+    name = "cell/cameras"
+
+    def __init__(self, sight: PerceptionSetup, *, world: SimWorld, now_s: Callable[[], float]) -> None:
+        self.sight = sight
+        self._world = world
+        slowest_s = max(1.0 / camera.rate_hz for camera in sight.cameras)
+        self.map = LiveOccupancyMap(now_s=now_s, fresh_s=max(_FRESH_IMAGES * slowest_s, _LEAST_FRESH_S) + PROCESSING_S)
+        self.desk = DetectionService(sight.cameras)
+        self.known: KnownGeometry | None = None
+        self.status = DeviceStatus.DISCONNECTED
+        self.dropped = 0
+        self.made = ""
+        self._looks = 0
+        self._forget = False
+        self._base = 0
+        self._last: PerceptionResult | None = None
+        self._grids: Topic[OccupancyGrid] | None = None
+        self._states: Topic[OccupancyState] | None = None
+        self._depths: dict[str, Topic[DepthImage]] = {}
+
+    # What a planner needs: `OccupancySource`.
+
+    @property
+    def latest(self) -> OccupancyGrid | None:
+        """The newest map."""
+        return self.map.latest
+
+    @property
+    def stale_reason(self) -> str:
+        """Why the map must not be trusted."""
+        return self.map.stale_reason
+
+    @property
+    def starting(self) -> bool:
+        """Whether there is no map only because the cameras are still being started."""
+        return self.map.starting
+
+    def subscribe(self, callback: Callable[[], None]) -> Unsubscribe:
+        """Call `callback` whenever the revision or the stale reason has changed."""
+        return self.map.subscribe(callback)
+
+    def require(self) -> None:
+        """Take images until as many `release`."""
+        self.map.required += 1
+
+    def release(self) -> None:
+        """End what one `require` began."""
+        self.map.required = max(0, self.map.required - 1)
+
+    def forget(self) -> None:
+        """Begin with an empty map at the next image."""
+        self._forget = True
+
+    def know(self, scene: PlanningScene) -> None:
+        """Leave out the obstacles and held parts of `scene` from the next image on."""
+        known = KnownGeometry.of(scene)
+        if known != self.known:
+            self.known = known
+
+    # What is asked by those who take the images.
+
+    @property
+    def needed(self) -> bool:
+        """Whether anybody needs the map, an image or what is found in one now."""
+        return self._needs_images or self.desk.needed
+
+    def next_look(self, due: tuple[CameraSpec, ...], *, now_s: float) -> PerceptionRequest | None:
+        """Return the order to look at the world as it is now with those of the cameras `due` that are needed.
+
+        None where none is, or while there is no world.
+        """
+        if self._world.lost_reason:
+            return None
+        detecting = self.desk.due(due, now_s=now_s)
+        wanted = self._wanted()
+        is_mapped = self.sight.box is not None and self._needs_images
+        names = tuple(camera.name for camera in due if is_mapped or camera.name in wanted)
+        if not names and not detecting:
+            return None
+        image = self._world.host.image()
+        forget = self._forget and bool(names)
+        self._forget = self._forget and not forget
+        return PerceptionRequest(
+            # An image begins with the number of steps done.
+            time_s=round(float(image[0])) * self._world.host.summary.step_s,
+            state=state_bytes(image),
+            cameras=names,
+            wanted=tuple(name for name in wanted if name in names),
+            detecting=detecting,
+            forget=forget,
+        )
+
+    def restart_revisions(self) -> None:
+        """Know that the next map is of an eye that has seen nothing before; revisions go on rising all the same."""
+        self._base = self.map.latest.revision if self.map.latest is not None else 0
+
+    def take_result(self, seen: PerceptionResult, *, looked_at_s: float) -> None:
+        """Publish what was seen; what comes after the world is lost is of no use."""
+        if self._world.lost_reason:
+            return
+        self.status = DeviceStatus.READY
+        if seen.grid is not None:
+            self._looks += 1
+            self._last = seen
+            grid = msgspec.structs.replace(seen.grid, revision=seen.grid.revision + self._base)
+            if self.map.arrived(grid, looked_at_s=looked_at_s) and self._grids is not None:
+                self._grids.publish(grid)
+        for image in seen.images:
+            self._depths[image.camera].publish(image)
+        self.desk.take_result(seen.detections)
+
+    def fail(self, reason: str) -> None:
+        """Say why no images come."""
+        if reason != self.map.lost_reason:
+            _log.error("no camera images: %s", reason)
+        self.status = DeviceStatus.FAULT
+        self.map.lost(reason)
+        self.desk.fail(reason)
+
+    def set_rendering(self, words: str) -> None:
+        """Say how depth images are made."""
+        if words != self.made:
+            self.made = words
+            _log.info("depth images are made %s", words)
+
+    # What a device of the world is.
+
+    def grips(self) -> dict[str, GraspCommand]:
+        """Cameras hold nothing."""
+        return {}
+
+    def recall(self, grips: Mapping[str, GraspCommand]) -> None:
+        """The world was brought to an earlier state: what was seen since is forgotten."""
+        self._forget = True
+        self.map.outdated()
+
+    def world_lost(self, reason: str) -> None:
+        """There is nothing to see: images of a world that stands still would look like a cell at rest."""
+        self.fail(reason)
+
+    def world_restored(self) -> None:
+        """Look again; what was seen before counts no more."""
+        self.recall({})
+
+    def register(self, bus: SkillBus) -> None:
+        """Publish what cameras there are; map, images and detections come while somebody reads them."""
+        if self.sight.box is not None:
+            self._grids = bus.topic("cell/occupancy", OccupancyGrid)
+            self._states = bus.topic("cell/occupancy_state", OccupancyState)
+            self._states.provide(self._state)
+            self.map.subscribe(lambda: self._publish_state())
+        self.desk.register(bus)
+        for camera in self.sight.cameras:
+            self._depths[camera.name] = bus.topic(f"{camera.name}/depth", DepthImage)
+            bus.topic(f"{camera.name}/camera_info", CameraInfo).publish(
+                CameraInfo(
+                    camera=camera.name,
+                    intrinsics=camera.intrinsics,
+                    pose=camera.pose,
+                    rate_hz=camera.rate_hz,
+                    range_m=camera.range_m,
+                )
+            )
+
+    async def stop(self) -> None:
+        """Nothing here moves."""
+
+    @property
+    def _needs_images(self) -> bool:
+        read = self._grids is not None and self._grids.subscriber_count > 0
+        return self.map.required > 0 or read or bool(self._wanted())
+
+    def _wanted(self) -> tuple[str, ...]:
+        return tuple(name for name, topic in self._depths.items() if topic.subscriber_count > 0)
+
+    def _publish_state(self) -> None:
+        assert self._states is not None
+        if self._states.subscriber_count > 0:
+            self._states.publish(self._state())
+
+    def _state(self) -> OccupancyState:
+        latest, last = self.map.latest, self._last
+        return OccupancyState(
+            stale_reason=self.map.stale_reason,
+            made=self.made,
+            revision=latest.revision if latest is not None else 0,
+            looks=self._looks,
+            dropped=self.dropped,
+            image_s=last.render_s if last is not None else 0.0,
+            mapping_s=last.map_s if last is not None else 0.0,
+        )

@@ -1,0 +1,125 @@
+"""The cameras in real time: a process of their own looks, one moment at a time; moments that it misses are dropped."""
+
+from __future__ import annotations
+
+import asyncio
+from types import TracebackType
+from typing import Self
+
+from engine.errors import CellError, FlexcellError, RobotError
+from engine.robot import DeviceStatus
+from robots.sim.world.sim_world import SimWorld
+from robots.vision.camera import CameraSpec
+from robots.vision.camera_process import CameraProcess
+from robots.vision.perception_device import PerceptionDevice
+from robots.vision.perception_messages import PerceptionRequest, PerceptionResult, PerceptionSetup
+
+_PATIENCE_S = 5.0
+_LOOK_AFTER_S = 0.25
+_FIRST_PAUSE_S, _LONGEST_PAUSE_S = 0.2, 10.0
+
+
+class RealTimePerception(PerceptionDevice):
+    """Keeps a camera process running, and asks it to look while somebody needs it.
+
+    When the process dies or hangs the map is stale, with the reason, until a new process has seen the cell.
+    """
+
+    def __init__(self, sight: PerceptionSetup, *, world: SimWorld) -> None:
+        super().__init__(sight, world=world, now_s=lambda: asyncio.get_running_loop().time())
+        self._process = CameraProcess()
+        self._task: asyncio.Task[None] | None = None
+        self._fastest_s = min(1.0 / camera.rate_hz for camera in sight.cameras)
+        self._due_s = dict.fromkeys((camera.name for camera in sight.cameras), 0.0)
+
+    @property
+    def pid(self) -> int:
+        """The id of the camera process, 0 while there is none."""
+        return self._process.pid
+
+    async def __aenter__(self) -> Self:
+        self.status = DeviceStatus.CONNECTED
+        self.map.starting = True
+        # In the background: the process takes seconds to start, and most of what a cell does needs no cameras.
+        self._task = asyncio.get_running_loop().create_task(self._watch(), name="cameras")
+        return self
+
+    async def __aexit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        task, self._task = self._task, None
+        if task is not None:
+            task.cancel()
+            await asyncio.wait((task,))
+        self._process.end()
+        self.desk.fail("the cell is closed")
+        self.status = DeviceStatus.DISCONNECTED
+
+    async def _watch(self) -> None:
+        pause_s = _FIRST_PAUSE_S
+        while True:
+            try:
+                await self._process.start(self.sight)
+                self.set_rendering(self._process.words)
+                self._has_started()
+                self.restart_revisions()
+                self.status = DeviceStatus.READY
+                await self._look_on()
+            except FlexcellError as error:
+                self._process.end()
+                self._has_started()
+                pause_s = _FIRST_PAUSE_S if self.status is DeviceStatus.READY else min(2.0 * pause_s, _LONGEST_PAUSE_S)
+                self.fail(str(error))
+                await asyncio.sleep(pause_s)
+
+    def _has_started(self) -> None:
+        """Say that it is up, or has failed: from now on what is missing is missing for another reason."""
+        self.map.starting = False
+        self.map.tell()
+
+    async def _look_on(self) -> None:
+        """Look whenever it is time to; raises RobotError once the process is lost."""
+        loop, told = asyncio.get_running_loop(), None
+        while True:
+            now_s = loop.time()
+            await asyncio.sleep(self._fastest_s - now_s % self._fastest_s)
+            self.map.tell()
+            if not self.needed:
+                continue
+            if self.known is not None and self.known is not told:
+                told = self.known
+                self._process.know(told)
+            looked_at_s = loop.time()
+            order = self.next_look(self._due(looked_at_s), now_s=looked_at_s)
+            if order is not None:
+                try:
+                    self.take_result(await self._seen(order), looked_at_s=looked_at_s)
+                except CellError as error:
+                    # The process is well; what it was told of the cell cannot be mapped, and may be put right.
+                    self.fail(str(error))
+                self.dropped += int((loop.time() - looked_at_s) / self._fastest_s)
+
+    def _due(self, now_s: float) -> tuple[CameraSpec, ...]:
+        found: list[CameraSpec] = []
+        for camera in self.sight.cameras:
+            # A quarter of a period early is on time: timers come when they come.
+            if now_s >= self._due_s[camera.name] - 0.25 / camera.rate_hz:
+                self._due_s[camera.name] = max(self._due_s[camera.name], now_s - 0.5 / camera.rate_hz)
+                self._due_s[camera.name] += 1.0 / camera.rate_hz
+                found.append(camera)
+        return tuple(found)
+
+    async def _seen(self, order: PerceptionRequest) -> PerceptionResult:
+        """Return what is seen; meanwhile others hear how old the map gets."""
+        answer = self._process.ask(order)
+        waited_s = 0.0
+        while not answer.done() and waited_s < _PATIENCE_S:
+            await asyncio.wait((answer,), timeout=_LOOK_AFTER_S)
+            waited_s += _LOOK_AFTER_S
+            self.map.tell()
+        if not answer.done():
+            answer.cancel()
+            raise RobotError(
+                f"the camera process has not answered within {_PATIENCE_S:g} s", hint="a new one is started"
+            )
+        return answer.result()

@@ -1,0 +1,49 @@
+"""The ways that arms are on, so that who plans later keeps out of them."""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+from robots.planning.scene.planning_scene import OCCUPANCY, AttachedPart, NamePair, PlanningScene, SceneArm
+
+_AHEAD = re.compile(r"~\d+")
+_SEEN = re.compile(rf"\b{OCCUPANCY}\b")
+
+Row = tuple[float, ...]
+
+
+def with_reservations(scene: PlanningScene, claims: dict[str, tuple[Row, ...]]) -> PlanningScene:
+    """Return the scene with arms also where they will be: `claims` are configurations (radians, n) by arm.
+
+    What stands for the k-th of them is called `<arm>~k`, and so are the parts that the arm holds.
+    """
+    arms: list[SceneArm] = list(scene.arms)
+    attached: list[AttachedPart] = list(scene.attached)
+    allowed: list[NamePair] = list(scene.allowed)
+    for name, rows in claims.items():
+        arm = scene.arm(name)
+        held = [part for part in scene.attached if part.arm == name]
+        rules = [pair for pair in scene.allowed if _is_of(pair[0], name) or _is_of(pair[1], name)]
+        for k, row in enumerate(rows):
+            later = f"{name}~{k}"
+            placement = msgspec.structs.replace(arm.placement, name=later)
+            arms.append(SceneArm(placement=placement, joints_rad=row, tool_joints=arm.tool_joints))
+            attached += [msgspec.structs.replace(part, name=f"{part.name}~{k}", arm=later) for part in held]
+            allowed += [(_renamed(a, name, later), _renamed(b, name, later)) for a, b in rules]
+    return msgspec.structs.replace(scene, arms=tuple(arms), attached=tuple(attached), allowed=tuple(allowed))
+
+
+def describe_names(text: str) -> str:
+    """Return a text with names in words: what an arm claims is `<arm> on its way`, occupancy what cameras see."""
+    seen = _SEEN.sub("what the cameras see", text)
+    return seen if _AHEAD.search(seen) is None else f"{_AHEAD.sub('', seen)} on its way"
+
+
+def _is_of(rule: str, arm: str) -> bool:
+    return rule == arm or rule.startswith(arm + "/")
+
+
+def _renamed(rule: str, arm: str, later: str) -> str:
+    return later + rule[len(arm) :] if _is_of(rule, arm) else rule

@@ -1,0 +1,97 @@
+"""The planning services of a cell: one looks for ways, another one watches those that arms are on."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+
+from engine.clock import Clock
+from engine.errors import FlexcellError
+from engine.skills.planning_scene import CollisionReport
+from robots.planning.request import (
+    AttachedPartCheckRequest,
+    CollisionRequest,
+    PathCheck,
+    PathCheckRequest,
+    PlanAnswer,
+    PlanRequest,
+)
+from robots.planning.worker.plan_service import PlanService, new_plan_service
+
+_log = logging.getLogger("flexcell.workspace")
+
+
+class PlanningServices:
+    """Two services, so that no check waits behind a long search; each is started by the first who needs it.
+
+    Args:
+        clock: In virtual time both are one, in this process.
+        make: Makes a service.
+    """
+
+    def __init__(self, clock: Clock, make: Callable[[Clock], PlanService] | None = None) -> None:
+        self._clock = clock
+        self._make = make or new_plan_service
+        self._services: dict[str, PlanService] = {}
+        self._starting: asyncio.Task[None] | None = None
+        self._closed = False
+
+    async def plan(self, request: PlanRequest) -> PlanAnswer:
+        """Return a confirmed way, or why there is none."""
+        if self.watch_unavailable_reason:
+            # It is wanted as soon as an arm is on the way.
+            self._service("watch").start()
+        return await self._service("plans").plan(request)
+
+    async def check_path(self, request: PathCheckRequest) -> PathCheck:
+        """Return where a way is blocked."""
+        return await self._service("watch").check_path(request)
+
+    async def confirm_path(self, request: PathCheckRequest) -> PathCheck:
+        """Return where a way that was planned just now is blocked: who planned it knows it and answers sooner."""
+        return await self._service("plans").check_path(request)
+
+    async def check_attached_parts(self, request: AttachedPartCheckRequest) -> PathCheck:
+        """Return where what an arm holds would touch something on a way."""
+        return await self._service("watch").check_attached_parts(request)
+
+    async def look(self, request: CollisionRequest) -> CollisionReport:
+        """Return what an arm touches."""
+        return await self._service("watch").look(request)
+
+    @property
+    def watch_unavailable_reason(self) -> str:
+        """Why nobody can look at a way soon: who did has died, and another one is not there yet; else empty."""
+        return self._service("watch").gone
+
+    def begin(self) -> None:
+        """Start both services in the background."""
+        if self._starting is None and not self._clock.virtual:
+            self._starting = asyncio.create_task(self._start(), name="starting the planners")
+
+    async def close(self) -> None:
+        """End both."""
+        starting, self._starting = self._starting, None
+        self._closed = True
+        if starting is not None:
+            starting.cancel()
+            await asyncio.wait((starting,))
+        services, self._services = self._services, {}
+        for service in services.values():
+            await service.__aexit__(None, None, None)
+
+    async def _start(self) -> None:
+        for role in ("watch", "plans"):
+            try:
+                await self._service(role).__aenter__()
+            except FlexcellError as error:
+                # Nobody has asked yet; who asks starts it again and hears why it does not start.
+                _log.warning("a planning service does not start: %s", error)
+
+    def _service(self, role: str) -> PlanService:
+        name = "both" if self._clock.virtual else role
+        service = self._services.get(name)
+        if service is None:
+            service = self._services[name] = self._make(self._clock)
+        return service

@@ -1,0 +1,38 @@
+"""Looks at a simulated world: everything in it at one instant, from its newest snapshot."""
+
+from __future__ import annotations
+
+from robots.model.transform import RigidTransform
+from robots.sim.scene.sim_scene import SimScene
+from robots.sim.world.sim_world import SimWorld
+from robots.workspace.measured_poses import MeasuredArm, MeasuredPoses
+from robots.workspace.tool_joint_estimator import ToolJointEstimator
+
+
+class WorldPoseReader:
+    """Call it to look; the world is open."""
+
+    def __init__(self, world: SimWorld, scene: SimScene) -> None:
+        self._world = world
+        self._arms = {arm.name: ToolJointEstimator(arm.robot()) for arm in scene.arms}
+
+    def __call__(self) -> MeasuredPoses:
+        """Return where arms, tools and parts are."""
+        snapshot, summary = self._world.measured(), self._world.host.summary
+        xyz, xyzw = snapshot.frames()
+        row = {name: index for index, name in enumerate(summary.frames)}
+
+        def frame(name: str) -> RigidTransform:
+            return RigidTransform.of(xyz[row[name]], xyzw[row[name]])
+
+        def link(arm: str, name: str) -> RigidTransform:
+            return frame(f"{arm}/{name}")
+
+        arms = {
+            name: MeasuredArm(
+                joints_rad=tuple(snapshot.arm(name).position_rad.tolist()),
+                tool_joints=tool.read(lambda one, arm=name: link(arm, one)),
+            )
+            for name, tool in self._arms.items()
+        }
+        return MeasuredPoses(arms=arms, parts={name: frame(name) for name in summary.parts}, link=link)

@@ -1,0 +1,38 @@
+"""Words the cause of a goal that did not succeed: who, which skill, how it ended, and why below it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from engine.cause_chain import wrap_cause
+from engine.errors import PathBlocked
+from engine.event import Cause
+from engine.skill import Action
+from engine.state import ActionEnd
+
+_BLOCKED = PathBlocked.__name__
+_NO_REASON = {
+    "canceled": "the goal was cancelled by somebody other than this state",
+    "rejected": "the device gave no reason for refusing it",
+}
+
+
+def goal_cause(what: str, goal: Action[Any, Any], end: ActionEnd[Any], *, to: str, where: str, kind: str) -> Cause:
+    """Return the cause chain of a failed goal.
+
+    Args:
+        what: What was not achieved and by whom, `left did not reach joints entry home`.
+        goal: The goal that was sent.
+        end: How it ended; its cause goes below.
+        to: The bus namespace it was sent to.
+        where: The path of the state.
+        kind: The name of the state.
+    """
+    skill = goal.skill_name()
+    fallback = Cause(message=_NO_REASON.get(end.status, "the device gave no reason"), where=f"{to}/{skill}")
+    return wrap_cause(f"{what}: {skill} was {end.status}", end.cause or fallback, where=where, kind=kind)
+
+
+def is_path_blocked(end: ActionEnd[Any]) -> bool:
+    """Tell whether a goal was refused because something of the planning scene is in its way."""
+    return end.cause is not None and any(link.kind == _BLOCKED for link in end.cause.chain())

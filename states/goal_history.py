@@ -1,0 +1,27 @@
+"""How a device was before the goals of a state, as their results tell: where the undo of the state takes it back to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+import msgspec
+
+from engine.runtime.record.nonfinite import decode_nonfinite
+from engine.skill import Action
+from engine.state import ActivationRecord, RequestRecord
+
+R = TypeVar("R")
+
+
+def accepted_goals(done: ActivationRecord, goal: type[Action[R, Any]]) -> Sequence[tuple[RequestRecord, R | None]]:
+    """Return the goals of one kind that a device took, the newest first, each with its result, None where unknown."""
+    name = f"/{goal.skill_name()}"
+    sent = (each for each in reversed(done.requests) if each.address.endswith(name) and each.status != "rejected")
+    return [(each, _result(each, goal)) for each in sent]
+
+
+def _result(request: RequestRecord, goal: type[Action[R, Any]]) -> R | None:
+    if request.result is None:
+        return None
+    return msgspec.convert(decode_nonfinite(request.result), goal.result_type())

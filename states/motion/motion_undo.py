@@ -1,0 +1,66 @@
+"""How states that move an arm are undone: back to the configuration in which their motion began."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from engine.errors import StateError
+from engine.skill import Action
+from engine.skills.motion import CartMotionResult, JointMotionResult, JointTrapVel
+from engine.state import ActivationRecord, Context
+from states.goal_failure import goal_cause
+from states.goal_history import accepted_goals
+
+_UNKNOWN = "the start configuration of its motion was not recorded"
+
+MotionResult = JointMotionResult | CartMotionResult
+
+
+def finished_motions(done: ActivationRecord, goal: type[Action[Any, Any]]) -> Iterator[MotionResult]:
+    """Go through the motions of an activation, the newest first.
+
+    Raises:
+        StateError: the events do not tell where one began.
+    """
+    for _, result in accepted_goals(done, goal):
+        if not isinstance(result, MotionResult) or not result.start:
+            raise StateError(_UNKNOWN)
+        yield result
+
+
+def motion_undo_problem(done: ActivationRecord, goal: type[Action[Any, Any]]) -> str:
+    """Return why the motions of an activation cannot be undone; empty where they can."""
+    try:
+        for _ in finished_motions(done, goal):
+            pass
+    except StateError as error:
+        return error.message
+    return ""
+
+
+async def move_joints_back(
+    ctx: Context, done: ActivationRecord, goal: type[Action[Any, Any]], *, robot: str, speed: float
+) -> None:
+    """Move an arm to where the motions of an activation began, in joint space.
+
+    Raises:
+        StateError: it did not get there; the cause is the device's.
+    """
+    for motion in finished_motions(done, goal):
+        await perform_undo_motion(ctx, JointTrapVel(joints=motion.start, speed=speed), robot=robot)
+
+
+async def perform_undo_motion(ctx: Context, goal: Action[Any, Any], *, robot: str) -> None:
+    """Carry out a motion that must succeed.
+
+    Raises:
+        StateError: it did not; says why.
+    """
+    end = await ctx.perform(goal, to=robot)
+    if end.status == "succeeded":
+        return
+    what = f"{robot} did not get back to where its motion began"
+    cause = goal_cause(what, goal, end, to=robot, where=ctx.path, kind="undo")
+    below = f": {cause.because.message}" if cause.because is not None else ""
+    raise StateError(f"{cause.message}{below}", where=ctx.path)

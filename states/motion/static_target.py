@@ -1,0 +1,42 @@
+"""Where motions will take an arm, as far as the behavior and the seed of the store say it before a run."""
+
+from __future__ import annotations
+
+from engine.messages import Pose, Vector3
+from engine.skills.arm_target import ArmTarget, StoredTargets
+from engine.skills.motion import PoseMatch
+from states.motion.motion_target import NO_OFFSET, EntryTarget, JointTarget, PoseTarget, offset_pose, retracted_pose
+
+
+def static_joint_target(
+    robot: str, target: JointTarget | None, stored: StoredTargets, *, parameter: str
+) -> tuple[ArmTarget, ...]:
+    """Return the joint target that a state will have; nothing where it has none or it is not known yet."""
+    joints = stored.joints(target.entry) if isinstance(target, EntryTarget) else target
+    return (ArmTarget(robot=robot, parameter=parameter, joints=joints),) if joints else ()
+
+
+def static_pose_target(
+    robot: str,
+    target: PoseTarget | None,
+    stored: StoredTargets,
+    *,
+    parameter: str,
+    offset_m: Vector3 = NO_OFFSET,
+    back_m: float = 0.0,
+    match: PoseMatch = "pose",
+) -> tuple[ArmTarget, ...]:
+    """Return the pose that a state will have for a target; nothing where it has none or it is not known yet."""
+    pose = _pose(target, stored)
+    if pose is None or (offset_m != NO_OFFSET and pose.frame != "world"):
+        return ()
+    there = retracted_pose(offset_pose(pose, offset_m, where=parameter), back_m)
+    return (ArmTarget(robot=robot, parameter=parameter, pose=there, match=match),)
+
+
+def _pose(target: PoseTarget | None, stored: StoredTargets) -> Pose | None:
+    if target is None:
+        return None
+    if target.entry:
+        return stored.pose(target.entry)
+    return Pose(xyz=target.xyz or NO_OFFSET, xyzw=target.xyzw, frame=target.frame)

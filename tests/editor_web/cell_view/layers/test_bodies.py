@@ -1,0 +1,98 @@
+"""The bodies of the cell: each in its group, drawn once, moved when it moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import viser
+
+from editor_web.cell_view.layers.bodies import BodyLayer, body_node
+from editor_web.cell_view.rendering.latest_messages import LatestMessages
+from tests.editor_web.fake_sights import description, frames_with_a_person, scene_with_a_person, way
+
+
+def newest_at(time_s: float) -> LatestMessages:
+    """The fake cell with a person, before any arm has said what it is."""
+    made = LatestMessages()
+    made.put("cell", scene_with_a_person())
+    made.put("cell", frames_with_a_person(time_s))
+    return made
+
+
+def is_there(server: viser.ViserServer, *nodes: str) -> list[bool]:
+    """Which nodes are drawn."""
+    return [server.scene.get_handle_by_name(node) is not None for node in nodes]
+
+
+@pytest.mark.parametrize(
+    ("frame", "node"),
+    [
+        ("world", "/cell/world"),
+        ("plate", "/cell/plate"),
+        ("left/link1", "/cell/left.link1"),
+        ("anna/hand", "/people/anna.hand"),
+    ],
+)
+def test_bodies_of_neither_an_arm_nor_the_cell_are_those_of_people(frame: str, node: str) -> None:
+    assert body_node(frame, frozenset({"left", "right"})) == node
+    assert body_node(frame, frozenset()).startswith("/cell/")
+
+
+def test_people_find_their_group_once_the_arms_are_known(server: viser.ViserServer) -> None:
+    bodies, newest = BodyLayer(server), newest_at(0.0)
+    bodies.draw(newest)
+    assert is_there(server, "/cell/anna.hand", "/people/anna.hand", "/frames/left.tool") == [True, False, False]
+    for arm in ("left", "right"):
+        newest.put(arm, description(arm))
+    bodies.draw(newest)
+    assert is_there(server, "/cell/anna.hand", "/people/anna.hand", "/frames/world") == [False, True, True]
+
+
+def colours(server: viser.ViserServer) -> dict[str, tuple[int, ...]]:
+    """The colours of the table, a tray, and the links of both arms."""
+    nodes = {"table": "world/0", "tray": "world/1", "left/fore": "left.fore/5", "right/fore": "right.fore/8"}
+    found: dict[str, tuple[int, ...]] = {}
+    for name, node in nodes.items():
+        shape = server.scene.get_handle_by_name(f"/cell/{node}")
+        assert isinstance(shape, viser.BoxHandle)
+        found[name] = tuple(shape.color)
+    return found
+
+
+def test_the_two_bodies_that_would_touch_are_red_until_the_way_is_free(server: viser.ViserServer) -> None:
+    bodies, newest = BodyLayer(server), newest_at(0.0)
+    for arm in ("left", "right"):
+        newest.put(arm, description(arm))
+    bodies.draw(newest)
+    plain = colours(server)
+    newest.put("left", way("left", "blocked", reason="left/fore would touch tray_north and 1 more"))
+    bodies.draw(newest)
+    assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "tray"}
+    newest.put("left", way("left", "blocked", reason="left/fore would touch right/fore"))
+    bodies.draw(newest)
+    assert {name for name, colour in colours(server).items() if colour != plain[name]} == {"left/fore", "right/fore"}
+    newest.put("left", way("left", "moving"))
+    bodies.draw(newest)
+    assert colours(server) == plain
+
+
+def test_what_is_drawn_once_is_only_moved(server: viser.ViserServer) -> None:
+    bodies, newest = BodyLayer(server), newest_at(0.0)
+    bodies.draw(newest)
+    table, fore = (server.scene.get_handle_by_name(f"/cell/{name}") for name in ("world/0", "left.fore"))
+    assert fore is not None
+    before = np.array(fore.position)
+    moved = frames_with_a_person(0.5)
+    newest.put("cell", moved)
+    bodies.draw(newest)
+    assert server.scene.get_handle_by_name("/cell/world/0") is table
+    assert not np.allclose(fore.position, before)
+    assert np.allclose(fore.position, moved.xyz[moved.names.index("left/fore")])
+
+
+def test_the_first_look_has_the_whole_cell_in_it(server: viser.ViserServer) -> None:
+    BodyLayer(server).draw(newest_at(0.0))
+    camera = server.initial_camera
+    away_m = float(np.linalg.norm(np.subtract(camera.position, camera.look_at)))
+    half_table_m = float(np.hypot(0.8, 0.6))
+    assert np.tan(camera.fov / 2) * away_m > half_table_m

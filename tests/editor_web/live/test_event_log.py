@@ -1,0 +1,23 @@
+"""Events of a run in the words of the page."""
+
+from __future__ import annotations
+
+import pytest
+
+from editor_web.live.event_log import log_line
+from engine.event import BranchesPreempted
+
+
+@pytest.mark.parametrize(
+    ("branches", "said"),
+    [
+        (("mover", "light"), "preempt mover, light when camera=lost: mover, light"),
+        ((), "preempt mover, light when camera=lost: all of them had ended"),
+    ],
+)
+def test_a_condition_that_preempts_is_told_with_the_branches_that_it_found_at_work(
+    branches: tuple[str, ...], said: str
+) -> None:
+    condition = "preempt mover, light when camera=lost"
+    line = log_line(BranchesPreempted(seq=1, time_s=0.0, path="root", condition=condition, branches=branches))
+    assert (line.path, line.kind, line.level, line.text) == ("root", "branches_preempted", "info", said)

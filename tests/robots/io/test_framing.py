@@ -1,0 +1,26 @@
+"""Messages survive any cutting of the byte stream; nonsense is refused."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from engine.errors import RobotError
+from robots.io.framing import FrameReader, frame_message
+
+
+@given(st.lists(st.binary(max_size=300), max_size=20), st.lists(st.integers(1, 50), min_size=1))
+def test_messages_arrive_whole_and_in_order_however_the_stream_is_cut(messages: list[bytes], cuts: list[int]) -> None:
+    stream = b"".join(frame_message(message) for message in messages)
+    reader, received, at, turn = FrameReader(), list[bytes](), 0, 0
+    while at < len(stream):
+        size = cuts[turn % len(cuts)]
+        received += reader.feed(stream[at : at + size])
+        at, turn = at + size, turn + 1
+    assert received == messages
+
+
+def test_an_impossible_length_is_refused() -> None:
+    with pytest.raises(RobotError, match="damaged"):
+        FrameReader().feed(b"\xff\xff\xff\xff")
