@@ -19,11 +19,11 @@ from types import ModuleType
 from typing import Any, cast
 
 from engine.document.project import Project, find_project
+from engine.document.state_catalogue import StateCatalogue
 from engine.errors import RegistryError
 from engine.host.gc_pause import pause_gc
 from engine.host.isolated_loading import LoadFailure, load_isolated
 from engine.state import State
-from engine.state_catalogue import StateCatalogue
 from engine.suggestions import did_you_mean
 from engine.type_preparation import prepare_types
 

@@ -12,10 +12,10 @@ from typing import Protocol
 
 from editor_web.contracts.run_operations import RunOperations
 from engine.archive import Archive
-from engine.bus.bus_inspector import BusInspector
 from engine.bus.json_bus import JsonBus
 from engine.editing import DocumentRepository
 from engine.event import Event
+from engine.project.bus_inspector import BusInspector
 from engine.project.run_factory import RunPosition
 from engine.runtime.control import ControlView
 from engine.runtime.history.userdata_history import UserdataHistory

@@ -9,8 +9,8 @@ from pydantic import Field
 
 from editor_web.http_bodies.common_bodies import HttpBody
 from editor_web.telemetry.plot_signals import SignalField
-from engine.bus.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
 from engine.event import Cause
+from engine.project.bus_inspector import ParameterInfo, SkillInfo, TopicInfo
 
 
 class BusListing(msgspec.Struct, frozen=True, kw_only=True):

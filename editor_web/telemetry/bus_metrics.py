@@ -6,8 +6,8 @@ import zlib
 from collections import deque
 
 from editor_web.telemetry.data_frames import BusMetricsFrame, GoalMetrics, LeaseMetrics, TopicMetrics
-from engine.bus.bus_inspector import BusInspector, GoalInfo, TopicStatistics
 from engine.bus.lease import Lease
+from engine.project.bus_inspector import BusInspector, GoalInfo, TopicStatistics
 
 WINDOW_S = 4.0
 

@@ -13,8 +13,8 @@ from engine.document.concurrency_condition import deciding
 from engine.document.expression import Template, compile_template
 from engine.document.node_spec import FOREACH_OUTCOMES, GUARD_TARGETS, TREE_KINDS, TREE_OUTCOMES, WRAPPERS, NodeSpec
 from engine.document.signature import StateSignature, read_signature
+from engine.document.state_catalogue import Catalogue, find_state
 from engine.errors import ExpressionError, FlexcellError, RegistryError, StateError
-from engine.state_catalogue import Catalogue, find_state
 
 GivenValues = Mapping[str, Template | ExpressionError]
 _PARTS = frozenset((*TREE_KINDS, *WRAPPERS))

@@ -31,10 +31,10 @@ from engine.document.cell import Cell, load_cell
 from engine.document.entries_document import SECTIONS, load_entries
 from engine.document.project import PROJECT_FILE, load_project
 from engine.document.python_name import is_python_name
+from engine.document.state_catalogue import Catalogue
 from engine.document.text_recovery import load_recovering
 from engine.errors import DocumentError, FlexcellError, Position
 from engine.registry import load_states
-from engine.state_catalogue import Catalogue
 
 TargetLevel = Literal["warning", "error", "off"]
 _ENTRIES = tuple((key, "entries") for key in SECTIONS.values())

@@ -20,6 +20,7 @@ from engine.cli.run_execution import ExecutionResult, RunSetup, execute_run
 from engine.cli.run_report import print_json, print_result
 from engine.document.cell import Cell, load_cell
 from engine.document.python_name import is_python_name
+from engine.document.state_catalogue import StateCatalogue
 from engine.errors import ControlError
 from engine.host.state_folder_names import STATE_FOLDER
 from engine.journal import Journal, NullJournal, encode_event_log
@@ -31,7 +32,6 @@ from engine.runtime.plan import Catalogue
 from engine.runtime.record.skill_port import SkillPort
 from engine.runtime.run import Run
 from engine.runtime.run_options import RunOptions
-from engine.state_catalogue import StateCatalogue
 
 
 def resume(

@@ -20,6 +20,7 @@ import typer
 from engine.cell.open_cell import OpenCell
 from engine.cli.exit_code import ExitCode
 from engine.document.cell import Cell, load_cell
+from engine.document.state_catalogue import Catalogue
 from engine.host.thread_switch_interval import short_switch_interval
 from engine.journal import Journal
 from engine.project.server_state_folder import ServerStateFolder, lock_server_state_folder
@@ -27,7 +28,6 @@ from engine.project.session import Session
 from engine.project.session_recordings import KEPT, RECORDINGS, SIZE_MB, SessionRecordings
 from engine.registry import SERVERS, load_factory, load_states
 from engine.runtime.watchdog import LoopWatchdog
-from engine.state_catalogue import Catalogue
 from engine.stop import StopRelay
 from engine.teaching import HelpingHand, guidable_robots
 

@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.table import Table
 
 from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.document.state_catalogue import Catalogue, find_state
 from engine.registry import load_states, state_by_path
 from engine.state import State
-from engine.state_catalogue import Catalogue, find_state
 
 app = typer.Typer(help="Show the states that behaviors can use.", invoke_without_command=True)
 

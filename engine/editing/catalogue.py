@@ -8,9 +8,9 @@ import msgspec
 
 from engine.document.node_spec import KINDS, TREE_KINDS, WRAPPERS
 from engine.document.signature import KeySignature, StateSignature, read_signature
+from engine.document.state_catalogue import Catalogue
 from engine.errors import StateError
 from engine.library.behavior_library import Library
-from engine.state_catalogue import Catalogue
 
 
 @dataclass(frozen=True, kw_only=True)

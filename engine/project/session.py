@@ -10,7 +10,6 @@ from types import TracebackType
 from typing import Any, Self
 
 from engine.archive import Archive
-from engine.bus.bus_inspector import BusInspector
 from engine.bus.json_bus import JsonBus, LocalJsonBus
 from engine.cell.cell_connection import CellConnection
 from engine.cell.open_cell import OpenCell
@@ -24,6 +23,7 @@ from engine.faults import FaultPort
 from engine.host.gc_pause import pause_gc
 from engine.journal import Journal, RunRecord, list_runs
 from engine.library.behavior_library import BehaviorView, Library
+from engine.project.bus_inspector import BusInspector
 from engine.project.run_factory import (
     RunPosition,
     checkpoint_at,

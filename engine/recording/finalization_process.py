@@ -16,16 +16,16 @@ import os, sys
 from pathlib import Path
 os.nice(10)
 from engine.errors import RecordingError
-from engine.recording.finalization import finish
+from engine.recording.finalization import finalize_recording
 try:
-    finish(Path(sys.argv[1]), Path(sys.argv[2]))
+    finalize_recording(Path(sys.argv[1]), Path(sys.argv[2]))
 except RecordingError as error:
     sys.exit(error.message)
 """
 
 
 async def finalize_in_subprocess(part: Path, target: Path) -> None:
-    """Do what `finish` does, at low priority; cancelled, it leaves the growing file as it is.
+    """Do what `finalize_recording` does, at low priority; cancelled, it leaves the growing file as it is.
 
     Raises:
         RecordingError: it cannot be finished.

@@ -11,6 +11,7 @@ from engine.document import node_spec as nodes
 from engine.document.expression import Template, compile_template
 from engine.document.parameter_spec import ParameterSpec, bind_parameters
 from engine.document.signature import read_signature
+from engine.document.state_catalogue import Catalogue, find_state
 from engine.document.substitutes import Substitutes
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.host.gc_pause import pause_gc
@@ -24,7 +25,6 @@ from engine.runtime.nodes.priority import Priority
 from engine.runtime.nodes.substitute_work import SUBSTITUTE, require_used, substitute_for
 from engine.runtime.userdata.userdata_value import plain_value
 from engine.state import State
-from engine.state_catalogue import Catalogue, find_state
 from engine.suggestions import did_you_mean
 
 __all__ = ["Catalogue", "Plan", "new_plan"]

@@ -15,7 +15,6 @@ from engine.archive import Archive
 from engine.bus import SkillBus
 from engine.bus.action import GoalEnd
 from engine.bus.bus import BusEntry
-from engine.bus.bus_inspector import BusInspector
 from engine.bus.json_bus import JsonBus
 from engine.cell.cell_connection import CellConnection
 from engine.clock import LoopClock
@@ -33,6 +32,7 @@ from engine.event import (
     StopRequested,
     TransitionTaken,
 )
+from engine.project.bus_inspector import BusInspector
 from engine.project.run_factory import RunPosition
 from engine.runtime.control import Breakpoint, Control
 from engine.runtime.history.hot_change import ChangeReport

@@ -11,11 +11,11 @@ import pytest
 import engine.registry
 from engine.check import check_file
 from engine.document import load_behavior
+from engine.document.state_catalogue import find_state
 from engine.errors import DocumentError, ModuleNotAllowed, RegistryError
 from engine.registry import load_states, state_by_path
 from engine.runtime.plan import new_plan
 from engine.runtime.tree.behaviour_catalogue import find_behaviour
-from engine.state_catalogue import find_state
 from tests.engine.project_folder import STATE, ProjectFolder, is_imported
 
 FOREIGN = """

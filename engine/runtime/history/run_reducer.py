@@ -1,7 +1,7 @@
 """Reduces the events of a run, in order, to the state of the run.
 
-It is what resuming after a crash, starting from a chosen moment and the timeline of a debugger
-have in common. It needs the plan: initial userdata is in the document, not in the events.
+Resuming after a crash, starting from a chosen event and a debugger's timeline share it. It needs the plan, as the
+document, not the events, holds initial userdata.
 """
 
 from __future__ import annotations
@@ -292,14 +292,9 @@ class RunStateReducer:
             if (container := self._open.get(path.rpartition("/")[0])) is not None:
                 container.take_clean_up(event)
             return
+        attempt, since_s = (node.attempt, node.since_s) if node is not None else (1, event.time_s)
         self._left[path] = PendingExit(
-            event.visit,
-            outcome,
-            None,
-            event.cause,
-            reason,
-            attempt=node.attempt if node is not None else 1,
-            since_s=node.since_s if node is not None else event.time_s,
+            event.visit, outcome, None, event.cause, reason, attempt=attempt, since_s=since_s
         )
 
     def _preempt(self, event: BranchesPreempted) -> None:

@@ -8,6 +8,7 @@ from functools import cached_property, partial
 
 from engine.document.expression import compile_template
 from engine.document.signature import read_signature
+from engine.document.state_catalogue import Catalogue, find_state
 from engine.document.substitutes import Substitute, SubstituteEnding, Substitutes
 from engine.errors import DocumentError, ExpressionError, Position, RegistryError, StateError
 from engine.event import Cause
@@ -18,7 +19,6 @@ from engine.runtime.nodes.node import Node, NodeWork
 from engine.runtime.nodes.node_entry import EMPTY_ENTRY, NodeEntry
 from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome, State
-from engine.state_catalogue import Catalogue, find_state
 from engine.suggestions import did_you_mean
 
 SUBSTITUTE = "substitute"

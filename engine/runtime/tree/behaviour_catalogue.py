@@ -1,6 +1,6 @@
 """The behaviours of py_trees that documents may name: those of py_trees itself, and those of the project's modules.
 
-Apart from `engine.state_catalogue`, since most documents name none and py_trees takes its time to import.
+Apart from `engine.document.state_catalogue`, since most documents name none and py_trees takes its time to import.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import py_trees.behaviours
 import py_trees.timers
 from py_trees.behaviour import Behaviour
 
+from engine.document.state_catalogue import NO_CLASSES, Catalogue, module_of
 from engine.errors import RegistryError
-from engine.state_catalogue import NO_CLASSES, Catalogue, module_of
 from engine.suggestions import did_you_mean
 
 _PY_TREES: Mapping[str, ModuleType] = {module.__name__: module for module in (py_trees.behaviours, py_trees.timers)}

@@ -13,6 +13,7 @@ from engine.document.behavior import Behavior
 from engine.document.duration import seconds
 from engine.document.expression import Template, compile_template
 from engine.document.node_kind import PostConditionsSpec
+from engine.document.state_catalogue import Catalogue
 from engine.errors import DocumentError, ExpressionError, RegistryError
 from engine.runtime.nodes.leaf import Leaf
 from engine.runtime.nodes.node import Node
@@ -21,7 +22,6 @@ from engine.runtime.tree.behaviour_catalogue import find_behaviour
 from engine.runtime.tree.decorators import WHERE_NOTHING_WAKES_S
 from engine.runtime.tree.tree import Tree
 from engine.runtime.tree.tree_node import Assignment, ForeignPlan, LeafPlan, TreeNode
-from engine.state_catalogue import Catalogue
 from engine.suggestions import did_you_mean
 
 PlanNode = Callable[[str, str, nodes.NodeSpec], Node]

@@ -11,12 +11,12 @@ import msgspec
 import pytest
 
 from engine.bus import ActiveGoal, Holder, SkillBus
-from engine.bus.bus_inspector import BusInspector
 from engine.bus.json_bus import LocalJsonBus
 from engine.bus.remote_bus import RemoteJsonBus
 from engine.clock import LoopClock
 from engine.errors import BusError
 from engine.messages import Message
+from engine.project.bus_inspector import BusInspector
 from engine.skill import Action, Service
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend

@@ -15,9 +15,9 @@ import websockets.exceptions
 from editor_web.telemetry.data_frames import DataSubscription
 from editor_web.telemetry.page_subscriptions import KEPT_ROWS, PageSubscriptions
 from engine.bus import ActiveGoal, Holder, SkillBus
-from engine.bus.bus_inspector import BusInspector
 from engine.clock import LoopClock
 from engine.messages import JointState, Message
+from engine.project.bus_inspector import BusInspector
 from engine.skill import Action
 from tests.editor_web.conftest import Serve
 from tests.editor_web.fake_backend import FakeBackend

@@ -10,9 +10,9 @@ from starlette.types import Message as Asgi
 
 from editor_web.telemetry.goal_stream import GoalStream
 from engine.bus import ActiveGoal, SkillBus
-from engine.bus.bus_inspector import BusInspector
 from engine.clock import LoopClock
 from engine.messages import Message
+from engine.project.bus_inspector import BusInspector
 from engine.skill import Action
 from tests.editor_web.limits import GUARD_S
 

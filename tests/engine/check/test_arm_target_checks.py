@@ -9,8 +9,8 @@ import pytest
 from engine.check import Finding
 from engine.cli.check import TargetLevel, findings_of
 from engine.document import yaml_source
+from engine.document.state_catalogue import find_state
 from engine.registry import load_states
-from engine.state_catalogue import find_state
 
 CATALOGUE = load_states()
 CELL = """

@@ -125,7 +125,7 @@ import sys
 def test_a_behavior(flexcell_run):
     ran = flexcell_run("wait.yaml", parameters={"pause": 3600})
     assert (ran.outcome, ran.result.duration_s) == ("finished", 3600.0)
-    assert [event.path for event in ran.events if type(event).__name__ == "Entered"] == [
+    assert [event.path for event in ran.events if type(event).__name__ == "NodeEntered"] == [
         "root", "root/wait", "root/choose",
     ]
 

@@ -122,7 +122,7 @@ async def test_an_arm_that_has_stopped_is_refused_with_a_reason_before_it_has_to
         said = arm.reflex_reason
         assert said
         assert "the tool feels" not in said
-        with pytest.raises(RobotError, match=r"the arm has stopped by itself: .* from outside"):
+        with pytest.raises(RobotError, match=r"the arm has stopped by itself: external force or torque limit exceeded"):
             arm.guide()
         await until(lambda: arm.reflex_reason.startswith("panda_joint"))
 

@@ -99,14 +99,14 @@ import numpy as np
 from tests.robots.vision.test_depth_renderer import ABOVE, BLOCK
 from tests.robots.vision.watched_cell import PANDA, cameras, look, scene, sight
 from robots.vision.camera import depths
-from robots.vision.camera_rig import Eye
+from robots.vision.camera_rig import CameraRig
 import robots.vision.depth_rays as rays, os
 rays._STEPS = ()
 what = scene(BLOCK, arms=(PANDA,))
 seen = []
 for kind in ("egl", "rays"):
     os.environ["FLEXCELL_DEPTH"] = kind
-    eye = Eye(sight(what, *cameras(front=ABOVE)), repeatable=True)
+    eye = CameraRig(sight(what, *cameras(front=ABOVE)), repeatable=True)
     seen.append(depths(eye.look(look(what)).images[0]))
     eye.close()
 both = np.isfinite(seen[0]) & np.isfinite(seen[1])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 from typing import ClassVar
 
+from engine.document.state_catalogue import StateCatalogue
 from engine.state import Context, Outcome, State
-from engine.state_catalogue import StateCatalogue
 from tests.engine.fake_states import CATALOGUE as FAKE_STATES
 from tests.engine.runtime.tree import foreign_behaviours
 
