@@ -63,7 +63,7 @@ def longest_chain(graph: Mapping[str, set[str]]) -> list[str]:
         assert room not in above, " → ".join((*above[above.index(room) :], room))
         if room not in chains:
             below = [chain(other, (*above, room)) for other in sorted(graph.get(room, ()))]
-            chains[room] = [room, *max(below, key=len, default=[])]
+            chains[room] = [room, *max(below, key=len, default=list[str]())]
         return chains[room]
 
     return max((chain(room, ()) for room in sorted(graph)), key=len)
