@@ -26,7 +26,7 @@ BEHAVIOR = "behaviors/test_cylinder/test_cylinder.yaml"
 def test_it_ends_with_the_cylinder_in_its_rack_wherever_it_is_killed(tmp_path: Path) -> None:
     """Judged by the behavior, which looks where the cylinder stands; what had ended is not done again."""
     file = tmp_path / "trials.json"
-    command = [sys.executable, "-P", str(ROOT / "benchmarks" / "crashes.py"), "--json", str(file)]
+    command = [sys.executable, "-P", str(ROOT / "benchmarks" / "crash_recovery.py"), "--json", str(file)]
     done = subprocess.run(
         [*command, "--subject", "cylinder", "--every", "80"], cwd=tmp_path, capture_output=True, text=True, check=False
     )

@@ -104,6 +104,7 @@ async def test_a_relay_that_is_gone_ends_the_runs_and_hinders_no_stop(project: P
         opened.relay.kill()
         stopped = await opened.session.wait(run)
         await opened.session.stop_all(reason="again")
+        await asyncio.to_thread(opened.arm.stopped.wait)
         assert opened.arm.line.cut
     assert (stopped.status, "the stop relay has ended" in stopped.cause) == ("stopped", True)
 

@@ -318,7 +318,7 @@ async def test_an_arm_whose_check_is_not_answered_in_time_stops() -> None:
         cell.planner.silent_s = 1.0
         cell.cameras.see()
         await cell.bus.clock.sleep(0.5)
-        assert (cell.moves(), "not looked at within" in cell.told[-1].reason) == (False, True)
+        assert (cell.moves(), "not checked within" in cell.told[-1].reason) == (False, True)
         cell.planner.silent_s = 0.0
         assert (await handle.result()).status is GoalStatus.SUCCEEDED
 
