@@ -194,7 +194,7 @@ class Run:
 
     @property
     def active_states(self) -> tuple[str, ...]:
-        """The paths of the states that were entered and not left, in order of entry."""
+        """The paths of the active states, in order of entry."""
         nodes = self.plan.nodes
         # A branch that a hot change has removed is not in the plan while it cleans up.
         active = self._execution.activity.nodes
@@ -233,7 +233,7 @@ class Run:
 
         Raises:
             ControlError: the run is not paused, or a node cannot be undone; nothing has moved.
-            JournalError: the run keeps no journal, or it cannot be read.
+            JournalError: the run has no journal, or it cannot be read.
         """
         # Imported here: step backs are rare, and this run is at rest meanwhile.
         from engine.runtime.step_back_executor import request_step_back

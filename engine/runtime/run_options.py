@@ -1,4 +1,4 @@
-"""Options of a run: operator, autonomy, breakpoints and time-outs."""
+"""Options of a run: operator, autonomy, breakpoints and timeouts."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class BehaviorStructure(Protocol):
     """What `Control` needs from the behavior."""
 
     def outcomes(self, path: str) -> Sequence[str] | None:
-        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        """Return the possible outcomes of the node at `path`; None where there is no such node."""
         ...
 
     def paths(self) -> Sequence[str]:
@@ -62,7 +62,7 @@ class BehaviorStructure(Protocol):
 
 
 class Control:
-    """Commands of the operator to one run; used on the loop thread.
+    """Executes operator commands to one run; used on the loop thread.
 
     Args:
         gate: The gate of the run.
@@ -100,7 +100,7 @@ class Control:
         self._demanded = demanded
         self._loss_policy: LossPolicy = loss_policy
         self._loss_timeout_s = loss_timeout_s
-        self._loss: asyncio.TimerHandle | None = None
+        self._loss_timer: asyncio.TimerHandle | None = None
         self._operator = "none"
         self._closed = False
         self._confirmed = False
@@ -129,16 +129,16 @@ class Control:
         """Execute one step of a paused run.
 
         Args:
-            mode: into the next node, over what is inside it, or out of its container.
+            mode: into the next node, over the nodes inside it, or out of its container.
             path: The branch; by default the first one that waits, in order of arrival.
 
         Raises:
-            ControlError: the run is not paused, or nothing waits in that branch.
+            ControlError: the run is not paused, or no node waits in that branch.
         """
         if not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
         self._refuse_undoing("")
-        waiting = self._waiting_in(path)
+        waiting = self._first_waiting_in(path)
         if path and waiting is None:
             raise ControlError("no node waits there", where=path, hint=did_you_mean(path, self._gate.waiting))
         self._record("step", path, mode=mode)
@@ -173,7 +173,7 @@ class Control:
         self._order(path, OperatorOrder(outcome=None, back=back))
 
     def lock(self, path: str, reason: str = "") -> None:
-        """Hold the outcome of a node until `unlock`; transitions inside it still pass, `reason` goes into the log."""
+        """Hold the outcome of a node until `unlock`; transitions inside it still pass; `reason` is recorded."""
         self._require_node(path)
         self._record("lock", path, **({"reason": reason} if reason else {}))
         self._gate.locks.add(path)
@@ -188,10 +188,10 @@ class Control:
         self._gate.arm()
 
     def force(self, path: str, outcome: str) -> None:
-        """End an active or waiting node with an outcome; what runs in it is preempted and cleans up.
+        """End an active or waiting node with an outcome; active nodes inside are preempted and clean up.
 
         Raises:
-            ControlError: it is not active, or has no such outcome.
+            ControlError: the node is not active, or has no such outcome.
         """
         known = self._require_node(path)
         if outcome not in known:
@@ -201,7 +201,7 @@ class Control:
         self._order(path, OperatorOrder(outcome=outcome))
 
     def repeat(self, path: str) -> None:
-        """Run an active or waiting node again; what runs in it is preempted and cleans up first.
+        """Run an active or waiting node again; active nodes inside are preempted and clean up first.
 
         Raises:
             ControlError: it is not active.
@@ -219,7 +219,7 @@ class Control:
         """Confirm the outcome that a node has requested.
 
         Raises:
-            ControlError: it has requested none.
+            ControlError: the node has requested no outcome.
         """
         waiting = self._gate.waiting.get(path)
         if waiting is None or "autonomy" not in waiting.reasons:
@@ -247,12 +247,12 @@ class Control:
 
     def attach_operator(self) -> None:
         """Record that an operator is attached; autonomy rules apply."""
-        self._forget_loss()
+        self._cancel_loss_timer()
         self._set_operator("attached", asks=True)
 
     def detach_operator(self) -> None:
         """Record that the operator has detached; autonomy rules apply only where an operator is demanded."""
-        self._forget_loss()
+        self._cancel_loss_timer()
         self._set_operator("detached", asks=self._demanded)
 
     def lose_operator(self) -> None:
@@ -261,7 +261,7 @@ class Control:
             return
         self._set_operator("lost", asks=True)
         loop = asyncio.get_running_loop()
-        self._loss = loop.call_later(self._loss_timeout_s, self._apply_loss)
+        self._loss_timer = loop.call_later(self._loss_timeout_s, self._apply_loss)
 
     async def settled(self) -> None:
         """Return when the immediate effects of a command have settled."""
@@ -289,7 +289,7 @@ class Control:
     def close(self) -> None:
         """Close the control of a run that has ended; cancels its timer."""
         self._closed = True
-        self._forget_loss()
+        self._cancel_loss_timer()
 
     @property
     def closed(self) -> bool:
@@ -323,7 +323,7 @@ class Control:
             active = [*self._activity.nodes, *self._gate.waiting]
             raise ControlError("this node is not active", where=path, hint=did_you_mean(path, active))
 
-    def _waiting_in(self, path: str) -> GateWait | None:
+    def _first_waiting_in(self, path: str) -> GateWait | None:
         return next((each for each in self._gate.waiting.values() if not path or is_inside(path, each.path)), None)
 
     def _paused(self) -> None:
@@ -339,7 +339,7 @@ class Control:
         self._recorder.emit(PauseConfirmed, cannot=self._branch_holds.cannot())
 
     def _apply_loss(self) -> None:
-        self._loss = None
+        self._loss_timer = None
         if self._loss_policy == "continue":
             self._gate.asks = self._demanded
             self._gate.arm()
@@ -348,10 +348,10 @@ class Control:
         else:
             self._stop("the operator was lost")
 
-    def _forget_loss(self) -> None:
-        if self._loss is not None:
-            self._loss.cancel()
-            self._loss = None
+    def _cancel_loss_timer(self) -> None:
+        if self._loss_timer is not None:
+            self._loss_timer.cancel()
+            self._loss_timer = None
 
     def _set_operator(self, status: str, *, asks: bool) -> None:
         recorder = self._recorder

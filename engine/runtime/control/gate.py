@@ -66,7 +66,7 @@ class Gate:
         self._answers: set[str] = set()
         self._accepted: dict[str, tuple[int, str]] = {}
         self.on_paused: Callable[[], None] = lambda: None
-        """Called after every pause: by the operator, a breakpoint, the end of a step."""
+        """Called after every pause: by the operator, a breakpoint, or the end of a step."""
         self.undoing: tuple[str, ...] = ()
         """The node that is being undone, and the node that was preempted for it; empty while there is none."""
         self._step: SingleStep | None = None
@@ -166,8 +166,8 @@ class Gate:
         """Wait until the transition of the outcome may be taken; return an order given instead.
 
         Args:
-            path: The node.
-            visit: Its activation.
+            path: The path of the node.
+            visit: The number of its activation.
             outcome: Its outcome; empty when timeout, guard or on_error diverted it.
             required: The autonomy level that the outcome requires; at this level or below it needs confirmation.
             scope: The scope in which breakpoint conditions are evaluated.
@@ -187,23 +187,23 @@ class Gate:
 
     async def _wait(self, waiting: GateWait, *, required: str | None) -> OperatorOrder | None:
         path = waiting.path
-        asked = required is not None and self._still_asks(required)
-        if required is not None and asked:
+        is_requested = required is not None and self._still_asks(required)
+        if required is not None and is_requested:
             self._recorder.emit(
                 OutcomeRequested, path=path, visit=waiting.visit, outcome=waiting.outcome, required=required
             )
         try:
             while (order := self._orders.pop(path, None)) is None:
-                unanswered = asked and path not in self._answers and self._still_asks(required)
-                reasons = self._reasons(waiting, asked=unanswered)
+                unanswered = is_requested and path not in self._answers and self._still_asks(required)
+                reasons = self._reasons(waiting, unanswered=unanswered)
                 if not reasons:
                     break
-                self._show(replace(waiting, reasons=reasons, required=required or ""))
+                self._record_wait(replace(waiting, reasons=reasons, required=required or ""))
                 await self._branch_holds.changed()
             return order
         finally:
             self._answers.discard(path)
-            if asked:
+            if is_requested:
                 self._recorder.emit(OutcomeWithdrawn, path=path, visit=waiting.visit, outcome=waiting.outcome)
             if self.waiting.pop(path, None) is not None:
                 self._recorder.emit(GatePassed, path=path, visit=waiting.visit, point=waiting.point)
@@ -211,11 +211,11 @@ class Gate:
     def _still_asks(self, required: str | None) -> bool:
         return self.asks and required is not None and not passes_by_itself(required, self.autonomy)
 
-    def _reasons(self, waiting: GateWait, *, asked: bool) -> tuple[str, ...]:
+    def _reasons(self, waiting: GateWait, *, unanswered: bool) -> tuple[str, ...]:
         reasons = list(self._branch_holds.reasons(waiting.path))
         if waiting.point == "after" and waiting.path in self.locks:
             reasons.append("lock")
-        if asked:
+        if unanswered:
             reasons.append("autonomy")
         return tuple(reasons)
 
@@ -226,23 +226,23 @@ class Gate:
             return
         with METER.limited(MAX_STEPS, "the breakpoints here"):
             for each in self.breakpoints:
-                if each.matches(path, point, outcome) and self._due(each, path, scope):
+                if each.matches(path, point, outcome) and self._is_hit(each, path, scope):
                     self._recorder.log(path, f"breakpoint {point} {each.path}")
                     self.pause()
                     return
 
-    def _due(self, due: Breakpoint, path: str, scope: Scope) -> bool:
+    def _is_hit(self, each: Breakpoint, path: str, scope: Scope) -> bool:
         try:
-            if not due.holds(lambda name: scope.read(name, reader=path)):
+            if not each.holds(lambda name: scope.read(name, reader=path)):
                 return False
         except FlexcellError as error:
             # A condition that cannot be evaluated must not end the run; the run pauses so that the error is visible.
-            self._recorder.log(path, f"breakpoint {due.path}: {describe_cause(cause_of(error))}")
+            self._recorder.log(path, f"breakpoint {each.path}: {describe_cause(cause_of(error))}")
             return True
-        hits = self._hits[due] = self._hits.get(due, 0) + 1
-        return hits >= due.hits
+        hits = self._hits[each] = self._hits.get(each, 0) + 1
+        return hits >= each.hits
 
-    def _show(self, waiting: GateWait) -> None:
+    def _record_wait(self, waiting: GateWait) -> None:
         known = self.waiting.get(waiting.path)
         self.waiting[waiting.path] = waiting
         if known is not None and known.reasons == waiting.reasons:

@@ -107,7 +107,7 @@ def _is_other(path: str, old: Plan, new: Plan) -> bool:
     before, after = old.nodes[path], new.nodes.get(path)
     if after is None:
         return False
-    return any(_refuses(path, before, after)) or _wiring(before) != _wiring(after)
+    return any(_refuses(path, before, after)) or _key_mapping(before) != _key_mapping(after)
 
 
 def _outermost(paths: Iterable[str]) -> Iterator[str]:
@@ -173,23 +173,23 @@ def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
         if before.transitions != after.transitions:
             yield f"{path} has changed transitions"
         if _parameters(before) != _parameters(after):
-            yield f"{path} has changed parameters{_when(path, active)}"
+            yield f"{path} has changed parameters{_at_next_entry(path, active)}"
         if isinstance(before.work, Leaf) and isinstance(after.work, Leaf) and before.work.state != after.work.state:
             yield f"{path} becomes {after.work.signature.name}"
-        if _parameters(before) == _parameters(after) and _wiring(before) != _wiring(after):
-            yield f"{path} reads or writes different keys{_when(path, active)}"
+        if _parameters(before) == _parameters(after) and _key_mapping(before) != _key_mapping(after):
+            yield f"{path} reads or writes different keys{_at_next_entry(path, active)}"
         if _conditions(before) != _conditions(after):
             yield f"{path} has changed conditions"
         if _shared(before) != _shared(after):
-            yield f"{path} shares different keys{_when(path, active)}"
+            yield f"{path} shares different keys{_at_next_entry(path, active)}"
         if _policies(before) != _policies(after):
-            yield f"{path} has a changed timeout, retry, guard or on_error{_when(path, active)}"
+            yield f"{path} has a changed timeout, retry, guard or on_error{_at_next_entry(path, active)}"
     for key in new.userdata:
         if key not in old.userdata:
             yield f"the userdata key {key} is added"
 
 
-def _wiring(node: Node) -> object:
+def _key_mapping(node: Node) -> object:
     """Return the parameters and the key mapping of a state."""
     if not isinstance(node.work, Leaf):
         return None
@@ -213,7 +213,7 @@ def _policies(node: Node) -> tuple[object, ...]:
     return (node.timeout, node.retry, node.on_error, guard)
 
 
-def _when(path: str, active: Mapping[str, Node]) -> str:
+def _at_next_entry(path: str, active: Mapping[str, Node]) -> str:
     return ", effective at its next entry" if path in active else ""
 
 

@@ -81,7 +81,7 @@ def resume_checkpoint(
         epoch: Number of the engine process of this run.
 
     Raises:
-        ResumeDecisionRequired: states ask and have no answer.
+        ResumeDecisionRequired: states need a decision and have no answer.
         ControlError: an answer names an unknown state or outcome, or the run has ended.
     """
     if history.ended:
@@ -160,12 +160,12 @@ def start_checkpoint(history: RunStateReducer, plan: Plan, path: str) -> Checkpo
             failed_clean_ups={branch: cause for branch, cause in known.failed_clean_ups.items() if branch != name},
         )
         if node.work.kind == "concurrency":
-            points |= _beside(checkpoint, above, name)
+            points |= _parallel_points(checkpoint, above, name)
     return replace(checkpoint, points=points, rerun=(path,))
 
 
-def _beside(checkpoint: Checkpoint, container: str, name: str) -> dict[str, NodeCheckpoint]:
-    """Return the points of the other branches of a concurrency container."""
+def _parallel_points(checkpoint: Checkpoint, container: str, name: str) -> dict[str, NodeCheckpoint]:
+    """Return the checkpoints of the other branches of a concurrency container."""
     if container not in checkpoint.points:
         return {}
     own = f"{container}/{name}"

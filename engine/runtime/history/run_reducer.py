@@ -153,14 +153,14 @@ class RunStateReducer:
         return {path: dict(values) for path, values in self._scopes.items()}
 
     def visit(self, path: str) -> int:
-        """Return the number of the last activation of a node."""
+        """Return the number of the last visit of a node."""
         return self.visits.get(path, 0)
 
     def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
         """Return the current state as a checkpoint; interrupted states are to be entered again.
 
         Raises:
-            DocumentError: the run is at a node that the plan does not have.
+            DocumentError: a node is active that the plan does not contain.
         """
         points: dict[str, NodeCheckpoint] = {}
         for path, node in self._open.items():

@@ -18,7 +18,7 @@ class LivelockDetector:
     outlasts some of its iterations, the loop never ends.
 
     Args:
-        path: The container that loops.
+        path: The path of the looping container.
         execution: The execution of the run.
     """
 

@@ -88,7 +88,7 @@ class BranchHolds:
 
     def held(self, path: str) -> bool:
         """Return whether the branch of `path` is held."""
-        return any(covers(path) for covers in self._reasons.values()) and not self._cleans_up(path)
+        return any(covers(path) for covers in self._reasons.values()) and not self._is_cleaning_up(path)
 
     def reasons(self, path: str) -> tuple[str, ...]:
         """Return the reasons that hold `path`."""
@@ -184,11 +184,11 @@ class BranchHolds:
             else:
                 timer.resume()
         for member in self._members.values():
-            if not self._cleans_up(member.work.path):
+            if not self._is_cleaning_up(member.work.path):
                 member.want(self.held(member.work.path))
         self.wake()
 
-    def _cleans_up(self, path: str) -> bool:
+    def _is_cleaning_up(self, path: str) -> bool:
         is_released = any(is_inside(around, path) for around in self._cleaning_up)
         return is_released and self.is_preempted(path)
 

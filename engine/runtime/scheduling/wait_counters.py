@@ -36,7 +36,7 @@ class BusyLoopCounter:
     """Counts the steps of one loop without a wait; waits of siblings do not count.
 
     Args:
-        path: The container that loops.
+        path: The path of the looping container.
         waits: The wait counter of the run.
         clock: The clock; virtual time advances only when everything waits, so there it replaces `waits`.
     """

@@ -20,7 +20,7 @@ class IfThenElse(Composite):
 
     Args:
         path: Its node path.
-        children: The condition, the branch for success and, if there is one, that for failure.
+        children: The condition, the branch for success, and optionally the branch for failure.
         skips: The skipped nodes; this node is skipped when its branch is.
     """
 

@@ -96,7 +96,7 @@ class ReactiveChecks:
         self.tick_due = False
         if not self._builder.reactive:
             return
-        leaves = tuple(self._in_front(root)) if root.status is Status.RUNNING else ()
+        leaves = tuple(self._reactive_leaves(root)) if root.status is Status.RUNNING else ()
         for removed in [leaf for leaf in self._watches if leaf not in leaves]:
             self._end(self._watches.pop(removed))
         self._foreign = {each: self._builder.foreign[each] for each in leaves if each in self._builder.foreign}
@@ -110,7 +110,7 @@ class ReactiveChecks:
         """Take an event of the run."""
         if isinstance(event, UserdataWritten | UserdataAppended):
             if (self._watches or self._foreign) and self._execution.skills.entries is None:
-                self._hear_write(event)
+                self._on_write(event)
         elif isinstance(event, MessageReceived) and self._builder.reactive and is_inside(self._path, event.path):
             self._topics[event.path].add(event.topic)
 
@@ -137,7 +137,7 @@ class ReactiveChecks:
                 watch.leaf.stale = True
                 return
             self._compare(watch, observed)
-            self._time(watch)
+            self._start_timer(watch)
             if not self.tick_due:
                 self._polling.count(self._names)
 
@@ -153,14 +153,14 @@ class ReactiveChecks:
         self._watches.clear()
         self._foreign.clear()
 
-    def _in_front(self, node: Behaviour) -> Iterator[Behaviour]:
+    def _reactive_leaves(self, node: Behaviour) -> Iterator[Behaviour]:
         """Yield the leaves in front of the RUNNING child of composites without memory, below a RUNNING node."""
         without_memory = isinstance(node, WhileDoElse) or (
             isinstance(node, composites.Sequence | composites.Selector) and not node.memory
         )
         for child in node.children:
             if child.status is Status.RUNNING:
-                yield from self._in_front(child)
+                yield from self._reactive_leaves(child)
                 if without_memory:
                     return
             elif without_memory:
@@ -182,7 +182,7 @@ class ReactiveChecks:
 
     def _compare(self, watch: _Watch, observed: Observation) -> None:
         self._topics[watch.path] |= observed.topics
-        self._hear_topics(watch)
+        self._subscribe_topics(watch)
         if observed.left is not None:
             status = watch.leaf.status_of(observed.left)
             if status is watch.leaf.said:
@@ -215,7 +215,7 @@ class ReactiveChecks:
             await preempt((task,), overdue_policy(self._execution, self._path))
         return Observation() if task.cancelled() else task.result()
 
-    def _hear_write(self, event: UserdataWritten | UserdataAppended) -> None:
+    def _on_write(self, event: UserdataWritten | UserdataAppended) -> None:
         affected = False
         for watch in self._watches.values():
             reads = watch.leaf.plan.reads
@@ -238,14 +238,14 @@ class ReactiveChecks:
                 watch.visit = visit
                 watch.forget_entry = entries.expect(watch.path, visit, self._tick)
             return
-        self._time(watch)
-        self._hear_topics(watch)
+        self._start_timer(watch)
+        self._subscribe_topics(watch)
 
-    def _hear_topics(self, watch: _Watch) -> None:
+    def _subscribe_topics(self, watch: _Watch) -> None:
         for topic in self._topics[watch.path] - watch.topics.keys():
-            watch.topics[topic] = self._execution.skills.watch(topic, partial(self._outdate, watch))
+            watch.topics[topic] = self._execution.skills.watch(topic, partial(self._mark_stale, watch))
 
-    def _time(self, watch: _Watch) -> None:
+    def _start_timer(self, watch: _Watch) -> None:
         """Start the timer of the next periodic observation, unless it is running."""
         every_s = watch.leaf.plan.every_s
         if every_s is None or (watch.timer is not None and not watch.timer.future.done()):
@@ -253,9 +253,9 @@ class ReactiveChecks:
         if watch.timer is not None:
             self._execution.branch_holds.drop(watch.timer)
         watch.timer = self._execution.branch_holds.timer(watch.path, every_s)
-        watch.timer.future.add_done_callback(lambda _: self._outdate(watch))
+        watch.timer.future.add_done_callback(lambda _: self._mark_stale(watch))
 
-    def _outdate(self, watch: _Watch) -> None:
+    def _mark_stale(self, watch: _Watch) -> None:
         if watch.leaf in self._watches:
             self._execution.waits.add(watch.path)
             watch.leaf.stale = True

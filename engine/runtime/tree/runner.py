@@ -95,19 +95,19 @@ class TreeRunner:
             FlexcellError: a leaf, a foreign behaviour or a clean-up failed and nothing in the tree handles the error.
             CancelledError: the tree was preempted; all clean-up is complete.
         """
-        recorder, hear = self._execution.recorder, self._hear
+        recorder, watcher = self._execution.recorder, self._on_event
         ready: list[ForeignBehaviour] = []
         try:
             root = self._build(ready)
             if self._builder.reactive or self._watched:
                 # Without watchers and journal events are not even created.
-                recorder.watch(hear)
+                recorder.watch(watcher)
             return await self._run(root)
         except asyncio.CancelledError:
             raise_failure(await self._leaves.stop())
             raise
         finally:
-            recorder.unwatch(hear)
+            recorder.unwatch(watcher)
             self._tree_timers.close()
             self._reactive.close()
             try:
@@ -237,7 +237,7 @@ class TreeRunner:
         except FlexcellError:
             return True  # the tick raises the error where a decorator may handle it
 
-    def _hear(self, event: Event) -> None:
+    def _on_event(self, event: Event) -> None:
         self._reactive.hear(event)
         if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)

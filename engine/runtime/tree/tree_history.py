@@ -103,7 +103,7 @@ def _fold(state: TreeNodeState, what: str, name: str, at_s: float) -> None:
     before = state.status
     match what:
         case "attempt":
-            # A node's own retry runs it again; a retry that is a decorator is RUNNING anyway.
+            # The retry of a node runs it again; a retry decorator is RUNNING in any case.
             state.attempt = int(name)
             state.status = "running"
             state.read = True

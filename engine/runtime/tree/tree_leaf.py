@@ -120,7 +120,7 @@ class TreeLeaf(Behaviour):
         return activation
 
     def update(self) -> Status:
-        """Return the present status; `tick` does the work."""
+        """Return the current status; `tick` does the work."""
         return self.status
 
     def stop(self, new_status: Status) -> None:

@@ -41,7 +41,7 @@ def new_tree(
         plan: Plans a state or container, from its name, its path in the document, and its specification.
 
     Raises:
-        DocumentError: something in it cannot be run; `where` is the position.
+        DocumentError: a node of the tree is invalid; `where` is the position.
     """
     return Tree(root=_Planner(base, behavior, catalogue, plan).children(inside, node)[0])
 
