@@ -1,1 +1,1 @@
-"""What executes behaviors: plans, runs, their nodes and trees, operator control, resume and hot change."""
+"""Executes behaviors: plans, runs, their nodes and trees, operator control, resume and hot change."""

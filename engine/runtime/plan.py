@@ -1,4 +1,4 @@
-"""A behavior made executable: every name resolved, every expression compiled, every path known."""
+"""Executable form of a behavior: names resolved, expressions compiled, node paths assigned."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ __all__ = ["Catalogue", "Plan", "new_plan"]
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What a run executes; holds no run's state, so any number of runs may share it."""
+    """The executable plan of a behavior; immutable, so any number of runs may share it."""
 
     name: str
     document_hash: str
@@ -43,18 +43,18 @@ class Plan:
     userdata: Mapping[str, object]
     substitutes: Substitutes | None = None
     source: document.Behavior | None = field(default=None, repr=False, compare=False)
-    """The behavior that it was made of; None for one inside another."""
+    """The behavior that the plan was built from; None for a referenced behavior inside another."""
 
     @cached_property
     def nodes(self) -> Mapping[str, Node]:
-        """All nodes by path, in document order, those of referred behaviors included."""
-        found: dict[str, Node] = {}
+        """All nodes by path, in document order, including those of referenced behaviors."""
+        nodes_by_path: dict[str, Node] = {}
         due = [self.root]
         while due:
             node = due.pop()
-            found[node.path] = node
+            nodes_by_path[node.path] = node
             due += reversed(list(node.work.children.values()))
-        return found
+        return nodes_by_path
 
     @cached_property
     def commands_hardware(self) -> bool:
@@ -63,11 +63,11 @@ class Plan:
 
     @cached_property
     def stood_in_for(self) -> tuple[str, ...]:
-        """The nodes that something stands in for, in document order."""
+        """The nodes that are replaced by substitutes, in document order."""
         return tuple(path for path, node in self.nodes.items() if node.work.kind == SUBSTITUTE)
 
     def outcomes_of(self, path: str) -> tuple[str, ...] | None:
-        """Return the outcomes that the node at `path` can have; None where there is no such node."""
+        """Return the possible outcomes of the node at `path`; None where there is no such node."""
         node = self.nodes.get(path)
         return node.work.outcomes if node is not None else None
 
@@ -75,16 +75,16 @@ class Plan:
         """Return a value for every parameter.
 
         Raises:
-            DocumentError: an unknown, missing or unacceptable one.
+            DocumentError: a parameter is unknown, missing or invalid.
         """
         return bind_parameters(self.parameters, given, where=self.name)
 
     def checked_inputs(self, given: Mapping[str, object]) -> dict[str, object]:
-        """Return initial userdata values given for a run.
+        """Return the initial userdata values given for a run.
 
         Raises:
             DocumentError: the behavior does not declare such a key.
-            UserdataError: a value could not be kept as it is.
+            UserdataError: a value cannot be stored without change.
         """
         for key in given:
             if key not in self.userdata:
@@ -97,11 +97,11 @@ class Plan:
 
 @pause_gc
 def new_plan(behavior: document.Behavior, catalogue: Catalogue) -> Plan:
-    """Make a behavior executable, with the substitutes that it has.
+    """Build the plan of a behavior, with its substitutes.
 
     Raises:
-        DocumentError: a state is unknown, an expression does not compile, or a substitute fits nothing; `where` is the
-            position.
+        DocumentError: a state is unknown, an expression does not compile, or a substitute matches no node; `where` is
+            the position.
     """
     plan = _new_plan(behavior, catalogue, path="root", substitutes=behavior.substitutes)
     if behavior.substitutes is not None:
@@ -110,7 +110,7 @@ def new_plan(behavior: document.Behavior, catalogue: Catalogue) -> Plan:
 
 
 def _new_plan(behavior: document.Behavior, catalogue: Catalogue, *, path: str, substitutes: Substitutes | None) -> Plan:
-    """Plan a behavior whose root has a path."""
+    """Plan a behavior whose root has the path `path`."""
     return Plan(
         name=behavior.name,
         document_hash=behavior.meaning,
@@ -190,7 +190,7 @@ class _Planner:
     def _foreach(self, inside: str, node: nodes.NodeSpec) -> NodeWork:
         rounds = node.foreach
         if rounds is None:
-            raise DocumentError("a foreach without its keys", where=self.behavior.position(inside))
+            raise DocumentError("this foreach has no keys", where=self.behavior.position(inside))
         child = self._children(inside, node)["child"]
         return ForEach(
             child=child,

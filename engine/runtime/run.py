@@ -1,4 +1,4 @@
-"""A run: one execution of one behavior, from start to a reported outcome, stoppable at any moment."""
+"""A run: one execution of one behavior, from its start to a reported outcome; it can be stopped at any time."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from engine.runtime.userdata.userdata import Scope
 
 @dataclass(frozen=True, kw_only=True)
 class RunResult:
-    """How a run ended: `status` is finished, stopped or errored; `success` only for a declared outcome."""
+    """Result of a run: `status` is finished, stopped or errored; `success` only for a declared success outcome."""
 
     run: str
     behavior: str
@@ -44,31 +44,31 @@ class RunResult:
     duration_s: float
     userdata: Mapping[str, object]
     stood_in_for: tuple[str, ...] = ()
-    """The nodes that did nothing, as a test has put something in their place."""
+    """The nodes that a test replaced by substitutes."""
     abandoned: tuple[str, ...] = ()
-    """States that did not end when told to; what they command may still move and stays leased."""
+    """States that did not end when preempted; their devices may still move and stay leased."""
 
 
 class Run:
-    """One execution of one plan on a bus; made and used on the loop thread.
+    """One execution of one plan on a bus; created and used on the loop thread.
 
     Args:
-        plan: What is executed.
-        run: Its id.
-        bus: Where its skills are; its clock is the run's.
+        plan: The plan that is executed.
+        run: The run id.
+        bus: The skill bus; its clock is the clock of the run.
         parameters: Values for the behavior's parameters.
         inputs: Initial values of userdata keys that the behavior declares.
-        seed: Of its random numbers.
-        journal: Where its events are kept durably; nowhere by default.
-        skills: Stands in for the bus where robots are recorded, or faults injected.
-        supervision: Operator, autonomy, breakpoints, time-outs.
-        checkpoint: The moment to go on from; of this run after a crash, or of another one.
-        world: Gives the state of the simulated world, kept in the journal with every commit.
-        instant_limit: Transitions in a row in which nothing is waited for before a loop is reported.
-        polling_limit: Transitions in virtual time in which nothing happens but waiting before a loop is reported.
+        seed: Seed of its random numbers.
+        journal: Durable store of its events; none by default.
+        skills: Port used instead of the bus, for replays and fault injection.
+        supervision: Operator, autonomy, breakpoints, timeouts.
+        checkpoint: The checkpoint to resume from; of this run after a crash, or of another run.
+        world: Returns the state of the simulated world, stored in the journal with every commit.
+        instant_limit: Consecutive transitions without a wait before an endless loop is reported.
+        polling_limit: Consecutive transitions in virtual time that only wait before a livelock is reported.
 
     Raises:
-        DocumentError: a parameter or input is not acceptable.
+        DocumentError: a parameter or input is invalid.
     """
 
     def __init__(
@@ -133,30 +133,30 @@ class Run:
         self._begun = False
         self._ended = False
         self._cancelled = False
-        self._given_up: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._patience: asyncio.TimerHandle | None = None
+        self._abandoned: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._abandon_timer: asyncio.TimerHandle | None = None
         self._control = self._new_control()
         if isinstance(skills, RunAwarePort):
             skills.begin(self._recorder)
 
     @property
     def control(self) -> Control:
-        """What an operator can do with this run, from its making to its end."""
+        """Operator control of this run, from its creation to its end."""
         self._begin()
         return self._control
 
     @property
     def recorder(self) -> Recorder:
-        """The event log, for what has to be told of the run from outside."""
+        """The event log, for events that are recorded from outside."""
         return self._recorder
 
     @property
     def ended(self) -> bool:
-        """True once it is over."""
+        """True once the run has ended."""
         return self._ended
 
     def outcomes(self, path: str) -> Sequence[str] | None:
-        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        """Return the possible outcomes of the node at `path`; None where there is no such node."""
         return self.plan.outcomes_of(path)
 
     def paths(self) -> Sequence[str]:
@@ -168,9 +168,9 @@ class Run:
         self._recorder.watch(watcher)
 
     def stop(self, reason: str) -> None:
-        """Preempt everything; `execute` returns when all clean-up is done and the robots rest.
+        """Preempt everything; `execute` returns when all clean-up is complete and the robots are at rest.
 
-        A stop beats pause, lock and autonomy. Before the start it prevents the start; later calls
+        A stop overrides pause, lock and autonomy. Before the start it prevents the start; later calls
         are recorded and change nothing; calls after the end do nothing.
         """
         if self._ended:
@@ -180,37 +180,37 @@ class Run:
         if self._task is not None:
             self._log.stop_requested(reason)
             if first:
-                # What a pause holds would never clean up.
+                # A branch held by a pause would never clean up.
                 self._execution.branch_holds.let_clean_up(self.plan.root.path)
                 preempt_finally(self._task)
-                # A little longer than any container inside waits for its children.
-                patience_s = self._supervision.abandon_after_s + 2.5
-                self._patience = self._task.get_loop().call_later(patience_s, self._give_up)
+                # Longer than any container inside waits for its children.
+                abandon_after_s = self._supervision.abandon_after_s + 2.5
+                self._abandon_timer = self._task.get_loop().call_later(abandon_after_s, self._give_up)
 
     def fail(self, error: FlexcellError) -> None:
-        """Stop like `stop`, and end errored with this cause: something around the run made it impossible."""
+        """Stop like `stop`, and end as errored with this cause, which lies outside the behavior."""
         self._failure = self._failure or error
         self.stop(error.message)
 
     @property
     def active_states(self) -> tuple[str, ...]:
-        """The paths of the states that were entered and not left, in order of entry."""
+        """The paths of the active states, in order of entry."""
         nodes = self.plan.nodes
-        # A branch that a hot change has removed is in no plan any more while it cleans up.
+        # A branch that a hot change has removed is not in the plan while it cleans up.
         active = self._execution.activity.nodes
         return tuple(path for path in active if path not in nodes or not nodes[path].work.children)
 
     def change(self, plan: Plan, *, preempt: bool = False, kept: VersionSnapshot = NO_SNAPSHOT) -> ChangeReport:
-        """Let a new version of the behavior take the place of the running one, which must be paused or locked.
+        """Replace the behavior of this run, which must be paused or locked, by a new version.
 
         Args:
             plan: The new version.
-            preempt: Whether active nodes that cannot go on as they are, or that have other parameters or keys, are
-                preempted and entered anew, and branches that are gone but under way preempted.
-            kept: The texts of the version, without which the run cannot be replayed.
+            preempt: Whether active nodes that cannot continue, or whose parameters or keys changed, are preempted and
+                entered again, and active branches that the new version removes are preempted.
+            kept: The source texts of the version, required to replay the run.
 
         Raises:
-            ControlError: the run cannot go on in the new version; it goes on as it is.
+            ControlError: the run cannot continue in the new version; it continues unchanged.
         """
         known = {name: value for name, value in self.parameters.items() if name in plan.parameters}
         required = [name for name, each in plan.parameters.items() if each.required and name not in known]
@@ -223,20 +223,19 @@ class Run:
         return report
 
     async def step_back(self, path: str = "") -> tuple[str, ...]:
-        """Take back the node that began last, in one branch of this paused run; returns what is undone, in order.
+        """Undo the node that began last in one branch of this paused run; returns the undone nodes, in order.
 
-        It is undone by the `undo` of its states, its userdata by the former values, and the run stands before its
-        entry, paused again once that is done. A failure of an undo is told in the log; the run then stands where it
-        was.
+        The `undo` of its states undoes it, its userdata is restored, and the run then waits before its entry, paused
+        again. A failed undo is logged; the run then keeps its position.
 
         Args:
             path: The branch; by default the one in which something began last.
 
         Raises:
-            ControlError: it is not paused, or something cannot be undone; nothing has moved.
-            JournalError: the run keeps no journal, or it cannot be read.
+            ControlError: the run is not paused, or a node cannot be undone; nothing has moved.
+            JournalError: the run has no journal, or it cannot be read.
         """
-        # Few runs are ever taken back, and this one is at rest meanwhile.
+        # Imported here: step backs are rare, and this run is at rest meanwhile.
         from engine.runtime.step_back_executor import request_step_back
 
         return await request_step_back(
@@ -244,9 +243,9 @@ class Run:
         )
 
     async def execute(self) -> RunResult:
-        """Run to the end and report it; never raises for what happens inside the behavior.
+        """Execute the run and return its result; never raises for errors inside the behavior.
 
-        Cancelling this call stops the run and waits for its clean-up before CancelledError goes on.
+        Cancelling this call stops the run; CancelledError propagates after its clean-up.
         """
         started_s = self._execution.clock.now_s()
         self._begin()
@@ -288,19 +287,19 @@ class Run:
         try:
             while not self._task.done():
                 try:
-                    await asyncio.wait({self._task, self._given_up}, return_when=asyncio.FIRST_COMPLETED)
+                    await asyncio.wait({self._task, self._abandoned}, return_when=asyncio.FIRST_COMPLETED)
                 except asyncio.CancelledError:
                     self._cancelled = True
-                    self.stop("the process that ran it was stopped")
+                    self.stop("the process of the run was stopped")
                     continue
                 if not self._task.done():
                     return "errored", None, self._abandon(self._task)
         finally:
-            if self._patience is not None:
-                self._patience.cancel()
-        return self._told(self._task)
+            if self._abandon_timer is not None:
+                self._abandon_timer.cancel()
+        return self._result_of(self._task)
 
-    def _told(self, task: asyncio.Task[NodeExit]) -> tuple[str, NodeExit | None, Cause | None]:
+    def _result_of(self, task: asyncio.Task[NodeExit]) -> tuple[str, NodeExit | None, Cause | None]:
         try:
             return "finished", task.result(), None
         except asyncio.CancelledError:
@@ -311,13 +310,13 @@ class Run:
                 return "stopped", None, wrap_cause(self._stopped().message, cause, kind="Stopped")
             return "errored", None, cause
         except Exception as error:
-            # A custom state may raise anything; it ends the run with its cause, not the engine.
+            # A custom state may raise any exception; it ends the run with its cause, not the engine.
             self._recorder.log(self.plan.root.path, f"{type(error).__name__}: {error}", level="error")
             return "errored", None, cause_of(error)
 
     def _give_up(self) -> None:
-        if not self._given_up.done():
-            self._given_up.set_result(None)
+        if not self._abandoned.done():
+            self._abandoned.set_result(None)
 
     def _abandon(self, task: asyncio.Task[NodeExit]) -> Cause:
         waited_s = self._supervision.abandon_after_s
@@ -327,12 +326,12 @@ class Run:
         error = NotStopped(
             f"{', '.join(leaves) or 'the run'} did not stop within {waited_s:g} s and was abandoned",
             where=self.plan.root.path,
-            hint="let the state's clean-up end, and CancelledError pass",
+            hint="the clean-up of the state must end, and CancelledError must propagate",
         )
         return cause_of(error)
 
     async def _release(self) -> None:
-        """Cancel the goals that are left and give the resources back, however often we are cancelled meanwhile."""
+        """Cancel the remaining goals and release the leases, also when this task is cancelled meanwhile."""
         if self._execution.abandoned:
             return
         cancelling = asyncio.create_task(self._execution.bus.cancel_goals(self.id), name=f"goals of run {self.id}")
@@ -369,7 +368,7 @@ class Run:
         return control
 
     def _begin(self) -> None:
-        """Record the first events, once: before any command, watcher or node."""
+        """Record the first events once, before any command, watcher or node."""
         if self._begun:
             return
         self._begun = True
@@ -383,13 +382,13 @@ class Run:
                 self._log.started_from(checkpoint)
         undoing = checkpoint.undoing if checkpoint is not None and self._is_resumed else ""
         if undoing:
-            message = "the engine died while a step back was undoing this, so the run begins paused: step back again"
+            message = "the engine died while a step back was undoing this state; the run starts paused: step back again"
             self._recorder.log(undoing, message, level="warning")
         if self._supervision.start_paused or undoing:
             self._control.pause()
 
     async def _record_end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
-        """Make the end durable, then tell it; a run whose end cannot be kept has failed with that cause."""
+        """Make the end durable, then publish it; a run whose end cannot be stored is errored with that cause."""
         end = self._recorder.end(status, outcome, cause)
         committing = asyncio.create_task(self._execution.commit(), name=f"end of run {self.id}")
         while not committing.done():
@@ -406,10 +405,10 @@ class Run:
 
 
 def _unrecorded(error: JournalError, end: RunEnded) -> Cause:
-    """Return the cause of a run whose end could not be written: the journal, and how it had ended by itself."""
+    """Return the cause of a run whose end could not be written: the journal error and the result of the run."""
     if end.cause is not None and any(link.kind == JournalError.__name__ for link in end.cause.chain()):
         return end.cause
     lost = cause_of(error)
-    by_itself = end.outcome or end.status
+    own_end = end.outcome or end.status
     why = f" ({describe_cause(end.cause)})" if end.cause is not None else ""
-    return msgspec.structs.replace(lost, message=f"{lost.message}; the run itself had ended: {by_itself}{why}")
+    return msgspec.structs.replace(lost, message=f"{lost.message}; the run had ended with {own_end}{why}")

@@ -1,4 +1,4 @@
-"""Names runs: by behavior and wall time, with a random end so that two are never the same."""
+"""Run ids: behavior name and wall time, with a random suffix that makes them unique."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from datetime import UTC, datetime
 
 
 def new_run_id(behavior: str) -> str:
-    """Return a name such as `two_arm_transfer-20260401-101530-3fa2c81e`, safe in paths and URLs."""
+    """Return a run id such as `two_arm_transfer-20260401-101530-3fa2c81e`, safe in paths and URLs."""
     word = re.sub(r"[^A-Za-z0-9]+", "_", behavior).strip("_")[:48] or "run"
     return f"{word}-{datetime.now(UTC):%Y%m%d-%H%M%S}-{secrets.token_hex(4)}"

@@ -1,4 +1,4 @@
-"""The events that tell of a run as a whole: how it began, what was asked of it, how it ended."""
+"""Records the events of a run as a whole: start, resume, hot change and stop request."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from engine.runtime.record.recorder import Recorder
 
 
 class RunLog:
-    """Writes them into the event log of one run."""
+    """Writes these events into the event log of one run."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder
@@ -30,7 +30,7 @@ class RunLog:
     def started(
         self, plan: Plan, parameters: Mapping[str, object], inputs: Mapping[str, object], *, seed: int, virtual: bool
     ) -> None:
-        """The run begins."""
+        """Record the start of the run."""
         self._recorder.emit(
             RunStarted,
             behavior=plan.name,
@@ -42,7 +42,7 @@ class RunLog:
         )
 
     def started_from(self, checkpoint: Checkpoint) -> None:
-        """It begins in the middle, with the data of a moment of another run."""
+        """Record a start from a checkpoint of another run."""
         self._recorder.emit(
             OperatorCommanded,
             command="start_from",
@@ -54,7 +54,7 @@ class RunLog:
             self._recorder.emit(UserdataWritten, path="", scope="", key=key, value=written)
 
     def resumed(self, checkpoint: Checkpoint) -> None:
-        """It goes on after a crash; states that took an outcome instead of being entered again are left."""
+        """Record the resume after a crash; states with a decided outcome are exited instead of entered again."""
         self._recorder.emit(RunResumed, after_seq=checkpoint.read_seq, epoch=checkpoint.epoch, rerun=checkpoint.rerun)
         for path, outcome in checkpoint.taken.items():
             self._recorder.emit(
@@ -66,7 +66,7 @@ class RunLog:
             )
 
     def changed(self, document: str, report: ChangeReport, *, preempt: bool, kept: VersionSnapshot) -> None:
-        """A new version of the behavior took over."""
+        """Record a hot change to a new version of the behavior."""
         self._recorder.emit(
             BehaviorChanged,
             document=document,
@@ -80,5 +80,5 @@ class RunLog:
         )
 
     def stop_requested(self, reason: str) -> None:
-        """Somebody wants it to stop."""
+        """Record a stop request."""
         self._recorder.emit(StopRequested, reason=reason)

@@ -1,4 +1,4 @@
-"""Executes a step back: undoes activations one after the other and restores the userdata."""
+"""Executes a step back: undoes activations one by one and restores the userdata."""
 
 from __future__ import annotations
 
@@ -25,27 +25,27 @@ from engine.runtime.userdata.userdata import Scope
 async def request_step_back(
     path: str, *, plan: Callable[[], Plan], execution: Execution, control: Control, journal: RunJournal
 ) -> tuple[str, ...]:
-    """Decide how far a paused run goes back, and have the branch do it; see `engine.runtime.run.Run.step_back`.
+    """Plan a step back of a paused run and let the branch execute it; see `engine.runtime.run.Run.step_back`.
 
     Args:
         path: The branch; by default the one in which something began last.
-        plan: Gives what the run executes now.
-        execution: Of the run.
-        control: Of the run.
-        journal: Tells what it has done.
+        plan: Returns the current plan of the run.
+        execution: The execution of the run.
+        control: The control of the run.
+        journal: The events of the run.
     """
     control.require_still()
-    standing, behavior, later = _standing(execution), plan(), list[Event]()
+    position, behavior, later = _paused_position(execution), plan(), list[Event]()
     watcher = later.append
     execution.recorder.watch(watcher)
     try:
-        decide = partial(plan_step_back, behavior, await journal.events(), standing, path=path)
+        decide = partial(plan_step_back, behavior, await journal.events(), position, path=path)
         step = decide() if execution.clock.virtual else await asyncio.to_thread(decide)
     finally:
         execution.recorder.unwatch(watcher)
     control.require_still()
-    if _standing(execution) != standing or plan() is not behavior:
-        raise ControlError("the run has gone on meanwhile", where=step.cursor, hint="order it again")
+    if _paused_position(execution) != position or plan() is not behavior:
+        raise ControlError("the run has continued meanwhile", where=step.cursor, hint="request the step back again")
     step.trail.read(later)
     undone = tuple(each.path for each in step.undone)
     undoing = StepBackExecutor(step=step, execution=execution)
@@ -53,29 +53,29 @@ async def request_step_back(
     return undone
 
 
-def _standing(execution: Execution) -> PausedPosition:
+def _paused_position(execution: Execution) -> PausedPosition:
     return PausedPosition(waiting=dict(execution.gate.waiting), active=dict(execution.activity.nodes))
 
 
 @dataclass(frozen=True, kw_only=True)
 class StepBackExecutor:
-    """One step back of one run, carried out by the branch that it is about once its node has given up."""
+    """One step back of one run, executed in its branch once the node there is preempted."""
 
     step: StepBack
     execution: Execution
 
     def __post_init__(self) -> None:
-        # What the node that gives up still does in its clean-up is undone as well.
-        self.execution.recorder.watch(self._take)
+        # The clean-up of the preempted node is undone as well.
+        self.execution.recorder.watch(self._take_event)
 
     @cached_property
-    def _take(self) -> Callable[[Event], None]:
+    def _take_event(self) -> Callable[[Event], None]:
         return self.step.trail.take
 
     async def carry_out(self, scope: Scope) -> NodeExit | None:
-        """Return how the node is left then: for the one before it, or not at all as it stands before its own entry.
+        """Return the exit of the node to the one before it; None where it waits before its own entry.
 
-        Where something cannot be undone, the run stands where it was, and the log says why.
+        Where an undo fails, the run keeps its position, and the log states the reason.
         """
         gate = self.execution.gate
         try:
@@ -84,14 +84,14 @@ class StepBackExecutor:
             raise
         except FlexcellError as error:
             if being_cancelled(self.execution.loop):
-                # A clean-up that failed: whoever stops the run waits for it all the same.
+                # The clean-up failed during a stop; the stop still waits for it.
                 raise asyncio.CancelledError from error
             self._failed(cause_of(error))
             return None
         finally:
-            self.execution.recorder.unwatch(self._take)
+            self.execution.recorder.unwatch(self._take_event)
             gate.end_undo()
-        return self._stand(scope)
+        return self._restore(scope)
 
     async def _undo(self) -> None:
         for activation in self.step.undone:
@@ -127,7 +127,7 @@ class StepBackExecutor:
         recorder.log(step.target, f"the step back failed: {describe_cause(cause)}", level="error")
         recorder.emit(RunSteppedBack, path=step.node, source=step.node, cause=cause)
 
-    def _stand(self, scope: Scope) -> NodeExit | None:
+    def _restore(self, scope: Scope) -> NodeExit | None:
         step, recorder = self.step, self.execution.recorder
         values = tuple(self._former_values())
         for each in values:
@@ -151,7 +151,7 @@ class StepBackExecutor:
         values: list[FormerValue] = []
         for scope, key, writer in step.trail.written_by((step.target, step.node), step.since):
             if writer:
-                message = f"{key} keeps what {writer} has written since"
+                message = f"{key} keeps the value that {writer} has written since"
                 self.execution.recorder.log(step.target, message, level="warning")
                 continue
             former = step.former.get(scope, {})

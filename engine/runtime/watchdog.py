@@ -1,14 +1,13 @@
 """Detects a state that blocks the event loop, and reports its path and source line.
 
-A daemon thread looks at the loop's stack: twice a second while the loop has nothing to do, four
-times while it works. Nothing is asked of the loop, so an idle one stays asleep. Each turn of the
-loop has a frame of its own, so one that is seen again in the same turn has not come back in
-between. A block of half a second is always noticed, one between the threshold and that mostly, one
-below the threshold never. Code that holds the interpreter's lock keeps this thread from looking;
-such a block is noticed if it goes on for a moment after the lock is free.
+A daemon thread samples the stack of the loop: twice a second while the loop is idle, four times while it works. It
+schedules nothing on the loop, so an idle loop stays asleep. Each iteration of the loop has its own frame, so a loop
+that is sampled twice with the same frame has not returned in between. A block of half a second is always detected, a
+block between the threshold and that mostly, one below the threshold never. Code that holds the interpreter lock stops
+this thread; such a block is detected if it continues briefly after the lock is released.
 
-In virtual time blocks are logged and counted, and not recorded: an event log that repeats byte for
-byte cannot tell how long something really took.
+In virtual time blocks are logged and counted, and not recorded: an event log that must be reproducible byte for byte
+cannot contain real durations.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ from engine.runtime.nodes.leaf import Leaf
 _log = logging.getLogger("flexcell.watchdog")
 _ENGINE = str(Path(__file__).parents[1])
 _RUN_FOREVER: CodeType = asyncio.BaseEventLoop.run_forever.__code__
-"""The frame that it has called is a turn of the loop: a new one for each turn."""
+"""Its callee frame is one iteration of the loop: a new frame for each iteration."""
 _LEAF_RUN: CodeType = Leaf.run.__code__
 _LONGEST_S = 3600.0
 _BLOCKED_LOOK_S = 0.05
@@ -41,10 +40,10 @@ _KEPT_BLOCKS = 100
 
 @dataclass(frozen=True, kw_only=True)
 class LoopStall:
-    """A time in which the loop did not run: the state that kept it, and the line it was at.
+    """A period in which the loop was blocked: the blocking state, and its source line.
 
-    `blocked_s` is what was seen of it, at most a twentieth of a second too little at its end. `path`
-    is empty when no state was running, but a device, a viewer or the engine itself.
+    `blocked_s` is the observed duration, at most 0.05 s too short. `path` is empty when a device, a viewer or the
+    engine itself blocked the loop instead of a state.
     """
 
     path: str
@@ -54,39 +53,39 @@ class LoopStall:
 
 @dataclass(kw_only=True)
 class _Turn:
-    """A turn of the loop that is under way: its frame, since when, and what was found out about it."""
+    """The current iteration of the loop: its frame, its start, and the findings about it."""
 
     frame: FrameType
     since_s: float
     blocked_s: float = 0.0
-    told_s: float = 0.0
+    reported_s: float = 0.0
     path: str = ""
     where: str = ""
 
 
 class LoopWatchdog:
-    """Watches the event loop of the thread it is entered on, for as long as it is entered.
+    """Watches the event loop of the thread that enters it, while it is entered.
 
     Args:
-        threshold_s: How long the loop may be kept.
-        idle_look_s: How often to look while the loop has nothing to do.
+        threshold_s: Maximum duration of an iteration of the loop.
+        idle_look_s: Sampling period while the loop is idle.
     """
 
     def __init__(self, *, threshold_s: float = 0.25, idle_look_s: float = 0.5) -> None:
         self.blocks: deque[LoopStall] = deque(maxlen=_KEPT_BLOCKS)
-        """The newest blocks that have ended."""
+        """The most recent blocks that have ended."""
         self._threshold_s = threshold_s
         self._idle_look_s = idle_look_s
         self._loop: asyncio.AbstractEventLoop | None = None
         self._thread_id = 0
         self._thread: threading.Thread | None = None
-        # A lock that is never free: waiting for it with a time-out is the cheapest sleep that can be ended.
+        # A lock that is never free: waiting for it with a timeout is the cheapest interruptible sleep.
         self._stopped = threading.Lock()
         self._turn: _Turn | None = None
-        self._seen = 0
+        self._last_frame_id = 0
 
     def __enter__(self) -> Self:
-        """Begin to watch the running loop."""
+        """Start watching the running loop."""
         self._loop = asyncio.get_running_loop()
         self._thread_id = threading.get_ident()
         self._stopped.acquire()
@@ -105,63 +104,63 @@ class LoopWatchdog:
     def _watch(self) -> None:
         pause_s = self._threshold_s
         while not self._stopped.acquire(timeout=pause_s):
-            pause_s = self._look()
+            pause_s = self._sample()
         self._end_turn()
 
-    def _look(self) -> float:
-        """Look at the loop's stack and return when to look again."""
-        # There is no public way to another thread's stack; the underscore is that of the documented function.
+    def _sample(self) -> float:
+        """Sample the stack of the loop and return the time until the next sample."""
+        # No public function returns the stack of another thread; this underscored function is documented.
         innermost = sys._current_frames().get(self._thread_id)  # pyright: ignore[reportPrivateUsage]
         frame, busy = _turn_of(innermost)
         if self._turn is not None and frame is not self._turn.frame:
             self._end_turn()
         if frame is None or innermost is None or not busy:
-            # Of the frame only its identity is kept, or its locals would live on.
-            moved = id(frame) != self._seen
-            self._seen = id(frame)
-            return self._threshold_s if moved else self._idle_look_s
+            # Only the identity of the frame is kept, or its locals would stay alive.
+            has_advanced = id(frame) != self._last_frame_id
+            self._last_frame_id = id(frame)
+            return self._threshold_s if has_advanced else self._idle_look_s
         turn = self._turn = self._turn or _Turn(frame=frame, since_s=self._began_s(frame))
         turn.blocked_s = time.monotonic() - turn.since_s
         if turn.blocked_s < self._threshold_s:
             return self._threshold_s - turn.blocked_s
-        if turn.blocked_s >= 2 * turn.told_s:
-            self._tell(turn, innermost)
+        if turn.blocked_s >= 2 * turn.reported_s:
+            self._report(turn, innermost)
         return _BLOCKED_LOOK_S
 
     def _began_s(self, frame: FrameType) -> float:
-        """Return when a turn began: its own note of it where there is one, else now."""
+        """Return the start time of an iteration: its own variable where it has one, else now."""
         now_s = time.monotonic()
-        noted = None if isinstance(self._loop, VirtualLoop) else frame.f_locals.get("end_time")
-        return noted if isinstance(noted, float) and 0.0 <= now_s - noted < _LONGEST_S else now_s
+        start_s = None if isinstance(self._loop, VirtualLoop) else frame.f_locals.get("end_time")
+        return start_s if isinstance(start_s, float) and 0.0 <= now_s - start_s < _LONGEST_S else now_s
 
-    def _tell(self, turn: _Turn, innermost: FrameType) -> None:
-        """Log that the loop is blocked; the first time, have it recorded once the loop is back."""
+    def _report(self, turn: _Turn, innermost: FrameType) -> None:
+        """Log that the loop is blocked; the first time, also record it once the loop runs again."""
         leaf = _leaf_of(innermost)
-        turn.path, turn.where = _path_of(leaf), _place_of(innermost, leaf)
-        who = turn.path or "something outside the states"
-        # Nothing is late in virtual time, so nobody has to be disturbed.
+        turn.path, turn.where = _path_of(leaf), _source_line(innermost, leaf)
+        blocker = turn.path or "code outside the states"
+        # In virtual time no deadline is missed, so no warning is needed.
         level = logging.INFO if isinstance(self._loop, VirtualLoop) else logging.WARNING
-        _log.log(level, "%s has kept the event loop from running for %.2f s, at %s", who, turn.blocked_s, turn.where)
-        if turn.told_s == 0.0 and leaf is not None and not isinstance(self._loop, VirtualLoop):
+        _log.log(level, "%s has blocked the event loop for %.2f s, at %s", blocker, turn.blocked_s, turn.where)
+        if turn.reported_s == 0.0 and leaf is not None and not isinstance(self._loop, VirtualLoop):
             execution = leaf.f_locals.get("execution")
             if self._loop is not None and isinstance(execution, Execution):
                 self._loop.call_soon_threadsafe(self._record, turn, execution)
-        turn.told_s = turn.blocked_s
+        turn.reported_s = turn.blocked_s
 
     def _record(self, turn: _Turn, execution: Execution) -> None:
-        """Record the block in the run concerned; the first thing the loop does when it is back."""
+        """Record the block in the run concerned; called first when the loop runs again."""
         execution.recorder.emit(
             LoopBlocked, path=turn.path, blocked_s=round(time.monotonic() - turn.since_s, 3), where=turn.where
         )
 
     def _end_turn(self) -> None:
         turn, self._turn = self._turn, None
-        if turn is not None and turn.told_s:
+        if turn is not None and turn.reported_s:
             self.blocks.append(LoopStall(path=turn.path, blocked_s=round(turn.blocked_s, 3), where=turn.where))
 
 
 def _turn_of(innermost: FrameType | None) -> tuple[FrameType | None, bool]:
-    """Return the frame of the loop's present turn, and whether it does more than wait for something."""
+    """Return the frame of the current iteration of the loop, and whether it executes code instead of waiting."""
     called: list[FrameType] = []
     frame = innermost
     while frame is not None and frame.f_code is not _RUN_FOREVER:
@@ -183,8 +182,8 @@ def _path_of(leaf: FrameType | None) -> str:
     return str(leaf.f_locals.get("path", "")) if leaf is not None else ""
 
 
-def _place_of(innermost: FrameType, leaf: FrameType | None) -> str:
-    """Return the innermost line outside the engine and, where that is in a library, the state's line that led there."""
+def _source_line(innermost: FrameType, leaf: FrameType | None) -> str:
+    """Return the innermost line outside the engine and, where that is in a library, the calling line of the state."""
     frames: list[FrameType] = []
     frame: FrameType | None = innermost
     while frame is not None and frame is not leaf and frame.f_code is not _RUN_FOREVER:

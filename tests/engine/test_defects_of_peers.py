@@ -105,7 +105,7 @@ def test_an_outcome_without_transition_is_found_before_and_an_error_at_run_time(
     assert "unconnected-outcome" in codes
     told = run_document(text)
     assert told.result.status == "errored"
-    assert "outcome 'a' leads nowhere" in str(told.result.cause)
+    assert "outcome 'a' has no transition" in str(told.result.cause)
 
 
 def test_an_outcome_called_preempted_is_an_outcome_like_any_other() -> None:

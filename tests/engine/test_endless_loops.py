@@ -105,7 +105,7 @@ def test_a_loop_that_polls_in_virtual_time_for_what_cannot_change_any_more_is_na
     told = run_document(POLL.replace("OTHER", other), polling_limit=2_000)
     cause = str(told.result.cause)
     assert told.result.status == "errored"
-    assert "nothing happened in 100 s but that this loop waited, and nothing can end it, through" in cause
+    assert "this loop has only waited for 100 s, and nothing can end it, through" in cause
     assert "root/poll" in cause
 
 

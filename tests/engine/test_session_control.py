@@ -128,7 +128,7 @@ async def test_the_file_as_it_is_now_takes_over_a_paused_run(project: Path) -> N
     async with opened(project) as session:
         run = await session.start(BEHAVIOR, parameters={}, seed=0, supervision=RunOptions(start_paused=True))
         (project / BEHAVIOR).write_text(STEPS.replace("value: 1}", "value: 5}"), encoding="utf-8")
-        assert (await session.change(run)).changes == ("root/one has other parameters",)
+        assert (await session.change(run)).changes == ("root/one has changed parameters",)
         (project / BEHAVIOR).write_text("root: [", encoding="utf-8")
         with pytest.raises(DocumentError):
             await session.change(run)

@@ -105,7 +105,8 @@ def test_an_error_goes_the_way_of_errors() -> None:
     result, _ = _run(_plan("- {at: root/act/left, error: the gripper is gone}\n"))
     assert result.outcome == "bad"
     assert result.cause is not None
-    assert "the gripper is gone (a substitute says so, s.yaml:3:3)" in [link.message for link in result.cause.chain()]
+    messages = [link.message for link in result.cause.chain()]
+    assert "the gripper is gone (raised by the substitute at s.yaml:3:3)" in messages
 
 
 def test_outputs_go_where_those_of_the_state_go() -> None:
@@ -152,13 +153,13 @@ def test_tests_write_them_as_a_mapping(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("entry", "at", "says"),
     [
-        ("{at: root/lok, outcome: a}", "root/lok", "`root/lok` stands in for no node of this behavior"),
+        ("{at: root/lok, outcome: a}", "root/lok", "`root/lok` matches no node of this behavior"),
         ("{at: root/look, outcome: d}", "d}", "`root/look` has no outcome `d`"),
         ("{at: root/look, script: [{outcome: a}, {outcome: d}]}", "d}", "`root/look` has no outcome `d`"),
         ("{at: root/act/right, outcome: done, outputs: {valeu: 1}}", "1}}", "has no output `valeu`"),
         ("{at: root/act/left, state: flow.Lgo}", "flow.Lgo", "there is no state `flow.Lgo`"),
-        ("{at: root/act, state: flow.Log}", "flow.Log", "is a concurrency, for which no state can stand in"),
-        ("{at: root/act/left, state: test.Give}", "test.Give", "has an outcome `a` that leads nowhere here"),
+        ("{at: root/act, state: flow.Log}", "flow.Log", "is a concurrency, which a state cannot replace"),
+        ("{at: root/act/left, state: test.Give}", "test.Give", "has an outcome `a` without a transition here"),
         ("{at: root/look}", "{at", "does not say how it ends"),
         ("{at: root/look, outcome: a, error: b}", "error", "`outcome` and `error` at once"),
         ("{at: root/look, script: [{}]}", "{}", "does not say how it ends"),

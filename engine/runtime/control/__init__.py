@@ -1,7 +1,6 @@
 """Operator control of one run: pause, step, breakpoints, lock, repeat, force, autonomy, hot change.
 
-`Control` is what an operator's console talks to; `Gate` is where the nodes of the run ask whether
-they may go on.
+Operator consoles call `Control`; the nodes of the run ask `Gate` whether they may proceed.
 """
 
 from engine.runtime.control.autonomy import LEVELS, AutonomyLevel

@@ -1,4 +1,4 @@
-"""Levels of autonomy: an outcome passes by itself when it requires less than the run has."""
+"""Autonomy levels: an outcome passes without confirmation when it requires less than the level of the run."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ LEVELS: tuple[AutonomyLevel, ...] = ("off", "low", "high", "full")
 
 
 def passes_by_itself(required: str, level: AutonomyLevel) -> bool:
-    """Tell whether an outcome that requires `required` passes by itself in a run at `level`."""
+    """Return whether an outcome that requires `required` passes without confirmation in a run at `level`."""
     return LEVELS.index(required) < LEVELS.index(level)  # pyright: ignore[reportArgumentType]

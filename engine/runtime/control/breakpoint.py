@@ -1,4 +1,4 @@
-"""Breakpoints: where a run pauses by itself; kept beside the behavior's file, keyed by state path."""
+"""Breakpoints pause a run automatically; stored in a file beside the behavior, keyed by state path."""
 
 from __future__ import annotations
 
@@ -24,59 +24,60 @@ GatePoint = Literal["before", "after"]
 class Breakpoint(StrictModel, frozen=True, kw_only=True, dict=True, rename={"condition": "if"}):
     """Pause the run `before` the entry or `after` the outcome of the nodes that `path` matches.
 
-    `path` may hold the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and
-    parameters. `hits` lets it pass that many times minus one before it pauses. `outcomes` limits
-    an `after` breakpoint to these.
+    `path` may contain the wildcards `*` and `?`. `condition` (`if:`) is an expression over userdata and
+    parameters. The run pauses from hit number `hits` on. `outcomes` limits an `after` breakpoint to
+    these outcomes.
     """
 
-    path: Annotated[str, Meta(min_length=1, description="A node path, may hold `*` and `?`")]
+    path: Annotated[str, Meta(min_length=1, description="Node path; may contain the wildcards `*` and `?`")]
     when: GatePoint = "before"
     condition: str | None = None
-    hits: Annotated[int, Meta(ge=1, description="Pause at the n-th time and from then on")] = 1
+    hits: Annotated[int, Meta(ge=1, description="Pause from the n-th hit on")] = 1
     outcomes: tuple[str, ...] = ()
     enabled: bool = True
 
     def matches(self, path: str, when: GatePoint, outcome: str) -> bool:
-        """Tell whether it is about this place."""
+        """Return whether the breakpoint applies to this gate point."""
         if not self.enabled or self.when != when or (self.outcomes and outcome not in self.outcomes):
             return False
         return self.path == path or fnmatchcase(path, self.path)
 
     def holds(self, read: Callable[[str], object]) -> bool:
-        """Tell whether its condition is true; `read` gives a userdata key or parameter.
+        """Return whether its condition is true; `read` returns the value of a userdata key or parameter.
 
         Raises:
-            FlexcellError: a key is not defined there, or the condition is no truth value.
+            FlexcellError: a key is not defined there, or the condition is not a boolean.
         """
         if self.template is None:
             return True
         value = self.template.evaluate({name: read(name) for name in self.template.names})
         if not isinstance(value, bool):
-            raise ExpressionError(f"the condition of a breakpoint gave {value!r}", where=self.path, hint="compare it")
+            message = f"the condition of the breakpoint evaluates to {value!r}, which is not a boolean"
+            raise ExpressionError(message, where=self.path, hint="use a comparison")
         return value
 
     @cached_property
     def template(self) -> Template | None:
-        """The condition, compiled; None without one."""
+        """The compiled condition; None without a condition."""
         if self.condition is None:
             return None
         return compile_template(self.condition if "${" in self.condition else f"${{{self.condition}}}")
 
 
 class BreakpointsDocument(StrictModel, frozen=True, kw_only=True):
-    """The file beside a behavior."""
+    """The breakpoints file beside a behavior."""
 
     flexcell: Literal[1]
     breakpoints: tuple[Breakpoint, ...] = ()
 
 
 def breakpoints_file(behavior: Path) -> Path:
-    """Return where the breakpoints of a behavior file are kept: `pick.yaml` → `pick.breakpoints.yaml`."""
+    """Return the path of the breakpoints file of a behavior file: `pick.yaml` → `pick.breakpoints.yaml`."""
     return behavior.with_name(f"{behavior.stem}.breakpoints.yaml")
 
 
 def load_breakpoints(behavior: Path) -> tuple[Breakpoint, ...]:
-    """Read the breakpoints of a behavior file; none where there is no such file.
+    """Read the breakpoints of a behavior file; empty where the file does not exist.
 
     Raises:
         DocumentError: the file is not valid; `where` is the position.
@@ -86,9 +87,9 @@ def load_breakpoints(behavior: Path) -> tuple[Breakpoint, ...]:
         return ()
     source = load_source(file)
     document = decode_document(source, BreakpointsDocument)
-    for index, found in enumerate(document.breakpoints):
+    for index, each in enumerate(document.breakpoints):
         try:
-            _ = found.template
+            _ = each.template
         except ExpressionError as error:
             where = source.position(("breakpoints", index, "if"))
             raise DocumentError(error.message, where=where, hint=error.hint) from None
@@ -96,7 +97,7 @@ def load_breakpoints(behavior: Path) -> tuple[Breakpoint, ...]:
 
 
 def save_breakpoints(behavior: Path, breakpoints: Iterable[Breakpoint]) -> None:
-    """Write the file beside the behavior in one step; without breakpoints there is no file."""
+    """Write the breakpoints file atomically; without breakpoints the file is removed."""
     file = breakpoints_file(behavior)
     kept = tuple(breakpoints)
     if not kept:

@@ -1,4 +1,4 @@
-"""What an operator can do with one run; every command is an event before it takes effect."""
+"""Operator commands to one run; every command is recorded as an event before it takes effect."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ LossPolicy = Literal["hold", "continue", "stop"]
 
 
 class ControlView(msgspec.Struct, frozen=True, kw_only=True):
-    """What an operator sees of a run."""
+    """State of a run as shown to an operator."""
 
     paused: bool
     confirmed: bool
-    """Whether everything that was to be held is at rest; False while it brakes, and while nothing is paused."""
+    """Whether everything to be held is at rest; False while it brakes, and while nothing is paused."""
     cannot: tuple[str, ...]
     """Goals that cannot be held."""
     waiting: tuple[GateWait, ...]
@@ -41,19 +41,19 @@ class ControlView(msgspec.Struct, frozen=True, kw_only=True):
     """none, attached, detached or lost."""
     active: tuple[str, ...]
     stepping: bool = False
-    """Whether a step of the paused run is under way."""
+    """Whether a step of the paused run is in progress."""
     demanded: bool = False
-    """Whether outcomes are asked for although nobody is there."""
+    """Whether outcomes are requested although no operator is attached."""
     loss_policy: LossPolicy = "hold"
-    """What is done `loss_timeout_s` after the operator is lost."""
+    """Action taken `loss_timeout_s` after the operator is lost."""
     loss_timeout_s: float = 0.0
 
 
 class BehaviorStructure(Protocol):
-    """What control has to know of the behavior."""
+    """What `Control` needs from the behavior."""
 
     def outcomes(self, path: str) -> Sequence[str] | None:
-        """Return the outcomes that the node at `path` can have, None where there is no such node."""
+        """Return the possible outcomes of the node at `path`; None where there is no such node."""
         ...
 
     def paths(self) -> Sequence[str]:
@@ -62,18 +62,18 @@ class BehaviorStructure(Protocol):
 
 
 class Control:
-    """Commands of the operator to one run; used on the loop thread.
+    """Executes operator commands to one run; used on the loop thread.
 
     Args:
-        gate: Where the nodes wait.
-        branch_holds: What holds their goals and timers.
-        activity: What is active.
-        settlement: Tells when the run is quiet.
+        gate: The gate of the run.
+        branch_holds: The holds of goals and timers.
+        activity: The active nodes of the run.
+        settlement: Waits until the run has settled.
         recorder: The event log.
-        structure: The behavior, for messages about what does not exist.
+        structure: The behavior, for messages about unknown nodes and outcomes.
         stop: Stops the run with a reason.
-        loss_policy: What to do when the operator is lost: hold the run, let it continue, or stop it.
-        loss_timeout_s: How long after the loss.
+        loss_policy: Reaction to the loss of the operator: hold the run, let it continue, or stop it.
+        loss_timeout_s: Time between the loss and this reaction.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class Control:
         self._demanded = demanded
         self._loss_policy: LossPolicy = loss_policy
         self._loss_timeout_s = loss_timeout_s
-        self._loss: asyncio.TimerHandle | None = None
+        self._loss_timer: asyncio.TimerHandle | None = None
         self._operator = "none"
         self._closed = False
         self._confirmed = False
@@ -111,61 +111,61 @@ class Control:
 
     @property
     def demanded(self) -> bool:
-        """Whether the run needs an operator: rules of autonomy hold although none is there."""
+        """Whether the run needs an operator: autonomy rules apply although none is attached."""
         return self._demanded
 
     def pause(self) -> None:
-        """Hold every goal and timer and let no node be entered or left; shown as confirmed once at rest."""
+        """Hold every goal and timer and block entries and exits of nodes; confirmed once everything is at rest."""
         self._record("pause")
         self._gate.pause()
 
     def resume(self) -> None:
-        """Let the run go on."""
+        """Resume the run."""
         self._record("resume")
         self._confirmed = False
         self._gate.resume()
 
     def step(self, mode: StepMode = "into", path: str = "") -> None:
-        """Let a paused run make one step.
+        """Execute one step of a paused run.
 
         Args:
-            mode: into the next node, over what is inside it, or out of its container.
-            path: The branch; without it the first one, in order of arrival, that waits.
+            mode: into the next node, over the nodes inside it, or out of its container.
+            path: The branch; by default the first one that waits, in order of arrival.
 
         Raises:
-            ControlError: the run is not paused, or nothing waits in that branch.
+            ControlError: the run is not paused, or no node waits in that branch.
         """
         if not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
         self._refuse_undoing("")
-        waiting = self._waiting_in(path)
+        waiting = self._first_waiting_in(path)
         if path and waiting is None:
-            raise ControlError("nothing waits there", where=path, hint=did_you_mean(path, self._gate.waiting))
+            raise ControlError("no node waits there", where=path, hint=did_you_mean(path, self._gate.waiting))
         self._record("step", path, mode=mode)
         self._confirmed = False
         origin = waiting.path if waiting is not None else ""
         self._gate.step(SingleStep(mode=mode, branch=self._activity.branch_of(origin) if origin else "", origin=origin))
 
     def require_still(self) -> None:
-        """Refuse a step back of a run that is not paused, or is about to do something all the same.
+        """Refuse a step back of a run that is not paused or still executes a command.
 
         Raises:
-            ControlError: it is running, stepping, or follows another order.
+            ControlError: it is running, stepping, or executing another command.
         """
         if self._closed or not self._gate.paused:
             raise ControlError("the run is not paused", hint="pause it first, or set a breakpoint")
         self._refuse_undoing("")
         if self._gate.stepping or self._gate.ordered:
-            raise ControlError("the run follows another order", hint="wait until it rests")
+            raise ControlError("the run is executing another command", hint="wait until it is at rest")
 
     def step_back(self, cursor: str, path: str, target: str, back: StepBackAction) -> None:
-        """Have the node at `path` give up and go `back`; for `engine.runtime.run.Run.step_back`, which decides how far.
+        """Preempt the node at `path` and execute `back`; for `engine.runtime.run.Run.step_back`, which plans the step.
 
         Args:
-            cursor: The node that waits or is active in the branch, by which the order is known.
-            path: The node that gives up: that one, or one around it.
+            cursor: The node that waits or is active in the branch; recorded as the path of the command.
+            path: The node that is preempted: the cursor, or a container around it.
             target: The node that is undone.
-            back: Takes back what is to be taken back.
+            back: Executes the undo.
         """
         self._record("step_back", cursor)
         self._confirmed = False
@@ -173,14 +173,14 @@ class Control:
         self._order(path, OperatorOrder(outcome=None, back=back))
 
     def lock(self, path: str, reason: str = "") -> None:
-        """Hold the outcome of a node until `unlock`; transitions inside it still pass, `reason` goes into the log."""
+        """Hold the outcome of a node until `unlock`; transitions inside it still pass; `reason` is recorded."""
         self._require_node(path)
         self._record("lock", path, **({"reason": reason} if reason else {}))
         self._gate.locks.add(path)
         self._gate.arm()
 
     def unlock(self, path: str) -> None:
-        """Let the outcome of a locked node pass."""
+        """Release the outcome of a locked node."""
         if path not in self._gate.locks:
             raise ControlError("this node is not locked", where=path, hint=did_you_mean(path, self._gate.locks))
         self._record("unlock", path)
@@ -188,10 +188,10 @@ class Control:
         self._gate.arm()
 
     def force(self, path: str, outcome: str) -> None:
-        """End an active or waiting node with an outcome; what runs in it is preempted and cleans up.
+        """End an active or waiting node with an outcome; active nodes inside are preempted and clean up.
 
         Raises:
-            ControlError: it is not active, or has no such outcome.
+            ControlError: the node is not active, or has no such outcome.
         """
         known = self._require_node(path)
         if outcome not in known:
@@ -201,7 +201,7 @@ class Control:
         self._order(path, OperatorOrder(outcome=outcome))
 
     def repeat(self, path: str) -> None:
-        """Run an active or waiting node again; what runs in it is preempted and cleans up first.
+        """Run an active or waiting node again; active nodes inside are preempted and clean up first.
 
         Raises:
             ControlError: it is not active.
@@ -212,30 +212,30 @@ class Control:
         self._order(path, OperatorOrder(outcome=None))
 
     def restart(self, path: str) -> None:
-        """Have an active node preempted and entered anew, as a hot change wants it; that change is the command."""
+        """Preempt an active node and enter it again, for a hot change; the hot change is the recorded command."""
         self._order(path, OperatorOrder(outcome=None))
 
     def answer(self, path: str) -> None:
-        """Let the outcome pass that a node has requested.
+        """Confirm the outcome that a node has requested.
 
         Raises:
-            ControlError: it has requested none.
+            ControlError: the node has requested no outcome.
         """
         waiting = self._gate.waiting.get(path)
         if waiting is None or "autonomy" not in waiting.reasons:
             asking = [each.path for each in self._gate.waiting.values() if "autonomy" in each.reasons]
-            raise ControlError("this node has requested nothing", where=path, hint=did_you_mean(path, asking))
+            raise ControlError("this node has requested no outcome", where=path, hint=did_you_mean(path, asking))
         self._record("answer", path, outcome=waiting.outcome)
         self._gate.answer(path)
 
     def set_autonomy(self, level: AutonomyLevel) -> None:
-        """Let outcomes pass by themselves that require less than `level`."""
+        """Set the autonomy: outcomes that require less than `level` pass without confirmation."""
         self._record("autonomy", level=level)
         self._gate.autonomy = level
         self._gate.arm()
 
     def set_breakpoints(self, breakpoints: Sequence[Breakpoint]) -> None:
-        """Replace all breakpoints; those whose path no node has are kept and told in the log."""
+        """Replace all breakpoints; those that match no node are kept and logged as a warning."""
         self._record("breakpoints", breakpoints=[msgspec.to_builtins(each) for each in breakpoints])
         paths = self.structure.paths()
         for each in breakpoints:
@@ -246,29 +246,29 @@ class Control:
         self._gate.arm()
 
     def attach_operator(self) -> None:
-        """An operator is there: rules of autonomy are on."""
-        self._forget_loss()
+        """Record that an operator is attached; autonomy rules apply."""
+        self._cancel_loss_timer()
         self._set_operator("attached", asks=True)
 
     def detach_operator(self) -> None:
-        """The operator has left on purpose: without a demanded one, rules are off."""
-        self._forget_loss()
+        """Record that the operator has detached; autonomy rules apply only where an operator is demanded."""
+        self._cancel_loss_timer()
         self._set_operator("detached", asks=self._demanded)
 
     def lose_operator(self) -> None:
-        """The connection to the operator broke: after the time-out the loss policy applies."""
+        """Record that the connection to the operator is lost; after the timeout the loss policy applies."""
         if self._operator != "attached":
             return
         self._set_operator("lost", asks=True)
         loop = asyncio.get_running_loop()
-        self._loss = loop.call_later(self._loss_timeout_s, self._apply_loss)
+        self._loss_timer = loop.call_later(self._loss_timeout_s, self._apply_loss)
 
     async def settled(self) -> None:
-        """Return when all has happened that a command makes happen at once."""
+        """Return when the immediate effects of a command have settled."""
         await self._settlement.settled(None)
 
     def view(self) -> ControlView:
-        """Return the present state."""
+        """Return the current state."""
         gate = self._gate
         return ControlView(
             paused=gate.paused,
@@ -287,13 +287,13 @@ class Control:
         )
 
     def close(self) -> None:
-        """The run is over; no timer is left behind."""
+        """Close the control of a run that has ended; cancels its timer."""
         self._closed = True
-        self._forget_loss()
+        self._cancel_loss_timer()
 
     @property
     def closed(self) -> bool:
-        """True once the run is over."""
+        """True once the run has ended."""
         return self._closed
 
     def _order(self, path: str, order: OperatorOrder) -> None:
@@ -311,10 +311,11 @@ class Control:
         return known
 
     def _refuse_undoing(self, path: str) -> None:
-        """Refuse an order for what a step back is undoing; any order at all where `path` is empty."""
+        """Refuse a command for a node that a step back undoes; any command where `path` is empty."""
         for undoing in self._gate.undoing:
             if not path or is_inside(undoing, path):
-                raise ControlError("this is being undone", where=undoing, hint="wait until the run rests, or stop it")
+                hint = "wait until the run is at rest, or stop it"
+                raise ControlError("this node is being undone", where=undoing, hint=hint)
 
     def _require_active(self, path: str) -> None:
         self._refuse_undoing(path)
@@ -322,11 +323,11 @@ class Control:
             active = [*self._activity.nodes, *self._gate.waiting]
             raise ControlError("this node is not active", where=path, hint=did_you_mean(path, active))
 
-    def _waiting_in(self, path: str) -> GateWait | None:
+    def _first_waiting_in(self, path: str) -> GateWait | None:
         return next((each for each in self._gate.waiting.values() if not path or is_inside(path, each.path)), None)
 
     def _paused(self) -> None:
-        """Whoever has paused the run: it is confirmed once everything rests."""
+        """React to a pause of any origin: it is confirmed once everything is at rest."""
         self._confirmed = False
         if self._branch_holds.settled():
             self._settled()
@@ -338,7 +339,7 @@ class Control:
         self._recorder.emit(PauseConfirmed, cannot=self._branch_holds.cannot())
 
     def _apply_loss(self) -> None:
-        self._loss = None
+        self._loss_timer = None
         if self._loss_policy == "continue":
             self._gate.asks = self._demanded
             self._gate.arm()
@@ -347,10 +348,10 @@ class Control:
         else:
             self._stop("the operator was lost")
 
-    def _forget_loss(self) -> None:
-        if self._loss is not None:
-            self._loss.cancel()
-            self._loss = None
+    def _cancel_loss_timer(self) -> None:
+        if self._loss_timer is not None:
+            self._loss_timer.cancel()
+            self._loss_timer = None
 
     def _set_operator(self, status: str, *, asks: bool) -> None:
         recorder = self._recorder

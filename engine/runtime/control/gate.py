@@ -1,6 +1,6 @@
-"""The gate of a run: every node asks here before its entry and between its outcome and the transition.
+"""The gate of a run: every node passes it before its entry and between its outcome and the transition.
 
-While nothing is asked of it, `armed` is False and nodes pass without calling it.
+While nothing holds the run, `armed` is False and nodes skip the gate.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ StepBackAction = Callable[[Scope], Awaitable[NodeExit | None]]
 
 @dataclass(frozen=True, kw_only=True)
 class OperatorOrder:
-    """What the operator wants of a node: end with `outcome`, or, without one, run again, once it has gone `back`."""
+    """Order to a node: end with `outcome`, or, without one, run again after the step back `back`."""
 
     outcome: str | None
     back: StepBackAction | None = None
-    """Takes back what it, or the node before it, has done, and says how it is left then; None for not at all."""
+    """Undoes this node, or the one before it, and returns the exit of the node; None where the node stays."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class GateWait:
-    """A node that waits at the gate: where, since which visit, and for what.
+    """A node that waits at the gate: gate point, visit, and reasons.
 
-    `required` is the level that the outcome requires, empty before an entry.
+    `required` is the autonomy level that the outcome requires; empty before an entry.
     """
 
     path: str
@@ -51,7 +51,7 @@ class GateWait:
 
 
 class Gate:
-    """Holds nodes back; belongs to one run, used on the loop thread."""
+    """Holds nodes at their entries and exits; belongs to one run, used on the loop thread."""
 
     def __init__(self, recorder: Recorder, branch_holds: BranchHolds) -> None:
         self.armed = False
@@ -60,15 +60,15 @@ class Gate:
         self.breakpoints: tuple[Breakpoint, ...] = ()
         self.autonomy: AutonomyLevel = "full"
         self.asks = False
-        """Whether rules of autonomy are on: an operator is there, or demanded."""
+        """Whether autonomy rules apply: an operator is attached, or demanded."""
         self._hits: dict[Breakpoint, int] = {}
         self._orders: dict[str, OperatorOrder] = {}
         self._answers: set[str] = set()
         self._accepted: dict[str, tuple[int, str]] = {}
         self.on_paused: Callable[[], None] = lambda: None
-        """Called after every pause: by the operator, a breakpoint, the end of a step."""
+        """Called after every pause: by the operator, a breakpoint, or the end of a step."""
         self.undoing: tuple[str, ...] = ()
-        """The node that is being undone, and the one that gave up for it; empty while there is none."""
+        """The node that is being undone, and the node that was preempted for it; empty while there is none."""
         self._step: SingleStep | None = None
         self._paused = False
         self._recorder = recorder
@@ -81,11 +81,11 @@ class Gate:
 
     @property
     def stepping(self) -> bool:
-        """Whether a step is under way."""
+        """Whether a step is in progress."""
         return self._step is not None
 
     def arm(self) -> None:
-        """Work out anew whether nodes have to ask; due after every change, wakes those that wait."""
+        """Update `armed` and wake the nodes that wait; call it after every change."""
         self.armed = bool(
             self._paused
             or self._branch_holds.active
@@ -104,73 +104,73 @@ class Gate:
         self.on_paused()
 
     def resume(self) -> None:
-        """Let every branch go on."""
+        """Resume every branch."""
         self._paused, self._step = False, None
         self._branch_holds.release(PAUSE)
         self.arm()
 
     def step(self, step: SingleStep) -> None:
-        """Let one branch go on to the next place where the step ends."""
+        """Release one branch until the step ends."""
         self._step = step
         self._branch_holds.hold(PAUSE, self._covers)
         self.arm()
 
     def begin_undo(self, path: str, gives_up: str) -> None:
-        """Let what is done to undo the node at `path` go on, and nothing else; the node `gives_up` goes back there."""
+        """Release only the undo of the node at `path`; `gives_up` is the node that is preempted for it."""
         self.undoing = (path, gives_up)
         self.step(SingleStep(mode="back", branch=path, origin=path))
 
     def undoes(self, path: str) -> bool:
-        """Tell whether what is at a path is being undone; no priority of another branch holds that."""
+        """Return whether the node at a path is being undone; no priority container holds an undo."""
         return bool(self.undoing) and is_inside(self.undoing[0], path)
 
     def end_undo(self) -> None:
-        """Hold everything again, whatever was ordered meanwhile."""
+        """Hold everything again, regardless of orders given meanwhile."""
         self.undoing = ()
         self.pause()
 
     def order(self, path: str, order: OperatorOrder) -> None:
-        """Have a node, at the gate or just preempted, end so."""
+        """Give an order to a node that waits at the gate or was just preempted."""
         self._orders[path] = order
         self.arm()
 
     @property
     def ordered(self) -> bool:
-        """Whether nodes have orders that they have not followed yet."""
+        """Whether nodes have orders that they have not executed yet."""
         return bool(self._orders)
 
     def has_order(self, path: str) -> bool:
-        """Tell whether something was ordered of a node."""
+        """Return whether a node has an order."""
         return path in self._orders
 
     def taken_order(self, path: str) -> OperatorOrder | None:
-        """Return what was ordered of a node, once; what it cleaned up for that is done."""
+        """Take the order of a node; its clean-up for the order is complete."""
         self._branch_holds.has_cleaned_up(path)
         return self._orders.pop(path, None)
 
     def has_order_around(self, path: str) -> bool:
-        """Tell whether something was ordered of a node that this one is in."""
+        """Return whether a container around the node has an order."""
         return any(other != path and is_inside(other, path) for other in self._orders)
 
     def answer(self, path: str) -> None:
-        """Let the requested outcome of a node pass."""
+        """Confirm the requested outcome of a node."""
         self._answers.add(path)
         self.arm()
 
     async def before(self, path: str, visit: int, scope: Scope) -> OperatorOrder | None:
-        """Return when the node may be entered, or what was ordered instead."""
+        """Wait until the node may be entered; return an order given instead."""
         self._arrive(path, "before", "", scope)
         return await self._wait(GateWait(path=path, visit=visit, point="before"), required=None)
 
     async def after(self, path: str, visit: int, outcome: str, required: str, scope: Scope) -> OperatorOrder | None:
-        """Return when the outcome may be followed, or what was ordered instead.
+        """Wait until the transition of the outcome may be taken; return an order given instead.
 
         Args:
-            path: The node.
-            visit: Its activation.
-            outcome: How it ended; empty when it was diverted by timeout, guard or on_error.
-            required: The level of autonomy from which on the outcome does not pass by itself.
-            scope: Where conditions of breakpoints read.
+            path: The path of the node.
+            visit: The number of its activation.
+            outcome: Its outcome; empty when timeout, guard or on_error diverted it.
+            required: The autonomy level that the outcome requires; at this level or below it needs confirmation.
+            scope: The scope in which breakpoint conditions are evaluated.
         """
         self._arrive(path, "after", outcome, scope)
         accepted = self._accepted.pop(path, None) == (visit, outcome)
@@ -178,7 +178,7 @@ class Gate:
         return await self._wait(waiting, required=None if accepted or not outcome else required)
 
     async def offer(self, path: str, visit: int, outcome: str, required: str) -> None:
-        """Ask the operator for an outcome that a state only offers yet; being cancelled withdraws it."""
+        """Ask the operator to confirm an outcome that a running state offers; cancelling withdraws the request."""
         if not self.asks or passes_by_itself(required, self.autonomy):
             return
         waiting = GateWait(path=path, visit=visit, point="after", outcome=outcome)
@@ -187,23 +187,23 @@ class Gate:
 
     async def _wait(self, waiting: GateWait, *, required: str | None) -> OperatorOrder | None:
         path = waiting.path
-        asked = required is not None and self._still_asks(required)
-        if required is not None and asked:
+        is_requested = required is not None and self._still_asks(required)
+        if required is not None and is_requested:
             self._recorder.emit(
                 OutcomeRequested, path=path, visit=waiting.visit, outcome=waiting.outcome, required=required
             )
         try:
             while (order := self._orders.pop(path, None)) is None:
-                unanswered = asked and path not in self._answers and self._still_asks(required)
-                reasons = self._reasons(waiting, asked=unanswered)
+                unanswered = is_requested and path not in self._answers and self._still_asks(required)
+                reasons = self._reasons(waiting, unanswered=unanswered)
                 if not reasons:
                     break
-                self._show(replace(waiting, reasons=reasons, required=required or ""))
+                self._record_wait(replace(waiting, reasons=reasons, required=required or ""))
                 await self._branch_holds.changed()
             return order
         finally:
             self._answers.discard(path)
-            if asked:
+            if is_requested:
                 self._recorder.emit(OutcomeWithdrawn, path=path, visit=waiting.visit, outcome=waiting.outcome)
             if self.waiting.pop(path, None) is not None:
                 self._recorder.emit(GatePassed, path=path, visit=waiting.visit, point=waiting.point)
@@ -211,38 +211,38 @@ class Gate:
     def _still_asks(self, required: str | None) -> bool:
         return self.asks and required is not None and not passes_by_itself(required, self.autonomy)
 
-    def _reasons(self, waiting: GateWait, *, asked: bool) -> tuple[str, ...]:
+    def _reasons(self, waiting: GateWait, *, unanswered: bool) -> tuple[str, ...]:
         reasons = list(self._branch_holds.reasons(waiting.path))
         if waiting.point == "after" and waiting.path in self.locks:
             reasons.append("lock")
-        if asked:
+        if unanswered:
             reasons.append("autonomy")
         return tuple(reasons)
 
     def _arrive(self, path: str, point: GatePoint, outcome: str, scope: Scope) -> None:
-        """Pause where a breakpoint or the end of a step says so."""
+        """Pause at a breakpoint or at the end of a step."""
         if self._step is not None and self._step.ends_at(path, point):
             self.pause()
             return
         with METER.limited(MAX_STEPS, "the breakpoints here"):
             for each in self.breakpoints:
-                if each.matches(path, point, outcome) and self._due(each, path, scope):
+                if each.matches(path, point, outcome) and self._is_hit(each, path, scope):
                     self._recorder.log(path, f"breakpoint {point} {each.path}")
                     self.pause()
                     return
 
-    def _due(self, due: Breakpoint, path: str, scope: Scope) -> bool:
+    def _is_hit(self, each: Breakpoint, path: str, scope: Scope) -> bool:
         try:
-            if not due.holds(lambda name: scope.read(name, reader=path)):
+            if not each.holds(lambda name: scope.read(name, reader=path)):
                 return False
         except FlexcellError as error:
-            # A condition that cannot be evaluated must not end the run; it must be seen, so it pauses.
-            self._recorder.log(path, f"breakpoint {due.path}: {describe_cause(cause_of(error))}")
+            # A condition that cannot be evaluated must not end the run; the run pauses so that the error is visible.
+            self._recorder.log(path, f"breakpoint {each.path}: {describe_cause(cause_of(error))}")
             return True
-        hits = self._hits[due] = self._hits.get(due, 0) + 1
-        return hits >= due.hits
+        hits = self._hits[each] = self._hits.get(each, 0) + 1
+        return hits >= each.hits
 
-    def _show(self, waiting: GateWait) -> None:
+    def _record_wait(self, waiting: GateWait) -> None:
         known = self.waiting.get(waiting.path)
         self.waiting[waiting.path] = waiting
         if known is not None and known.reasons == waiting.reasons:

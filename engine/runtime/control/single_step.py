@@ -1,4 +1,4 @@
-"""One step of a paused run: which branch is let go, and where it stops again."""
+"""One step of a paused run: which branch is released, and where it stops again."""
 
 from __future__ import annotations
 
@@ -9,31 +9,31 @@ from engine.node_path import is_inside
 from engine.runtime.control.breakpoint import GatePoint
 
 StepMode = Literal["into", "over", "out"]
-"""What an operator may say; `SingleStep` also knows `back`."""
+"""The modes of an operator; `SingleStep` also has `back`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SingleStep:
-    """Let `branch` go on from the node `origin`.
+    """Releases `branch` from the node `origin` on.
 
     `into` stops before the next node that is entered, `over` before the next that is not inside
-    `origin`, `out` when the container around `origin` has its outcome. `back` frees only what is in `branch`, until
-    whoever undoes it there pauses the run.
+    `origin`, `out` when the container around `origin` has its outcome. `back` releases only nodes in `branch`, until
+    the undo pauses the run again.
     """
 
     mode: StepMode | Literal["back"]
     branch: str
-    """The branch that is let go; empty for all of them."""
+    """The branch that is released; empty for all branches."""
     origin: str
 
     def frees(self, path: str) -> bool:
-        """Tell whether `path` may go on meanwhile: it is in the branch or around it."""
+        """Return whether the step releases `path`: it is in the branch or around it."""
         if self.mode == "back":
             return is_inside(self.branch, path)
         return not self.branch or is_inside(self.branch, path) or is_inside(path, self.branch)
 
     def ends_at(self, path: str, point: GatePoint) -> bool:
-        """Tell whether the step is done on arrival at this place."""
+        """Return whether the step ends at this gate point."""
         if self.mode == "back" or not self.frees(path):
             return False
         container = self.origin.rpartition("/")[0]

@@ -1,1 +1,1 @@
-"""What the events of a run say about it: where it stands, what can be resumed, changed or undone."""
+"""State of a run derived from its events: its position, and what can be resumed, changed or undone."""

@@ -10,13 +10,13 @@ from engine.runtime.record.node_checkpoint import NodeCheckpoint
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """Everything of a run that its events up to `read_seq` tell; values are plain data."""
+    """State of a run according to its events up to `read_seq`; values are plain data."""
 
     run: str
     seq: int
-    """The number of the last event that is kept; new ones are numbered from the next."""
+    """The number of the last stored event; new events continue from the next number."""
     read_seq: int
-    """The last event that counts; those between, if any, tell of what is done anew."""
+    """The last event that applies; events after it, up to `seq`, describe work that is repeated."""
     time_s: float
     userdata: Mapping[str, object]
     """The values of the behavior's own scope."""
@@ -28,6 +28,6 @@ class Checkpoint:
     rerun: tuple[str, ...] = ()
     """The states that are entered again."""
     taken: Mapping[str, str] = field(default_factory=dict[str, str])
-    """The states that are left with an outcome instead, by path."""
+    """The states that exit with a given outcome instead, by path."""
     undoing: str = ""
-    """The state that a step back was undoing, where the engine died meanwhile."""
+    """The state that a step back was undoing when the engine died; empty for none."""

@@ -1,4 +1,4 @@
-"""How a container came to its outcome, from what events tell of its children; no event tells it itself."""
+"""Reason of a container's outcome, derived from the events of its children; no event holds it."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from engine.runtime.nodes.node import NodeWork
 def reason_of(
     work: NodeWork | None, path: str, outcome: str | None, node: ActiveNodeState | None, left: Mapping[str, PendingExit]
 ) -> Cause | None:
-    """Return the reason that a `ContainerOutcome` of the container at `path` has.
+    """Return the reason of the `ContainerOutcome` of the container at `path`.
 
     Args:
-        work: What it does, where the plan knows.
-        path: Where it is.
+        work: Its work; None where the plan does not contain it.
+        path: The path of the container.
         outcome: Its outcome, if any.
-        node: How it stood before that.
-        left: The nodes that were left, by path.
+        node: Its state before the exit.
+        left: The exits of other nodes, by path.
     """
     if work is None or outcome is None:
         return None

@@ -1,9 +1,9 @@
-"""Replacing the behavior of a run while it is paused: what changes, and why it may be impossible.
+"""Compares two versions of a behavior for a hot change: what changes, and why the change may be refused.
 
-Running states keep the parameters they were entered with; transitions, conditions and autonomy are
-those of the new version at once, everything else when a node is entered again. An active concurrency container gets
-its new branches at once and loses those that are gone. Where the operator says so, active nodes that cannot go on as
-they are, or that were given other parameters or keys, are preempted and entered anew.
+Running states keep the parameters they were entered with. Transitions, conditions and autonomy of the new version
+apply at once, everything else at the next entry of a node. An active concurrency container starts its new branches at
+once and preempts removed ones. With `preempt`, active nodes that cannot continue, or whose parameters or keys changed,
+are preempted and entered again.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from engine.suggestions import did_you_mean
 
 @dataclass(frozen=True, kw_only=True)
 class ChangeReport:
-    """What a hot change does; with `refusals` it does nothing."""
+    """Effects of a hot change; with `refusals` it has none."""
 
     changes: tuple[str, ...]
     refusals: tuple[str, ...]
     restarted: tuple[str, ...] = ()
-    """The active nodes that are preempted and entered anew."""
+    """The active nodes that are preempted and entered again."""
     removed: tuple[str, ...] = ()
-    """The branches of active concurrency containers that are gone."""
+    """The removed branches of active concurrency containers."""
     replaced: tuple[str, ...] = ()
-    """The nodes that are of another class or kind now."""
+    """The nodes whose class or kind changes."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class VersionSnapshot:
-    """The texts of a version, for whoever replays the run, and the name of the behavior among them; empty for none."""
+    """The source texts of a version, for replays, and the name of the behavior among them; empty for none."""
 
     behavior: str = ""
     documents: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -55,16 +55,16 @@ def plan_change(
     still: bool,
     preempt: bool = False,
 ) -> ChangeReport:
-    """Compare two versions of a behavior for a run that is in the middle of the old one.
+    """Compare two versions of a behavior for a run that executes the old one.
 
     Args:
-        old: What runs.
-        new: What is to run.
-        active: The nodes that were entered and not left, by path.
-        waiting: The nodes at the gate with the outcome they wait with, empty before their entry.
+        old: The current version.
+        new: The new version.
+        active: The nodes that were entered and not exited, by path.
+        waiting: The outcomes of the nodes that wait at the gate, by path; empty before their entry.
         still: Whether the run is paused or locked.
-        preempt: Whether what is active and cannot go on as it is may be preempted: a node is entered anew, a branch
-            that is gone ends.
+        preempt: Whether active nodes that cannot continue may be preempted: a node is entered again, a removed branch
+            ends.
     """
     removed = tuple(_removed(old, new, active))
     staying = {path: node for path, node in active.items() if not _in_any(removed, path)}
@@ -72,11 +72,11 @@ def plan_change(
     if preempt:
         restarted = tuple(_outermost(path for path in staying if _is_other(path, old, new)))
         staying = {path: node for path, node in staying.items() if not _in_any(restarted, path)}
-    left = {path: outcome for path, outcome in waiting.items() if not _in_any((*removed, *restarted), path)}
-    refusals = list(_refusals(old, new, staying, left))
+    still_waiting = {path: outcome for path, outcome in waiting.items() if not _in_any((*removed, *restarted), path)}
+    refusals = list(_refusals(old, new, staying, still_waiting))
     if not preempt:
-        under_way = [path for path in removed if any(is_inside(path, each) for each in (*active, *waiting))]
-        refusals += [f"{path} is under way and not in the new version" for path in under_way]
+        active_removed = [path for path in removed if any(is_inside(path, each) for each in (*active, *waiting))]
+        refusals += [f"the branch {path} is active and not in the new version" for path in active_removed]
     if not still:
         refusals.insert(0, "the run is neither paused nor locked")
     changes = (
@@ -95,7 +95,7 @@ def _replaced(old: Plan, new: Plan) -> tuple[str, ...]:
 
 
 def _removed(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
-    """Go through the branches of active concurrency containers that the new version does not have."""
+    """Yield the branches of active concurrency containers that the new version does not contain."""
     for path in active:
         before, after = old.nodes[path].work, new.nodes.get(path)
         if isinstance(before, Concurrency) and after is not None and isinstance(after.work, Concurrency):
@@ -103,16 +103,16 @@ def _removed(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
 
 
 def _is_other(path: str, old: Plan, new: Plan) -> bool:
-    """Tell whether an active node has to be entered anew to be what the new version says."""
+    """Return whether an active node must be entered again to match the new version."""
     before, after = old.nodes[path], new.nodes.get(path)
     if after is None:
         return False
-    return any(_refuses(path, before, after)) or _wiring(before) != _wiring(after)
+    return any(_refuses(path, before, after)) or _key_mapping(before) != _key_mapping(after)
 
 
 def _outermost(paths: Iterable[str]) -> Iterator[str]:
-    found = tuple(paths)
-    yield from (path for path in found if not any(other != path and is_inside(other, path) for other in found))
+    all_paths = tuple(paths)
+    yield from (path for path in all_paths if not any(other != path and is_inside(other, path) for other in all_paths))
 
 
 def _in_any(outer: Iterable[str], path: str) -> bool:
@@ -120,7 +120,7 @@ def _in_any(outer: Iterable[str], path: str) -> bool:
 
 
 def definitions(plan: Plan) -> Iterator[tuple[str, object]]:
-    """Go through the nodes of a plan by path, and through its containers by `path/`."""
+    """Yield the nodes of a plan with their paths, and its containers with `path/`."""
     for path, node in plan.nodes.items():
         yield path, node
         if node.work.children:
@@ -133,10 +133,10 @@ def _refusals(old: Plan, new: Plan, active: Mapping[str, Node], waiting: Mapping
         if present is None:
             yield f"{path} is active and not in the new version ({did_you_mean(path, new.nodes)})"
         elif path in active:
-            # What only waits has not begun, or has ended: it may be anything else.
+            # A node that only waits has not begun, or has ended: it may change freely.
             yield from _refuses(path, old.nodes[path], present)
     for path, outcome in waiting.items():
-        yield from _leads_nowhere(new, path, outcome)
+        yield from _has_no_transition(new, path, outcome)
     for name, parameter in new.parameters.items():
         if parameter.required and name not in old.parameters:
             yield f"the new parameter {name} has no default"
@@ -144,53 +144,53 @@ def _refusals(old: Plan, new: Plan, active: Mapping[str, Node], waiting: Mapping
 
 def _refuses(path: str, before: Node, after: Node) -> Iterator[str]:
     if before.work.kind != after.work.kind:
-        yield f"{path} is active and was a {before.work.kind}, now it is a {after.work.kind}"
+        yield f"{path} is active and changes from a {before.work.kind} to a {after.work.kind}"
         return
     if isinstance(before.work, Leaf) and isinstance(after.work, Leaf) and before.work.state is not after.work.state:
-        yield f"{path} is active as {before.work.signature.name}, now it is {after.work.signature.name}"
+        yield f"{path} is active as {before.work.signature.name} and becomes {after.work.signature.name}"
     if before.work.kind == "tree" and _shape(before) != _shape(after):
-        yield f"{path} is active and its tree has another shape now"
+        yield f"{path} is active and the structure of its tree changes"
 
 
-def _leads_nowhere(new: Plan, path: str, outcome: str) -> Iterator[str]:
+def _has_no_transition(new: Plan, path: str, outcome: str) -> Iterator[str]:
     node = new.nodes.get(path)
     container = new.nodes.get(path.rpartition("/")[0])
     if not outcome or node is None or container is None:
         return
     if isinstance(container.work, Machine | Priority) and outcome not in node.transitions:
-        yield f"{path} waits with the outcome {outcome}, which leads nowhere in the new version"
+        yield f"{path} waits with the outcome {outcome}, which has no transition in the new version"
 
 
 def _changes(old: Plan, new: Plan, active: Mapping[str, Node]) -> Iterator[str]:
     for path in new.nodes:
         if path not in old.nodes:
-            yield f"{path} is new"
+            yield f"{path} is added"
     for path, before in old.nodes.items():
         after = new.nodes.get(path)
         if after is None:
-            yield f"{path} is gone"
+            yield f"{path} is removed"
             continue
         if before.transitions != after.transitions:
-            yield f"{path} has other transitions"
+            yield f"{path} has changed transitions"
         if _parameters(before) != _parameters(after):
-            yield f"{path} has other parameters{_when(path, active)}"
+            yield f"{path} has changed parameters{_at_next_entry(path, active)}"
         if isinstance(before.work, Leaf) and isinstance(after.work, Leaf) and before.work.state != after.work.state:
-            yield f"{path} is {after.work.signature.name} now"
-        if _parameters(before) == _parameters(after) and _wiring(before) != _wiring(after):
-            yield f"{path} reads or writes other keys{_when(path, active)}"
+            yield f"{path} becomes {after.work.signature.name}"
+        if _parameters(before) == _parameters(after) and _key_mapping(before) != _key_mapping(after):
+            yield f"{path} reads or writes different keys{_at_next_entry(path, active)}"
         if _conditions(before) != _conditions(after):
-            yield f"{path} has other conditions"
+            yield f"{path} has changed conditions"
         if _shared(before) != _shared(after):
-            yield f"{path} shares other keys{_when(path, active)}"
-        if _measures(before) != _measures(after):
-            yield f"{path} has another timeout, retry, guard or on_error{_when(path, active)}"
+            yield f"{path} shares different keys{_at_next_entry(path, active)}"
+        if _policies(before) != _policies(after):
+            yield f"{path} has a changed timeout, retry, guard or on_error{_at_next_entry(path, active)}"
     for key in new.userdata:
         if key not in old.userdata:
-            yield f"the userdata key {key} is new"
+            yield f"the userdata key {key} is added"
 
 
-def _wiring(node: Node) -> object:
-    """Return what a state is given and where it writes."""
+def _key_mapping(node: Node) -> object:
+    """Return the parameters and the key mapping of a state."""
     if not isinstance(node.work, Leaf):
         return None
     return node.work.parameters.value, node.work.inputs, node.work.outputs
@@ -208,13 +208,13 @@ def _shared(node: Node) -> object:
     return node.work.shared if isinstance(node.work, Concurrency) else None
 
 
-def _measures(node: Node) -> tuple[object, ...]:
+def _policies(node: Node) -> tuple[object, ...]:
     guard = (node.guard.when.value, node.guard.target) if node.guard is not None else None
     return (node.timeout, node.retry, node.on_error, guard)
 
 
-def _when(path: str, active: Mapping[str, Node]) -> str:
-    return ", from its next entry on" if path in active else ""
+def _at_next_entry(path: str, active: Mapping[str, Node]) -> str:
+    return ", effective at its next entry" if path in active else ""
 
 
 def _shape(node: Node) -> tuple[str, str, tuple[object, ...]]:

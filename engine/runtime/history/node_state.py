@@ -1,4 +1,4 @@
-"""State of a node in the middle of a run, from its events: active, or exited while its container has not proceeded."""
+"""State of a node during a run, from its events: active, or exited while its container has not proceeded."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.runtime.record.tree_event import TreeEvent
 
 @dataclass
 class ActiveNodeState:
-    """A node that was entered and not left."""
+    """A node that was entered and not exited."""
 
     visit: int
     inputs: Mapping[str, object]
@@ -28,24 +28,24 @@ class ActiveNodeState:
     done: list[TreeEvent] = field(default_factory=list[TreeEvent])
 
     def has_preempted(self, name: str) -> bool:
-        """Tell whether a condition has preempted this branch of it."""
+        """Return whether a condition has preempted this branch of it."""
         return any(name in branches for branches in self.preempted.values())
 
     def take_clean_up(self, event: NodeExited) -> None:
-        """Know why the clean-up of a branch failed that a condition has preempted."""
+        """Store the cause of a failed clean-up of a branch that a condition has preempted."""
         name = event.path.rpartition("/")[2]
         if event.cause is not None and not event.outcome and self.has_preempted(name):
             self.failed_clean_ups[name] = event.cause
 
     def forget_branch(self, name: str) -> None:
-        """Know no more that a condition has preempted this branch."""
+        """Drop the preemption of this branch."""
         self.preempted = without_branch(self.preempted, name)
         self.failed_clean_ups.pop(name, None)
 
 
 @dataclass(frozen=True)
 class PendingExit:
-    """A node that was left, and whose container has not gone on yet."""
+    """A node that has exited while its container has not proceeded."""
 
     visit: int
     outcome: str | None
@@ -58,10 +58,10 @@ class PendingExit:
 
 
 def without_branch(preempted: Mapping[str, tuple[str, ...]], name: str) -> dict[str, tuple[str, ...]]:
-    """Return what conditions have preempted, without one branch."""
-    return {said: tuple(each for each in branches if each != name) for said, branches in preempted.items()}
+    """Return the preempted branches by condition, without one branch."""
+    return {condition: tuple(each for each in names if each != name) for condition, names in preempted.items()}
 
 
 def exit_of(left: PendingExit) -> NodeExit:
-    """Return it as its container takes it."""
+    """Return the exit as its container receives it."""
     return NodeExit(left.outcome or "", left.diverted, left.cause, left.reason)

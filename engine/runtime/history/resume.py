@@ -1,7 +1,7 @@
 """Resumes a run whose engine died, or starts one from a chosen event of any run.
 
-What had ended is not done again. A state in mid-work follows its policy: the node's `resume`, else
-that of its class, else `ask` where it commands hardware and an operator is demanded, else `rerun`.
+Nodes that had ended are not repeated. An interrupted state follows its policy: the `resume` of the node, else that of
+its class, else `ask` where it commands hardware and an operator is demanded, else `rerun`.
 """
 
 from __future__ import annotations
@@ -26,27 +26,27 @@ RERUN, ASK = "rerun", "ask"
 
 
 class ResumeDecisionRequired(ControlError):
-    """States in mid-work ask what to do with them; `questions` names them with their outcomes."""
+    """Interrupted states need a decision; `questions` holds them with their outcomes."""
 
     def __init__(self, questions: Sequence[ResumeQuestion]) -> None:
         self.questions = tuple(questions)
         asked = "; ".join(f"{each.path} (rerun, {', '.join(each.outcomes)})" for each in questions)
         super().__init__(
-            f"the run was in the middle of what must be decided: {asked}",
-            hint="look at the cell, then answer each with `--answer PATH=rerun` or `--answer PATH=OUTCOME`",
+            f"the run was interrupted in states that need a decision: {asked}",
+            hint="check the cell, then answer each with `--answer PATH=rerun` or `--answer PATH=OUTCOME`",
         )
 
 
 @dataclass(frozen=True, kw_only=True)
 class ResumeQuestion:
-    """A state that was in mid-work and asks."""
+    """An interrupted state that needs a decision."""
 
     path: str
     outcomes: tuple[str, ...]
 
 
 def effective_events(events: Iterable[Event]) -> list[Event]:
-    """Return the events that count: a resumed run may have begun again before its last ones."""
+    """Return the events that apply: a resumed run may have restarted before its last events."""
     kept: list[Event] = []
     for event in events:
         if isinstance(event, RunResumed):
@@ -57,7 +57,7 @@ def effective_events(events: Iterable[Event]) -> list[Event]:
 
 
 def read_history(plan: Plan, run: str, events: Iterable[Event], *, until_seq: int | None = None) -> RunStateReducer:
-    """Return where a run stood at its end, or at one of its events."""
+    """Return the state of a run at its last event, or at `until_seq`."""
     return RunStateReducer(plan, run=run).read(effective_events(events), until_seq=until_seq)
 
 
@@ -70,19 +70,19 @@ def resume_checkpoint(
     last_seq: int,
     epoch: int = 1,
 ) -> Checkpoint:
-    """Return the moment to go on from, every state in mid-work decided.
+    """Return the checkpoint to resume from, with a decision for every interrupted state.
 
     Args:
-        history: Where the run stood.
+        history: The state of the run.
         plan: The behavior.
-        answers: rerun, or an outcome, for states that ask; they also override the policy of others.
+        answers: rerun, or an outcome, for states that ask; answers also override the policies of other states.
         demanded: Whether the run demands an operator.
-        last_seq: The number of the last event that the journal holds; new ones come after it.
-        epoch: Which engine of this run it is.
+        last_seq: The number of the last event in the journal; new events follow it.
+        epoch: Number of the engine process of this run.
 
     Raises:
-        ResumeDecisionRequired: states ask and have no answer.
-        ControlError: an answer names no such state or outcome, or the run is over.
+        ResumeDecisionRequired: states need a decision and have no answer.
+        ControlError: an answer names an unknown state or outcome, or the run has ended.
     """
     if history.ended:
         raise ControlError("this run is over", where=history.run, hint="start a new one")
@@ -105,8 +105,8 @@ def resume_checkpoint(
         known = plan.outcomes_of(path) or ()
         if outcome not in known:
             raise ControlError(f"there is no outcome {outcome!r}", where=path, hint=did_you_mean(outcome, known))
-        said = f"the engine died in the middle of it; taken as {outcome}"
-        cause = Cause(message=said, where=path, kind="Resumed")
+        message = f"the engine died while this state was active; its outcome is set to {outcome}"
+        cause = Cause(message=message, where=path, kind="Resumed")
         points[path] = NodeCheckpoint(visit=points[path].visit, left=outcome, cause=cause, passed=True)
     return replace(
         checkpoint,
@@ -118,7 +118,7 @@ def resume_checkpoint(
 
 
 def resume_policy(node: Node, demanded: bool) -> str:
-    """Return what becomes of a state that a crash found in mid-work: rerun, ask, or an outcome."""
+    """Return the policy for a state that a crash interrupted: rerun, ask, or an outcome."""
     if node.resume is not None:
         return node.resume
     work = node.work
@@ -130,26 +130,26 @@ def resume_policy(node: Node, demanded: bool) -> str:
 
 
 def start_checkpoint(history: RunStateReducer, plan: Plan, path: str) -> Checkpoint:
-    """Return the moment of `history` as the start of a new run that begins with the node at `path`.
+    """Return `history` as the checkpoint of a new run that starts with the node at `path`.
 
-    Containers around it have the userdata of that moment, or their initial values where they were
-    not active. Branches beside it go on as they stood.
+    Containers around it have the userdata of that event, or their initial values where they were not active. Parallel
+    branches resume from their state.
 
     Raises:
-        ControlError: there is no such node, or it is inside a referred behavior that was not active.
+        ControlError: there is no such node, or it is inside a referenced behavior that was not active.
     """
     if path not in plan.nodes:
         raise ControlError("there is no such node", where=path, hint=did_you_mean(path, plan.nodes))
-    moment = history.checkpoint()
+    checkpoint = history.checkpoint()
     points: dict[str, NodeCheckpoint] = {}
     around = [above for above in plan.nodes if above != path and is_inside(above, path)]
     for above in around:
         node = plan.nodes[above]
         name = path.removeprefix(f"{above}/").partition("/")[0]
-        known = moment.points.get(above)
+        known = checkpoint.points.get(above)
         if known is None or not known.active:
             if node.work.kind == "behavior":
-                raise ControlError("the behavior around it was not active then", where=above, hint="start before it")
+                raise ControlError("the enclosing behavior was not active then", where=above, hint="start before it")
             known = NodeCheckpoint(visit=1, values=node.work.initial_values({}))
         points[above] = replace(
             known,
@@ -160,34 +160,34 @@ def start_checkpoint(history: RunStateReducer, plan: Plan, path: str) -> Checkpo
             failed_clean_ups={branch: cause for branch, cause in known.failed_clean_ups.items() if branch != name},
         )
         if node.work.kind == "concurrency":
-            points |= _beside(moment, above, name)
-    return replace(moment, points=points, rerun=(path,))
+            points |= _parallel_points(checkpoint, above, name)
+    return replace(checkpoint, points=points, rerun=(path,))
 
 
-def _beside(moment: Checkpoint, container: str, name: str) -> dict[str, NodeCheckpoint]:
-    """Return the points of the other branches of a concurrency container."""
-    if container not in moment.points:
+def _parallel_points(checkpoint: Checkpoint, container: str, name: str) -> dict[str, NodeCheckpoint]:
+    """Return the checkpoints of the other branches of a concurrency container."""
+    if container not in checkpoint.points:
         return {}
     own = f"{container}/{name}"
     return {
         path: point
-        for path, point in moment.points.items()
+        for path, point in checkpoint.points.items()
         if is_inside(container, path) and path != container and not is_inside(own, path)
     }
 
 
 def last_entered_state(events: Iterable[Event], seq: int) -> str:
-    """Return the state that was entered last at event `seq`.
+    """Return the state that was entered last up to event `seq`.
 
     Raises:
-        DocumentError: none was entered yet.
+        DocumentError: no state was entered before.
     """
-    found = ""
+    path = ""
     for event in events:
         if event.seq > seq:
             break
         if isinstance(event, NodeEntered) and event.kind in ("state", SUBSTITUTE):
-            found = event.path
-    if not found:
-        raise DocumentError(f"no state was entered before event {seq}", hint="choose a later one")
-    return found
+            path = event.path
+    if not path:
+        raise DocumentError(f"no state was entered before event {seq}", hint="choose a later event")
+    return path

@@ -1,7 +1,7 @@
 """Reduces the events of a run, in order, to the state of the run.
 
-Resuming after a crash, starting from a chosen event and a debugger's timeline share it. It needs the plan, as the
-document, not the events, holds initial userdata.
+Used to resume after a crash, to start from a chosen event, and for the timeline of a debugger. It needs the plan:
+initial userdata is in the document, not in the events.
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ from engine.runtime.userdata.append_only_lists import AppendOnlyLists
 from engine.suggestions import did_you_mean
 
 DIVERTED_TO_OUTCOME = ("operator", "start")
-"""`Diverted.by` whose target is an outcome and not a place to go to."""
+"""Values of `NodeDiverted.by` whose target is an outcome and not a transition target."""
 
 
 class RunStateReducer:
-    """One run as its events tell it, up to the last one taken.
+    """State of one run according to its events, up to the last one taken.
 
-    Nodes that the plan does not have, as the document has changed since, matter only while active.
+    Nodes that a changed document no longer contains are an error only while they are active.
     """
 
     def __init__(self, plan: Plan, *, run: str) -> None:
@@ -67,7 +67,7 @@ class RunStateReducer:
         self.autonomy: AutonomyLevel | None = None
         self.locks: set[str] = set()
         self.undoing = ""
-        """The state whose undoing was begun last by a step back that has not ended; empty while there is none."""
+        """The state that an unfinished step back began to undo last; empty while there is none."""
         self.visits: dict[str, int] = {}
         self.seed = 0
         self.document = ""
@@ -80,7 +80,7 @@ class RunStateReducer:
         self._lists = AppendOnlyLists()
 
     def read(self, events: Iterable[Event], *, until_seq: int | None = None) -> RunStateReducer:
-        """Take events in order, up to and with `until_seq`; returns itself."""
+        """Take events in order, up to and including `until_seq`; returns itself."""
         for event in events:
             if until_seq is not None and event.seq > until_seq:
                 break
@@ -91,7 +91,7 @@ class RunStateReducer:
     def take(self, event: Event) -> None:
         """Take the next event."""
         self.seq, self.time_s = event.seq, event.time_s
-        self._mark(event)
+        self._take_tree_event(event)
         match event:
             case RunStarted():
                 self.seed, self.document, self.parameters = event.seed, event.document, event.parameters
@@ -131,16 +131,16 @@ class RunStateReducer:
 
     @property
     def active(self) -> tuple[str, ...]:
-        """The paths of the nodes that are active, in order of entry."""
+        """The paths of the active nodes, in order of entry."""
         return tuple(path for path, node in self._open.items() if node.entered)
 
     @property
     def active_states(self) -> tuple[str, ...]:
-        """The states among them."""
+        """The paths of the active states."""
         return tuple(path for path in self.active if not self._node(path).work.children)
 
     def course(self, path: str) -> tuple[Cause | None, Cause | None]:
-        """Return what went wrong last among the children of an active container, and what decided their course."""
+        """Return the last failure among the children of an active container, and the reason of their course."""
         node = self._open.get(path)
         return (node.diagnosis.cause, node.diagnosis.reason) if node is not None else (None, None)
 
@@ -153,14 +153,14 @@ class RunStateReducer:
         return {path: dict(values) for path, values in self._scopes.items()}
 
     def visit(self, path: str) -> int:
-        """Return the number of the last activation of a node."""
+        """Return the number of the last visit of a node."""
         return self.visits.get(path, 0)
 
     def checkpoint(self, *, epoch: int = 1) -> Checkpoint:
-        """Return the present moment as something to go on from; states in mid-work are to be entered again.
+        """Return the current state as a checkpoint; interrupted states are to be entered again.
 
         Raises:
-            DocumentError: the run is at a node that the plan does not have.
+            DocumentError: a node is active that the plan does not contain.
         """
         points: dict[str, NodeCheckpoint] = {}
         for path, node in self._open.items():
@@ -224,7 +224,7 @@ class RunStateReducer:
         node = self._plan.nodes.get(path)
         if node is None:
             raise DocumentError(
-                "this node is active and the behavior does not have it",
+                "this node is active and the behavior does not contain it",
                 where=path,
                 hint=f"the document has changed since; {did_you_mean(path, self._plan.nodes)}",
             )
@@ -237,15 +237,15 @@ class RunStateReducer:
     def _enter(self, event: NodeEntered) -> None:
         path = event.path
         self.visits[path] = event.visit
-        again = self._open.pop(path, None)
+        previous = self._open.pop(path, None)
         self._left.pop(path, None)
         self._pending.pop(path, None)
-        between = again is not None and not again.entered
+        is_retry = previous is not None and not previous.entered
         self._open[path] = ActiveNodeState(
             visit=event.visit,
             inputs=event.inputs,
-            since_s=again.since_s if again is not None else event.time_s,
-            attempt=again.attempt if again is not None and between else 1,
+            since_s=previous.since_s if previous is not None else event.time_s,
+            attempt=previous.attempt if previous is not None and is_retry else 1,
         )
         container = self._open.get(path.rpartition("/")[0])
         if container is not None:
@@ -263,9 +263,9 @@ class RunStateReducer:
             self._scopes[f"{path}#{number}"] = work.round_values(number, items[number])
 
     def _write(self, event: UserdataWritten | UserdataAppended) -> None:
-        """What a node writes counts from its end on: one that is entered again writes again."""
+        """Take a write; it applies when the node ends, as a node that is entered again writes again."""
         own = f"{event.path}*"
-        # A branch that is still being stopped is merged, or a post-condition has written: that counts at once.
+        # The merge of a branch that is still being stopped, or the write of a post-condition, applies at once.
         merged = own in self._scopes and event.scope != own
         post = isinstance(event, UserdataWritten) and bool(event.post)
         if event.path in self._open and event.path != event.scope and not (merged or post):
@@ -298,7 +298,7 @@ class RunStateReducer:
         )
 
     def _preempt(self, event: BranchesPreempted) -> None:
-        """Know which branches are to end; one that stood between two attempts, or at the gate, has ended with that."""
+        """Take preempted branches; one that waited between two attempts, or at the gate, has ended with that."""
         container = self._open.get(event.path)
         if container is None:
             return
@@ -318,7 +318,7 @@ class RunStateReducer:
 
     def _retry(self, event: NodeRetried) -> None:
         if event.path not in self._plan.nodes:
-            return  # a decorator of a tree, whose marks tell it
+            return  # a decorator of a tree, covered by its tree events
         left = self._left.pop(event.path, None)
         since_s = left.since_s if left is not None else event.time_s
         self._open[event.path] = ActiveNodeState(
@@ -343,7 +343,7 @@ class RunStateReducer:
     def _change(self, event: BehaviorChanged) -> None:
         self.document = event.document
         for path in event.removed:
-            # What it had written was merged just before.
+            # Its writes were merged just before.
             self._scopes.pop(f"{path}*", None)
             above, _, name = path.rpartition("/")
             if (container := self._open.get(above)) is not None:
@@ -352,7 +352,7 @@ class RunStateReducer:
             self._drop(path)
 
     def _drop(self, path: str) -> None:
-        """Know nothing of a node any more but how often it was entered: it has not begun."""
+        """Drop the state of a node that has not begun, except its visit count."""
         self._forget_inside(path)
         for table in (self._open, self._left, self._pending):
             table.pop(path, None)
@@ -374,17 +374,17 @@ class RunStateReducer:
             container.current = event.path.rpartition("/")[2]
             container.diagnosis = Diagnosis(event.went_wrong, event.reason)
 
-    def _mark(self, event: Event) -> None:
-        """Tell the tree around a part, or around a leaf, what has happened to it."""
-        mark = tree_event_of(event)
-        above = mark.path if mark is not None else ""
-        while mark is not None and (above := above.rpartition("/")[0]):
+    def _take_tree_event(self, event: Event) -> None:
+        """Add the event to the tree around a tree node or leaf."""
+        tree_event = tree_event_of(event)
+        above = tree_event.path if tree_event is not None else ""
+        while tree_event is not None and (above := above.rpartition("/")[0]):
             node = self._open.get(above)
             if node is None:
                 continue
             work = self._work(above)
             if work is not None and work.kind == "tree":
-                node.done.append(mark)
+                node.done.append(tree_event)
             return
 
     def _forget_branches(self, path: str) -> None:
@@ -407,10 +407,9 @@ class RunStateReducer:
                 pass
 
     def _forget_inside(self, path: str) -> None:
-        """What was inside a node that was left is over."""
+        """Drop the state inside a node that was exited."""
         self._scopes.pop(path, None)
-        below = f"{path}/"
-        rounds = f"{path}#"
+        inside = (f"{path}/", f"{path}#")
         for table in (self._open, self._left, self._scopes):
-            for inner in [key for key in table if key.startswith((below, rounds))]:
+            for inner in [key for key in table if key.startswith(inside)]:
                 del table[inner]

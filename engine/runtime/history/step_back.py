@@ -1,8 +1,8 @@
-"""Decides how far one step back of a paused run goes, or why it is impossible; changes nothing.
+"""Plans one step back of a paused run, or states why it is impossible; changes nothing.
 
-It takes back the node that began last and has not been taken back, in one branch: a node that has begun is undone and
-stands before its entry again; where none has, the one before it in its machine. Whatever was done in it is undone in
-reverse order, so all of it must declare how.
+It undoes the node that began last and was not undone yet, in one branch: a node that has begun is undone and waits
+before its entry again; where the node has not begun, its predecessor in the machine is undone. The activations inside
+are undone in reverse order, so each of them must declare an undo.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from engine.suggestions import did_you_mean
 
 @dataclass(frozen=True, kw_only=True)
 class PausedPosition:
-    """Where a paused run stands: the nodes at the gate, and those that were entered and not left."""
+    """Position of a paused run: the nodes that wait at the gate, and those that were entered and not exited."""
 
     waiting: Mapping[str, GateWait]
     active: Mapping[str, int]
@@ -34,47 +34,47 @@ class PausedPosition:
 
 @dataclass(frozen=True, kw_only=True)
 class StepBack:
-    """One step back, decided: `node` gives up, and the run then stands before `target`."""
+    """One planned step back: `node` is preempted, and the run then waits before `target`."""
 
     cursor: str
-    """The node that waits or is active, by which the branch was found."""
+    """The node that waits or is active in the branch."""
     node: str
     target: str
     since: int
-    """The event with which the run had come to `target`."""
+    """The event with which the run reached `target`."""
     plan: Plan
     trail: UndoLog
     former: Mapping[str, Mapping[str, object]]
-    """The scopes as they were then."""
+    """The userdata scopes at that event."""
     went_wrong: Cause | None
     reason: Cause | None
 
     @property
     def undone(self) -> tuple[LeafActivation, ...]:
-        """What is to be undone, in this order."""
+        """The activations to undo, in this order."""
         return self.trail.done(self.target, self.since)
 
 
-def plan_step_back(plan: Plan, events: Sequence[Event], standing: PausedPosition, *, path: str = "") -> StepBack:
-    """Decide what the next step back of a paused run is.
+def plan_step_back(plan: Plan, events: Sequence[Event], position: PausedPosition, *, path: str = "") -> StepBack:
+    """Plan the next step back of a paused run.
 
     Args:
-        plan: What it executes.
-        events: All that has happened.
-        standing: Where it stands.
+        plan: The current plan of the run.
+        events: All events of the run.
+        position: The position of the run.
         path: The branch; by default the one in which something began last.
 
     Raises:
-        ControlError: nothing in that branch can be taken back; says what is in the way.
+        ControlError: no node in that branch can be undone; the message states the reason.
     """
-    counted = effective_events(events)
-    trail = UndoLog().read(counted)
-    cursor, node, target, since = _chosen(plan, trail, standing, path)
+    effective = effective_events(events)
+    trail = UndoLog().read(effective)
+    cursor, node, target, since = _chosen(plan, trail, position, path)
     for activation in trail.done(target, since):
-        _require_undo(plan, activation, is_over=activation.path not in standing.active)
-    before = [event for event in counted if event.seq <= since]
-    book = UserdataHistory(lambda: plan)
-    book.read(before)
+        _require_undo(plan, activation, is_over=activation.path not in position.active)
+    before = [event for event in effective if event.seq <= since]
+    userdata = UserdataHistory(lambda: plan)
+    userdata.read(before)
     history = RunStateReducer(plan, run="").read(before)
     went_wrong, reason = history.course(target.rpartition("/")[0])
     return StepBack(
@@ -84,19 +84,21 @@ def plan_step_back(plan: Plan, events: Sequence[Event], standing: PausedPosition
         since=since,
         plan=plan,
         trail=trail,
-        former={path: {key: entry.value for key, entry in view.values.items()} for path, view in book.scopes.items()},
+        former={
+            path: {key: entry.value for key, entry in view.values.items()} for path, view in userdata.scopes.items()
+        },
         went_wrong=went_wrong,
         reason=reason,
     )
 
 
 def undoable(plan: Plan, activation: LeafActivation) -> Leaf | None:
-    """Return the state that undoes an activation, None where there is nothing to undo; raises ControlError."""
+    """Return the state that undoes an activation; None where there is nothing to undo; raises ControlError."""
     node = plan.nodes.get(activation.path)
     if node is None:
-        raise _refused(activation, "it is not in the behavior any more")
+        raise _refused(activation, "the behavior no longer contains it")
     if activation.replaced:
-        raise _refused(activation, "the behavior was changed since, and it was another state then")
+        raise _refused(activation, "a hot change has replaced its state class since")
     leaf = node.work
     if not isinstance(leaf, Leaf) or leaf.state.observes or leaf.state.undo is nothing_to_undo:
         return None
@@ -114,83 +116,83 @@ def _require_undo(plan: Plan, activation: LeafActivation, *, is_over: bool) -> N
 
 
 def _refused(activation: LeafActivation, why: str) -> ControlError:
-    hint = "nothing was moved; go on from here, or begin a new run at an earlier event"
-    return ControlError(f"there is no step back over visit {activation.visit}: {why}", where=activation.path, hint=hint)
+    hint = "nothing has moved; continue from here, or start a new run at an earlier event"
+    return ControlError(f"cannot step back over visit {activation.visit}: {why}", where=activation.path, hint=hint)
 
 
-def _chosen(plan: Plan, trail: UndoLog, standing: PausedPosition, path: str) -> tuple[str, str, str, int]:
-    """Return cursor, node, target, and the event with which the run came to the target."""
+def _chosen(plan: Plan, trail: UndoLog, position: PausedPosition, path: str) -> tuple[str, str, str, int]:
+    """Return cursor, node, target, and the event with which the run reached the target."""
     refusals: list[ControlError] = []
-    found: list[tuple[int, tuple[str, str, str, int]]] = []
-    for cursor in _cursors(plan, standing, path):
+    options: list[tuple[int, tuple[str, str, str, int]]] = []
+    for cursor in _cursors(plan, position, path):
         try:
-            node, target, since = _target(plan, trail, standing, cursor)
+            node, target, since = _target(plan, trail, position, cursor)
         except ControlError as error:
             refusals.append(error)
             continue
         newest = max((each.seq for each in trail.done(target, since)), default=since)
-        found.append((newest, (cursor, node, target, since)))
-    if found:
-        return max(found)[1]
+        options.append((newest, (cursor, node, target, since)))
+    if options:
+        return max(options)[1]
     if refusals:
         raise refusals[0]
-    stand = [*standing.waiting, *standing.active]
-    raise ControlError("nothing waits or is active there", where=path or "root", hint=did_you_mean(path, stand))
+    candidates = [*position.waiting, *position.active]
+    raise ControlError("no node waits or is active there", where=path or "root", hint=did_you_mean(path, candidates))
 
 
-def _cursors(plan: Plan, standing: PausedPosition, path: str) -> Iterator[str]:
-    """Go through the innermost nodes at which the branches stand; a tree is one of them, whatever is in it."""
-    known = [each for each in (*standing.waiting, *standing.active) if each in plan.nodes]
+def _cursors(plan: Plan, position: PausedPosition, path: str) -> Iterator[str]:
+    """Yield the innermost nodes at which the branches wait or are active; a tree counts as one node."""
+    known = [each for each in (*position.waiting, *position.active) if each in plan.nodes]
     for each in dict.fromkeys(known):
-        if (each in standing.waiting or not plan.nodes[each].work.children) and (not path or is_inside(path, each)):
+        if (each in position.waiting or not plan.nodes[each].work.children) and (not path or is_inside(path, each)):
             yield each
 
 
-def _target(plan: Plan, trail: UndoLog, standing: PausedPosition, cursor: str) -> tuple[str, str, int]:
+def _target(plan: Plan, trail: UndoLog, position: PausedPosition, cursor: str) -> tuple[str, str, int]:
     node = _tree_around(plan, cursor) or cursor
     while True:
-        if _has_begun(trail, standing, node):
+        if _has_begun(trail, position, node):
             return node, node, trail.since(node)
         container = node.rpartition("/")[0]
         if not container:
-            raise ControlError("the run stands at its beginning", where=cursor, hint="there is nothing to take back")
+            raise ControlError("the run is at its beginning", where=cursor, hint="there is nothing to undo")
         kind = plan.nodes[container].work.kind
         if kind in ("machine", "priority") and (before := trail.previous(container)) is not None:
             name, since = before
             return node, f"{container}/{name}", since
         if kind == "foreach" and (rounds := trail.rounds(container)):
             raise ControlError(
-                f"round {rounds + 1} has not begun, and rounds that are over are not taken back one by one",
+                f"round {rounds + 1} has not begun, and completed rounds cannot be undone one by one",
                 where=container,
-                hint="go on to the end of the loop, then step back over all of it",
+                hint="continue to the end of the loop, then step back over the whole loop",
             )
         if kind == "concurrency":
-            _require_alone(plan, trail, standing, container, node)
+            _require_alone(plan, trail, position, container, node)
         node = container
 
 
 def _tree_around(plan: Plan, path: str) -> str:
-    """Return the outermost behavior tree around a node; empty where there is none."""
+    """Return the path of the outermost behavior tree around a node; empty where there is none."""
     parts = path.split("/")
     around = ("/".join(parts[:count]) for count in range(1, len(parts)))
     return next((each for each in around if each in plan.nodes and plan.nodes[each].work.kind == "tree"), "")
 
 
-def _has_begun(trail: UndoLog, standing: PausedPosition, node: str) -> bool:
-    waiting = standing.waiting.get(node)
+def _has_begun(trail: UndoLog, position: PausedPosition, node: str) -> bool:
+    waiting = position.waiting.get(node)
     return bool(trail.done(node)) or (waiting is not None and waiting.point == "after")
 
 
-def _require_alone(plan: Plan, trail: UndoLog, standing: PausedPosition, container: str, branch: str) -> None:
-    """Refuse to go back over the entry of a concurrency container while another branch of it is under way.
+def _require_alone(plan: Plan, trail: UndoLog, position: PausedPosition, container: str, branch: str) -> None:
+    """Refuse to undo the entry of a concurrency container while another branch of it is active.
 
-    Branches that are over are taken back with the container.
+    Branches that have ended are undone with the container.
     """
     for child in plan.nodes[container].work.children.values():
-        is_standing = any(is_inside(child.path, each) for each in (*standing.waiting, *standing.active))
-        if child.path != branch and is_standing and trail.done(child.path):
+        is_occupied = any(is_inside(child.path, each) for each in (*position.waiting, *position.active))
+        if child.path != branch and is_occupied and trail.done(child.path):
             raise ControlError(
-                f"{branch} stands at its beginning, and {child.path} beside it has begun",
+                f"{branch} is at its beginning, and the parallel branch {child.path} has begun",
                 where=container,
                 hint=f"step {child.path} back first",
             )

@@ -1,7 +1,6 @@
 """Userdata of a run, rebuilt from its events: every scope with its values, their last writers and times.
 
-Unlike `RunStateReducer`, which knows where a run can be resumed, it applies a write at once and keeps the values of
-containers that are left.
+Unlike `RunStateReducer`, which restores a run, it applies a write at once and keeps the values of exited containers.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from engine.runtime.userdata.append_only_lists import AppendOnlyLists
 
 
 class UserdataRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """One value: who wrote it last (a node's path), when on the run's clock, and how often it was written.
+    """One value: its last writer (a node path), the time on the clock of the run, and the number of writes.
 
-    `by` is empty for a value that the scope began with.
+    `by` is empty for an initial value of the scope.
     """
 
     value: object
@@ -41,7 +40,7 @@ class UserdataRecord(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ScopeView(msgspec.Struct, frozen=True, kw_only=True):
-    """The values of one container; they stay when it is left, which is told by `is_open`."""
+    """The values of one container, kept after its exit; `is_open` is False then."""
 
     is_open: bool
     since_s: float
@@ -51,11 +50,11 @@ class ScopeView(msgspec.Struct, frozen=True, kw_only=True):
 class UserdataHistory:
     """The scopes of one run by the path of their container, up to the last event taken.
 
-    The behavior's own is under the empty path, a round of a loop under `path#n`, a branch of a
-    concurrency container that is not merged yet under `path*`.
+    The scope of the behavior has the empty path, a round of a loop `path#n`, an unmerged branch of a concurrency
+    container `path*`.
 
     Args:
-        plan: Gives the plan of the run as it is now; a hot change brings another one.
+        plan: Returns the current plan of the run; a hot change replaces it.
     """
 
     def __init__(self, plan: Callable[[], Plan]) -> None:
@@ -75,18 +74,18 @@ class UserdataHistory:
         self._lists.give_away()
 
     def copy(self) -> UserdataHistory:
-        """Return one that goes on from here by itself."""
-        made = UserdataHistory(self._plan)
-        made.seq, made.scopes, made._changed, made._items = (
+        """Return an independent copy."""
+        copied = UserdataHistory(self._plan)
+        copied.seq, copied.scopes, copied._changed, copied._items = (
             self.seq,
             dict(self.scopes),
             set(self._changed),
             dict(self._items),
         )
-        return made
+        return copied
 
     def changes(self) -> dict[str, ScopeView | None]:
-        """Return the scopes that have changed since this was asked last; None for one that is no more."""
+        """Return the scopes that have changed since the last call; None for one that no longer exists."""
         changed, self._changed = self._changed, set()
         return {path: self.scopes.get(path) for path in sorted(changed)}
 
@@ -186,7 +185,7 @@ class UserdataHistory:
                 self._set(key, msgspec.structs.replace(scope, is_open=False))
 
     def _forget_inside(self, path: str) -> None:
-        """What lies inside starts afresh with its container."""
+        """Drop the scopes inside a container that starts again."""
         for key in [key for key in self.scopes if _is_inside(key, path)]:
             self._drop(key)
 

@@ -1,1 +1,1 @@
-"""The nodes of a plan: states, containers and references, and the execution that they share."""
+"""Nodes of a plan: states, containers and behavior references, and the execution that they share."""

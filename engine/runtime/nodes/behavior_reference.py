@@ -1,4 +1,4 @@
-"""A behavior reference as a node's work: another behavior with parameters and keys of its own."""
+"""Work of a behavior reference: another behavior with its own parameters and userdata keys."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from engine.state import Outcome
 
 
 class ReferencedBehavior(Protocol):
-    """The executable form of the behavior that is referred to."""
+    """The plan of the referenced behavior."""
 
     @property
     def root(self) -> Node:
@@ -29,7 +29,7 @@ class ReferencedBehavior(Protocol):
 
     @property
     def outcomes(self) -> tuple[str, ...]:
-        """How it can end."""
+        """Its outcomes."""
         ...
 
     @property
@@ -43,13 +43,13 @@ class ReferencedBehavior(Protocol):
         ...
 
     def checked_parameters(self, given: Mapping[str, object]) -> dict[str, object]:
-        """Values for all its parameters; raises DocumentError."""
+        """Return values for all its parameters; raises DocumentError."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class BehaviorReference:
-    """Runs `target` in a scope that only `inputs` and `outputs` connect with the outside."""
+    """Runs `target` in a scope that only `inputs` and `outputs` connect with the enclosing scope."""
 
     target: ReferencedBehavior
     parameters: Template
@@ -64,30 +64,30 @@ class BehaviorReference:
 
     @property
     def children(self) -> Mapping[str, Node]:
-        """The root of the other behavior."""
+        """The root of the referenced behavior."""
         return {"root": self.target.root}
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """Those its document declares."""
+        """The outcomes that its document declares."""
         return self.target.outcomes
 
     @cached_property
     def nominal(self) -> frozenset[str]:
-        """The outcomes its document calls success; all of them where it does not say."""
+        """The success outcomes of its document; all outcomes where it declares none."""
         return frozenset(self.target.success or self.target.outcomes)
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """The values its scope begins with."""
+        """Return the initial values of its scope."""
         return {**self.target.userdata, **inputs}
 
     @property
     def constant(self) -> None:
-        """That depends on userdata."""
+        """None: the entry depends on userdata."""
         return None
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Evaluate its parameters and read what flows in."""
+        """Evaluate its parameters and read its inputs."""
         variables = {name: scope.read(name, reader=self.position) for name in self.parameters.names}
         given = msgspec.convert(self.parameters.evaluate(variables), dict[str, object])
         inputs = {inner: scope.read(outer, reader=self.position) for inner, outer in self.inputs.items()}
@@ -95,7 +95,7 @@ class BehaviorReference:
         return NodeEntry(None, values, msgspec.to_builtins(values))
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Run the other behavior to one of its outcomes and copy out what `outputs` names."""
+        """Run the referenced behavior to one of its outcomes and copy its `outputs` to the enclosing scope."""
         values = entry.point.values if entry.point is not None else self.initial_values(entry.inputs)
         inner = Scope(path, values)
         left = await self.target.root.perform(inner, execution)
@@ -104,5 +104,5 @@ class BehaviorReference:
             with execution.counted():
                 value = inner.read(key, reader=self.position)
             execution.write(path, scope, outer, value)
-        why = explain_exit(self.target.root, left)
-        return ContainerOutcome(name, cause=None if name in self.nominal else why, reason=why)
+        reason = explain_exit(self.target.root, left)
+        return ContainerOutcome(name, cause=None if name in self.nominal else reason, reason=reason)

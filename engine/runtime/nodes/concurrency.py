@@ -1,4 +1,4 @@
-"""The concurrency container: children side by side, ended by the first satisfied condition."""
+"""The concurrency container: children in parallel branches, ended by the first satisfied condition."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Concurrency:
     otherwise: str | None = None
     userdata: Mapping[str, object] = field(default_factory=dict[str, object])
     shared: frozenset[str] = frozenset()
-    """The keys that branches see each other write."""
+    """The keys whose writes all branches see at once."""
 
     @property
     def kind(self) -> str:
@@ -40,7 +40,7 @@ class Concurrency:
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """Those of its conditions, and `otherwise`."""
+        """The outcomes of its conditions, and `otherwise`."""
         otherwise = (self.otherwise,) if self.otherwise is not None else ()
         return tuple(dict.fromkeys((*(condition.outcome for condition in self.deciding), *otherwise)))
 
@@ -51,12 +51,12 @@ class Concurrency:
 
     @cached_property
     def preempting(self) -> tuple[ConcurrencyCondition, ...]:
-        """The conditions that preempt some children while the others go on."""
+        """The conditions that preempt some children while the others continue."""
         return preempting(self.conditions)
 
     @cached_property
     def nominal(self) -> frozenset[str]:
-        """Outcomes of conditions that ask only for nominal outcomes of the children."""
+        """Outcomes of conditions that require only nominal outcomes of the children."""
         return frozenset(
             c.outcome
             for c in self.deciding
@@ -64,20 +64,20 @@ class Concurrency:
         )
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """The values its scope begins with."""
+        """Return the initial values of its scope."""
         return self.userdata
 
     @property
     def constant(self) -> NodeEntry:
-        """Nothing."""
+        """The empty entry."""
         return EMPTY_ENTRY
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Nothing is evaluated: the children evaluate theirs."""
+        """Return the empty entry: the children evaluate their own inputs."""
         return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Start all children, decide whenever some have finished, preempt and await the others."""
+        """Start all children, evaluate the conditions whenever some finish, preempt and await the others."""
         point = entry.point
         inner = Scope(path, point.values if point is not None else self.userdata, scope)
         branches = _Branches(path, inner, execution, point)
@@ -93,7 +93,7 @@ class Concurrency:
         return outcome
 
     async def _decided(self, path: str, branches: _Branches, execution: Execution) -> Outcome:
-        """Return what was decided, once all branches have ended."""
+        """Return the decided outcome once all branches have ended."""
         try:
             return await self._decide(path, branches, execution)
         finally:
@@ -118,13 +118,15 @@ class Concurrency:
             branches.preempt_by(latest.preempting)
 
     def ended(self, condition: ConcurrencyCondition, finished: Mapping[str, NodeExit]) -> ContainerOutcome:
-        """Return its outcome by a condition that holds, with the children that this asked for as the reason."""
-        so = finished_with(finished)
-        asked = [
-            explain_exit(self.children[name], finished[name]) for name, due in condition.when.items() if so(name, due)
+        """Return the outcome of a condition that holds, with the children that it requires as the reason."""
+        matches = finished_with(finished)
+        exits = [
+            explain_exit(self.children[name], finished[name])
+            for name, required in condition.when.items()
+            if matches(name, required)
         ]
-        together = " and ".join(each.message for each in asked)
-        reason = asked[0] if len(asked) == 1 else Cause(message=together, where=asked[0].where.rpartition("/")[0])
+        message = " and ".join(each.message for each in exits)
+        reason = exits[0] if len(exits) == 1 else Cause(message=message, where=exits[0].where.rpartition("/")[0])
         return ContainerOutcome(condition.outcome, cause=self._cause(condition.outcome, finished), reason=reason)
 
     def _cause(self, outcome: str, finished: Mapping[str, NodeExit]) -> Cause | None:
@@ -137,21 +139,21 @@ class Concurrency:
         return None
 
     def _uncovered(self, path: str, finished: Mapping[str, NodeExit]) -> Outcome:
-        how = ", ".join(f"{name}: {left.outcome or 'preempted'}" for name, left in finished.items())
+        exits = ", ".join(f"{name}: {left.outcome or 'preempted'}" for name, left in finished.items())
         if self.otherwise is None:
             raise StateError(
-                f"all children have finished ({how}) and no condition matches",
+                f"all children have finished ({exits}) and no condition matches",
                 where=path,
                 hint="add a condition for this combination, or `otherwise`",
             )
         return Outcome(
             self.otherwise,
-            cause=wrap_cause(f"no condition matches ({how})", self._cause(self.otherwise, finished), where=path),
+            cause=wrap_cause(f"no condition matches ({exits})", self._cause(self.otherwise, finished), where=path),
         )
 
 
 class _Branches:
-    """The branches of one activation of a concurrency container: their tasks and scopes, and who has ended."""
+    """The branches of one activation of a concurrency container: their tasks, scopes and exits."""
 
     def __init__(self, path: str, inner: Scope, execution: Execution, point: NodeCheckpoint | None) -> None:
         self.tasks: dict[str, asyncio.Task[NodeExit]] = {}
@@ -167,15 +169,15 @@ class _Branches:
         self._fired = set(self._before.preempted)
         self._preemptions = BackgroundPreemptions(overdue_policy(execution, path), self.wake)
         if not execution.is_resumed:
-            for said, names in self._before.preempted.items():
-                execution.recorder.emit(BranchesPreempted, path=path, condition=said, branches=names)
+            for condition, names in self._before.preempted.items():
+                execution.recorder.emit(BranchesPreempted, path=path, condition=condition, branches=names)
 
     def wake(self) -> None:
-        """Have the container look again."""
+        """Let the container evaluate its conditions again."""
         self.arrival.set()
 
     def start(self, container: Concurrency) -> None:
-        """Start the children that have not been started."""
+        """Start the children that are not started yet."""
         fresh = {name: child for name, child in container.children.items() if name not in self.tasks}
         for name in fresh:
             written = self._before.branches.get(name, {})
@@ -193,14 +195,14 @@ class _Branches:
         return child.perform(self._scopes[name], self._execution)
 
     def are_others(self, container: Concurrency) -> bool:
-        """Tell whether a hot change has given the container other branches."""
+        """Return whether a hot change has changed the set of branches."""
         return self.tasks.keys() != container.children.keys()
 
     async def follow(self, container: Concurrency) -> None:
-        """Preempt the branches that are gone, whose writes are merged, and start those that are new."""
-        gone = [name for name in self.tasks if name not in container.children]
-        await self.end(gone)
-        for name in gone:
+        """Preempt the removed branches, whose writes are already merged, and start the added ones."""
+        removed = [name for name in self.tasks if name not in container.children]
+        await self.end(removed)
+        for name in removed:
             self._execution.branch_holds.has_cleaned_up(f"{self._path}/{name}")
             task = self.tasks.pop(name)
             raise_failure((task,))
@@ -210,10 +212,10 @@ class _Branches:
         self.start(container)
 
     def finished(self, container: Concurrency) -> Mapping[str, NodeExit]:
-        """Return how those have ended that have, in the order in which they did.
+        """Return the exits of the finished branches, in the order in which they finished.
 
         Raises:
-            NotStopped: one that was preempted was abandoned.
+            NotStopped: a preempted branch was abandoned.
         """
         self._preemptions.raise_failure()
         arrived = [name for name in self._arrived if name in self.tasks]
@@ -225,16 +227,16 @@ class _Branches:
 
     def _left(self, name: str) -> NodeExit:
         task = self.tasks[name]
-        # One that was to clean up when the engine died may have ended otherwise, but was preempted all the same.
+        # A branch that was cleaning up when the engine died may end differently now, but counts as preempted.
         if name in self._preempted and (task.cancelled() or task.exception() is None):
             return PREEMPTED
         return _as_outcome(task.result())
 
     def preempt_by(self, conditions: Iterable[ConcurrencyCondition]) -> None:
-        """Preempt, in order, what conditions name that hold for the first time."""
-        so = finished_with(self._finished)
+        """Preempt, in order, the branches of conditions that hold for the first time."""
+        matches = finished_with(self._finished)
         for condition in conditions:
-            if condition.said not in self._fired and condition.holds(so):
+            if condition.said not in self._fired and condition.holds(matches):
                 self._fired.add(condition.said)
                 self._record(condition)
         for name, task in self.tasks.items():
@@ -248,11 +250,11 @@ class _Branches:
         self._execution.recorder.emit(BranchesPreempted, path=self._path, condition=condition.said, branches=names)
 
     async def end(self, names: Collection[str]) -> None:
-        """Preempt those of some branches that have not ended, and return when they have.
+        """Preempt the given branches that have not ended, and return when they have.
 
         Raises:
-            NotStopped: some were abandoned.
-            CancelledError: the caller was cancelled meanwhile; they have ended all the same.
+            NotStopped: a branch was abandoned.
+            CancelledError: the caller was cancelled meanwhile; the branches have ended nevertheless.
         """
         tasks = [self.tasks[name] for name in names]
         try:
@@ -262,11 +264,11 @@ class _Branches:
             await self._preemptions.finish(tasks)
 
     def merge(self, name: str) -> None:
-        """Write what a branch has written where the keys live around it."""
+        """Write the values of a branch to the enclosing scopes that own the keys."""
         merge_scope(self._scopes[name], self._inner, self._execution)
 
     def merge_all(self) -> None:
-        """Do so for all, in order of their beginnings."""
+        """Merge all branches, in order of their starts."""
         for name in self._scopes:
             self.merge(name)
 
@@ -276,30 +278,30 @@ class _Branches:
 
 
 def finished_with(finished: Mapping[str, NodeExit]) -> Callable[[str, str], bool]:
-    """Return what a condition asks: whether a child has finished with an outcome."""
+    """Return the predicate for conditions: whether a child has finished with an outcome."""
     return lambda name, due: name in finished and finished[name].outcome == due
 
 
 async def _ended_before(path: str, failure: Cause | None) -> NodeExit:
-    """End as a branch did that was preempted before the engine died."""
+    """End like a branch that was preempted before the engine died."""
     if failure is not None:
         raise StateError(failure.message, where=path)
     raise asyncio.CancelledError
 
 
 def _as_outcome(left: NodeExit) -> NodeExit:
-    """Give a child that was left by timeout or on_error the outcome named there."""
+    """Convert the target of a child diverted by timeout or on_error to its outcome."""
     return left if left.target is None else NodeExit(left.target, None, left.cause, left.reason)
 
 
 def branch_scope(
     path: str, name: str, outer: Scope, written: Mapping[str, object], *, shared: frozenset[str] = frozenset()
 ) -> Scope:
-    """Return the scope of one branch, in which its writes stay until the branches are merged, but for shared keys."""
+    """Return the scope of one branch, which keeps its writes until the branches are merged, except shared keys."""
     return Scope(f"{path}/{name}*", written, outer, isolated=True, shared=shared)
 
 
 def merge_scope(branch: Scope, into: Scope, execution: Execution) -> None:
-    """Write what a branch has written where the keys live around it."""
+    """Write the values of a branch to the enclosing scopes that own the keys."""
     for key, value in branch.own_values().items():
         execution.write(branch.path.removesuffix("*"), into, key, value)

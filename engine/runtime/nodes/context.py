@@ -1,4 +1,4 @@
-"""What a running state sees of its run: time, skills, topics, log, random numbers."""
+"""Context of a running state: time, skills, topics, log, random numbers."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ S = TypeVar("S", bound=msgspec.Struct)
 
 
 class HoldableClock:
-    """The run's clock as a state sees it: it stands still while the state's branch is held."""
+    """The clock of a run for one state: its sleeps are paused while the branch of the state is held."""
 
     def __init__(self, execution: Execution, path: str) -> None:
         self._execution = execution
@@ -43,24 +43,24 @@ class HoldableClock:
 
     @property
     def virtual(self) -> bool:
-        """True when time passes only as fast as the work that needs it."""
+        """True when time advances only with the work that consumes it."""
         return self._execution.clock.virtual
 
     def now_s(self) -> float:
-        """Seconds since the run's clock started."""
+        """Seconds since the start of the clock."""
         self._execution.progress_count += 1
         return self._execution.clock.now_s()
 
     def sleep(self, duration_s: float) -> Coroutine[Any, Any, None]:
-        """Let `duration_s` pass."""
+        """Wait for `duration_s`."""
         if duration_s == 0:
             return OneTurn()
-        # Handed on, not awaited: each coroutine around a wait is gone through whenever the state is woken.
+        # Returned, not awaited: every wake-up traverses each coroutine around a wait.
         return self._execution.sleep(self._path, duration_s)
 
 
 class HoldableGoal:
-    """A goal that the run holds and resumes along with its branch."""
+    """A goal that the run holds and resumes with its branch."""
 
     def __init__(self, goal: Goal, goal_id: str, path: str, recorder: Recorder) -> None:
         self._goal = goal
@@ -75,7 +75,7 @@ class HoldableGoal:
             self._recorder.emit(GoalHeld, path=self.path, goal=self.label)
 
     async def resume(self) -> None:
-        """Let it go on."""
+        """Resume the goal."""
         await self._goal.resume()
         if not self._goal.finished:
             self._recorder.emit(GoalResumed, path=self.path, goal=self.label)
@@ -84,7 +84,7 @@ class HoldableGoal:
 class ActivationContext(msgspec.Struct, eq=False):
     """The `engine.state.Context` of one activation of one state.
 
-    One is made for every state that is entered, which a struct does three times faster than a class.
+    One is created for every entered state; a struct is three times faster to create than a class.
     """
 
     _execution: Execution
@@ -97,14 +97,14 @@ class ActivationContext(msgspec.Struct, eq=False):
 
     @property
     def clock(self) -> Clock:
-        """The run's time."""
+        """The clock of the run."""
         clock = self._clock
         if clock is None:
             clock = self._clock = HoldableClock(self._execution, self.path)
         return clock
 
     async def call(self, request: Service[R], *, to: str) -> R:
-        """Ask a service after the journal is durable, as it may have an effect."""
+        """Call a service once the journal is durable, as the call may have an effect."""
         execution = self._execution
         await execution.branch_holds.until_free(self.path)
         self._calls += 1
@@ -122,7 +122,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         return answer
 
     async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
-        """Send a goal and wait for its end; when preempted, cancel it and wait for rest."""
+        """Send a goal and wait for its end; on preemption, cancel it and wait until the device is at rest."""
         execution = self._execution
         self._count_progress()
         await execution.branch_holds.until_free(self.path)
@@ -161,17 +161,17 @@ class ActivationContext(msgspec.Struct, eq=False):
         return self._received(topic, await self._execution.skills.next_message(topic, kind, holder=self._holder))
 
     async def offer(self, outcome: str) -> None:
-        """Ask the operator for an outcome where the run's autonomy does not let it pass; cancelling withdraws."""
+        """Ask the operator to confirm an outcome where the autonomy level requires it; cancelling withdraws."""
         self._count_progress()
         required = self._autonomy.get(outcome, "off")
         await self._execution.gate.offer(self.path, self._visit, outcome, required)
 
     def log(self, message: str, *, level: str = "info") -> None:
-        """Write a line into the event log."""
+        """Write a message into the event log."""
         self._execution.recorder.log(self.path, message, level=level)
 
     def random(self) -> float:
-        """A number in [0, 1) from the run's seed."""
+        """Return a number in [0, 1) from the random generator of the run."""
         self._execution.progress_count += 1
         return self._execution.random.random()
 
@@ -185,7 +185,7 @@ class ActivationContext(msgspec.Struct, eq=False):
         return observed.answer
 
     def _count_progress(self) -> None:
-        """Count that the state waits for somebody else, whose answer may be a new one each time."""
+        """Count a wait for an external answer, which may change each time."""
         self._execution.waits.add(self.path)
         self._execution.progress_count += 1
 
@@ -238,11 +238,11 @@ class ActivationContext(msgspec.Struct, eq=False):
 
 
 async def _cancelled(handle: Goal) -> GoalEnd[Any]:
-    """Cancel a goal and wait until its server confirms, however often we are cancelled meanwhile."""
+    """Cancel a goal and wait until its server confirms, also when this task is cancelled meanwhile."""
     handle.cancel()
     while True:
         try:
             return await handle.result()
         except asyncio.CancelledError:
             if handle.finished:
-                return GoalEnd(GoalStatus.CANCELED, None, Cause(message="the action server went away"))
+                return GoalEnd(GoalStatus.CANCELED, None, Cause(message="the action server is no longer available"))

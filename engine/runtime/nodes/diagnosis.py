@@ -1,7 +1,7 @@
 """Records how the children of a container ended, to explain the outcome of the container.
 
-An outcome may be nominal to whoever has it and a failure further out: `not_found`, led to `failed`. Events hold no
-cause for it, as nothing has gone wrong yet; once somebody calls it a failure, the chain goes down to it all the same.
+An outcome may be nominal for its node and a failure of an outer container: `not_found`, led to `failed`. Events hold no
+cause for it, as nothing has failed yet; once an outer container fails, its cause chain still reaches this outcome.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from engine.runtime.record.node_exit import ContainerOutcome, NodeExit
 
 
 class Diagnosis:
-    """The children of one visit of a container as they end, one after the other.
+    """Collects the exits of the children during one visit of a container.
 
     Args:
-        cause: What had gone wrong last before, where a run is gone on with.
-        reason: What had decided its course last.
+        cause: The last failure before, in a resumed run.
+        reason: The last reason of its course before.
     """
 
     def __init__(self, cause: Cause | None = None, reason: Cause | None = None) -> None:
@@ -29,13 +29,13 @@ class Diagnosis:
 
     @property
     def reason(self) -> Cause | None:
-        """The last child that went wrong or had a choice; without any, the one that ended last."""
+        """The exit of the last child that failed or had a choice; without any, of the child that ended last."""
         return explain_exit(*self._reason) if isinstance(self._reason, tuple) else self._reason
 
     def take(self, child: Node, left: NodeExit) -> None:
-        """Note how a child has ended."""
+        """Take the exit of a child."""
         if left.outcome in child.expected and left.cause is None and left.target is None:
-            # Nearly all that end do so.
+            # Fast path: nearly all exits.
             if not self._is_decided:
                 self._reason = (child, left)
         elif is_failure(child, left):
@@ -47,21 +47,21 @@ class Diagnosis:
             self._reason = (child, left)
 
     def outcome(self, name: str, nominal: Collection[str]) -> ContainerOutcome:
-        """Return how the container ends."""
+        """Return the outcome of the container."""
         return ContainerOutcome(name, cause=None if name in nominal else self.cause, reason=self.reason)
 
 
 def explain_exit(child: Node, left: NodeExit) -> Cause:
-    """Return why a container failed through this child."""
-    said = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
-    return wrap_cause(said, left.cause or left.reason, where=child.path)
+    """Return the cause of a container outcome that follows from this exit of a child."""
+    message = f"{child.name} ended with {left.outcome}" if left.outcome else f"{child.name} was left for {left.target}"
+    return wrap_cause(message, left.cause or left.reason, where=child.path)
 
 
 def is_failure(child: Node, left: NodeExit) -> bool:
-    """Tell whether a child has failed: it has a cause, or an outcome that does not mean success to it."""
+    """Return whether a child has failed: its exit has a cause or a non-nominal outcome."""
     return left.cause is not None or bool(left.outcome and left.outcome not in child.work.nominal)
 
 
 def _has_chosen(child: Node, left: NodeExit) -> bool:
-    """Tell whether a child could have ended well and led elsewhere; a guard always could."""
+    """Return whether another nominal exit of the child leads to a different target; always true for a guard."""
     return left.target is not None or child.has_choice

@@ -1,4 +1,4 @@
-"""Contains the errors of code of others inside a run: each says whose it was and where."""
+"""Contains errors of user code inside a run: each error states its origin and position."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from engine.errors import FlexcellError, StateError
 
 @contextmanager
 def contain_errors(what: str, *, where: str) -> Generator[None]:
-    """Raise StateError, naming `what` and `where`, in place of anything that is raised inside, SystemExit too.
+    """Convert any exception raised inside, SystemExit included, to a StateError that names `what` and `where`.
 
-    Errors of flexcell and what ends a task or a generator pass as they are.
+    Errors of flexcell, CancelledError and GeneratorExit pass unchanged.
     """
     try:
         yield

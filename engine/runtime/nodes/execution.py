@@ -1,4 +1,4 @@
-"""What the nodes of one run share: time, bus, recorder, gate, random numbers, counters."""
+"""Shared services of the nodes of one run: time, bus, recorder, gate, random numbers, counters."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ N = TypeVar("N")
 
 
 class BranchContainer(Protocol):
-    """A container with branches, at a hot change."""
+    """A container with branches, as a hot change accesses it."""
 
     def merge(self, name: str) -> None:
-        """Write what a branch has written where the keys live around it."""
+        """Write the values of a branch to the enclosing scopes that own the keys."""
         ...
 
     def wake(self) -> None:
-        """Look at `Execution.replaced` again."""
+        """Apply changes in `Execution.replaced`."""
         ...
 
 
 @dataclass(kw_only=True)
 class Execution:
-    """One execution of one behavior, as its nodes see it; owned by the run, used on the loop thread."""
+    """One execution of one behavior; shared by its nodes, owned by the run, used on the loop thread."""
 
     run: str
     bus: SkillBus
@@ -56,51 +56,51 @@ class Execution:
     branch_holds: BranchHolds
     gate: Gate
     loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
-    """The one that it runs on."""
+    """The event loop of the run."""
     activity: ActiveNodes = field(default_factory=ActiveNodes)
     instant_limit: int = 10_000
-    """Transitions in a row in which nothing is waited for, before a loop is reported."""
+    """Consecutive transitions without a wait before an endless loop is reported."""
     polling_limit: int = 20_000
-    """Transitions of a loop in virtual time in which nothing happens but waiting, before it is reported."""
+    """Consecutive transitions of a loop in virtual time that only wait, before a livelock is reported."""
     progress_count: int = 0
-    """How often something was written or asked for that a state's next step may depend on."""
+    """Number of writes and requests that the next step of a state may depend on."""
     abandon_after_s: float = 30.0
-    """How long a node may take to confirm that it stopped before the run goes on without it."""
+    """Maximum time until a preempted node confirms its stop, before the run abandons it."""
     waits: WaitCounter = field(default_factory=WaitCounter)
     settlement: Settlement = field(default_factory=Settlement)
     pending_calls: PendingCalls = field(default_factory=PendingCalls)
     observed: ObservedAnswers = field(default_factory=ObservedAnswers)
     visits: dict[str, int] = field(default_factory=dict[str, int])
     points: dict[str, NodeCheckpoint] = field(default_factory=dict[str, NodeCheckpoint])
-    """Where nodes stood that are gone on with; each is taken once."""
+    """Checkpoints of the nodes that are resumed; each is taken once."""
     world: Callable[[], Awaitable[bytes | None]] | None = None
-    """Gives the state of the simulated world, to be kept with every commit."""
+    """Returns the state of the simulated world, stored with every commit."""
     is_resumed: bool = False
-    """Whether the points are those of this very run, whose events tell how they were reached."""
+    """Whether the checkpoints belong to this run, whose events already describe how they were reached."""
 
     steps: float = 0.0
-    """Steps of expressions, and of what is done for them, since everybody else on the loop last had a turn.
+    """Expression steps, and work done for expressions, since other tasks on the loop last had a turn.
 
     Above `MAX_STEPS` they `yield_turn`.
     """
     replaced: dict[str, object] = field(default_factory=dict[str, object])
-    """Nodes and containers by path, as a hot change has defined them anew; containers under `path/`."""
+    """Nodes and containers replaced by a hot change, by path; containers under `path/`."""
     branching: dict[str, BranchContainer] = field(default_factory=dict[str, "BranchContainer"])
-    """The active containers whose branches a hot change may add and remove, by their paths."""
+    """The active containers whose branches a hot change may add and remove, by path."""
     abandoned: dict[str, asyncio.Task[Any]] = field(default_factory=dict[str, "asyncio.Task[Any]"])
-    """Tasks that did not end when told to; nobody waits for them any more."""
+    """Tasks that did not end when preempted; no task waits for them."""
 
     @property
     def needs_slow_path(self) -> bool:
-        """Whether there is more to a node than running it: somebody operates, it goes on, or others are due a turn."""
+        """Whether a node needs more than its run: the gate is armed, it is resumed or replaced, or a turn is due."""
         return bool(self.gate.armed or self.points or self.replaced or self.steps > MAX_STEPS)
 
     def counted(self) -> _Counted:
-        """Count the steps of what is done inside, which never waits."""
+        """Return a context manager that counts the steps of the code inside, which must not wait."""
         return _Counted(self)
 
     async def yield_turn(self) -> None:
-        """Let everybody else on the loop have a turn, the journal's writer too; due by count, so that runs repeat.
+        """Give other tasks on the loop a turn, and the journal writer; due by step count, so that runs repeat.
 
         Raises:
             JournalError: the journal can no longer be written.
@@ -110,13 +110,13 @@ class Execution:
         await self.recorder.apply_backpressure()
 
     def abandon(self, task: asyncio.Task[Any] | None, path: str, waited_s: float) -> None:
-        """Give up a task that does not end; what it leased stays leased."""
+        """Abandon a task that does not end; its leases are kept."""
         self.recorder.emit(NodeAbandoned, path=path, waited_s=waited_s)
         if task is not None:
             self.abandoned[path] = task
 
     async def commit(self) -> None:
-        """Make everything so far durable, the simulated world included; due before any effect.
+        """Make all recorded events durable, with the state of the simulated world; required before any effect.
 
         Raises:
             JournalError: it cannot be written; the run must stop.
@@ -128,21 +128,21 @@ class Execution:
         await self.recorder.commit()
 
     def point(self, path: str) -> NodeCheckpoint | None:
-        """Take the point at which the node is to be gone on with, if any."""
+        """Take the checkpoint from which the node is resumed, if any."""
         return self.points.pop(path, None) if self.points else None
 
     def latest(self, path: str, node: N) -> N:
-        """Return the present definition of a node: another one after a hot change."""
+        """Return the current definition of a node, which a hot change may have replaced."""
         if not self.replaced:
             return node
-        found = self.replaced.get(path)
-        return found if isinstance(found, type(node)) else node
+        replacement = self.replaced.get(path)
+        return replacement if isinstance(replacement, type(node)) else node
 
     def write(self, path: str, scope: Scope, key: str, value: object, *, post: str = "") -> None:
-        """Write where the key lives as seen from `scope`, and record that.
+        """Write to the scope that owns the key, as seen from `scope`, and record the write.
 
         Raises:
-            UserdataError: the value could not be kept as it is.
+            UserdataError: the value cannot be stored without change.
         """
         plain = plain_value(value, key=key, where=path)
         with self.counted():
@@ -150,13 +150,13 @@ class Execution:
         self.record_write(path, owner, key, plain, post=post)
 
     def append(self, path: str, scope: Scope, key: str, value: object) -> int:
-        """Append a value, which must be nobody else's, to a list as seen from `scope`, and record that.
+        """Append a value, which no one else may hold, to a list as seen from `scope`, and record the write.
 
         Returns:
-            How many values the list has now.
+            The new length of the list.
 
         Raises:
-            UserdataError: the value could not be kept as it is, or `key` is no list.
+            UserdataError: the value cannot be stored without change, or `key` is not a list.
         """
         plain = plain_value(value, key=key, where=path)
         with self.counted():
@@ -174,13 +174,13 @@ class Execution:
         self.recorder.emit(UserdataWritten, path=path, scope=scope, key=key, value=value, post=post)
 
     async def sleep(self, path: str, duration_s: float) -> None:
-        """Let `duration_s` pass in which the branch of `path` is not held.
+        """Wait for `duration_s`, excluding the time in which the branch of `path` is held.
 
         Raises:
-            StateError: it is no time that could pass.
+            StateError: the duration is too long or not a number.
         """
         if not duration_s <= LONGEST_S:
-            raise StateError(f"this would wait for {duration_s:g} s", where=path, hint=f"{LONGEST_S:g} s are the most")
+            raise StateError(f"cannot wait for {duration_s:g} s", where=path, hint=f"wait at most {LONGEST_S:g} s")
         if duration_s <= 0:
             await OneTurn()
             return
@@ -193,7 +193,7 @@ class Execution:
 
 
 class _Counted:
-    """What is done inside counts; a class, since a generator costs three times as much and every read comes here."""
+    """Counts the steps inside; a class, as a generator costs three times as much and every read uses it."""
 
     __slots__ = ("_before", "_execution")
 

@@ -1,4 +1,4 @@
-"""The foreach container: its child once for each item of a list, or a number of times."""
+"""The foreach container: runs its child once for each item of a list, or a number of times."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ EXHAUSTED, BROKEN = FOREACH_OUTCOMES
 
 @dataclass(frozen=True, kw_only=True)
 class ForEach:
-    """Rounds over what `items` evaluates to: a list, or with `counted` a number of rounds."""
+    """Rounds over the value of `items`: a list, or with `counted` a number of rounds."""
 
     child: Node
     items: Template
@@ -50,26 +50,26 @@ class ForEach:
 
     @property
     def children(self) -> Mapping[str, Node]:
-        """The child that is run in each round."""
+        """The child that runs in each round."""
         return {"child": self.child}
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """All done, or not."""
+        """`exhausted` after all rounds, else `broken`."""
         return FOREACH_OUTCOMES
 
     @cached_property
     def nominal(self) -> frozenset[str]:
-        """Coming to the end is what it is for."""
+        """`exhausted`."""
         return frozenset((EXHAUSTED,))
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Nothing: each round has a scope of its own."""
+        """Return nothing: each round has its own scope."""
         return {}
 
     @property
     def constant(self) -> None:
-        """That depends on userdata."""
+        """None: the entry depends on userdata."""
         return None
 
     def enter(self, scope: Scope) -> NodeEntry:
@@ -79,32 +79,32 @@ class ForEach:
             times = whole_number(value)
             if times is None:
                 raise StateError(
-                    f"`times` gave {value!r}", where=self.position, hint="it must be a whole number, 0 or more"
+                    f"`times` evaluates to {value!r}", where=self.position, hint="it must be a whole number, 0 or more"
                 )
-            self._require_few(times, MAX_TIMES)
+            self._limit_rounds(times, MAX_TIMES)
             shown: dict[str, object] = {_TIMES: times}
         elif isinstance(value, list | tuple):
             items = list(cast("list[object]", value))
-            self._require_few(len(items), MAX_ITEMS)
+            self._limit_rounds(len(items), MAX_ITEMS)
             shown = {_ITEMS: items}
         else:
             kind = type(value).__name__
-            raise StateError(f"`items` gave a {kind}", where=self.position, hint="it must be a list")
+            raise StateError(f"`items` evaluates to a {kind}", where=self.position, hint="it must be a list")
         return NodeEntry(None, shown, shown)
 
-    def _require_few(self, rounds: int, most: int) -> None:
-        if rounds > most:
-            message = f"{rounds:,} rounds, and at most {most:,} are allowed"
-            raise StateError(message, where=self.position, hint="nest two, or lead a machine back to its begin")
+    def _limit_rounds(self, rounds: int, limit: int) -> None:
+        if rounds > limit:
+            message = f"{rounds:,} rounds exceed the limit of {limit:,}"
+            raise StateError(message, where=self.position, hint="nest two foreach containers, or loop in a machine")
 
     @staticmethod
     def items_of(inputs: Mapping[str, object]) -> Sequence[object]:
-        """Return the item of each round of a loop that was entered with these inputs."""
+        """Return the item of each round of a container that was entered with these inputs."""
         times = inputs.get(_TIMES)
         return range(times) if isinstance(times, int) else cast("list[object]", inputs.get(_ITEMS, []))
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Run the child in round after round, each in a scope of its own."""
+        """Run the child in consecutive rounds, each in its own scope."""
         point = entry.point
         items = self.items_of(entry.inputs)
         first = point.round if point is not None else 0
@@ -129,11 +129,11 @@ class ForEach:
                 return Outcome(BROKEN, cause=explain_exit(loop.child, left))
             if number % _FAIRNESS == 0:
                 await execution.yield_turn()
-        nothing = Cause(message="there was nothing to go through", where=path)
-        return ContainerOutcome(EXHAUSTED, reason=diagnosis.reason if len(items) else nothing)
+        no_items = Cause(message="there was no item to iterate over", where=path)
+        return ContainerOutcome(EXHAUSTED, reason=diagnosis.reason if len(items) else no_items)
 
     def round_values(self, number: int, item: object) -> dict[str, object]:
-        """Return the values that the scope of a round begins with."""
+        """Return the initial values of the scope of a round."""
         own = {**self.userdata, self.item: item}
         return own if self.index is None else {**own, self.index: number}
 
@@ -143,4 +143,4 @@ class ForEach:
                 value = inner.read(key, reader=self.position)
             if execution.append(path, scope, target, value) > MAX_COLLECTED:
                 message = f"`collect` has more than {MAX_COLLECTED:,} values for {target!r}"
-                raise UserdataError(message, where=self.position, hint="keep what is needed in a state")
+                raise UserdataError(message, where=self.position, hint="collect fewer values, or write them in a state")

@@ -1,4 +1,4 @@
-"""A state as a node's work: evaluates parameters, reads inputs, leases, runs, checks, writes outputs."""
+"""Work of a state node: evaluates parameters, reads inputs, leases, runs, checks, writes outputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from engine.suggestions import did_you_mean
 
 @dataclass(frozen=True, kw_only=True)
 class Leaf:
-    """One state of a behavior: its class, its parameters as a template, and how its keys are mapped."""
+    """One state of a behavior: its class, its parameters as a template, and its key mapping."""
 
     state: type[State]
     signature: StateSignature
@@ -39,26 +39,26 @@ class Leaf:
     position: str
     autonomy: Mapping[str, str] = field(default_factory=dict[str, str])
     kind: str = "state"
-    """The key of this node in documents, or that it stands in for another."""
+    """The key of this node in documents, or `substitute`."""
 
     @property
     def children(self) -> Mapping[str, Node]:
-        """None."""
+        """Empty: a state has no children."""
         return {}
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """Those its class declares."""
+        """The outcomes that its class declares."""
         return self.state.outcomes
 
     @cached_property
     def nominal(self) -> frozenset[str]:
-        """The outcomes its class calls success; all of them where it does not say."""
+        """The success outcomes of its class; all outcomes where it declares none."""
         return frozenset(self.state.success or self.state.outcomes)
 
     @property
     def constant(self) -> NodeEntry | None:
-        """What it is entered with where neither parameters nor inputs depend on userdata."""
+        """Its entry, where neither parameters nor inputs depend on userdata; else None."""
         return self._constant
 
     @cached_property
@@ -69,21 +69,21 @@ class Leaf:
             given = self.parameters.evaluate({})
             return NodeEntry(self._instance(given), {}, _plain(given))
         except Exception:
-            # `enter` raises it again, where it is told and handled.
+            # `enter` raises it again, where it is recorded and handled.
             return None
 
     @cached_property
     def commands_hardware(self) -> bool:
-        """Whether its class leases anything while it runs."""
+        """Whether its class leases resources while it runs."""
         return self.signature.commands_hardware
 
     @cached_property
     def reads(self) -> frozenset[str]:
-        """The userdata keys, as its container names them, that its parameters and inputs are made of."""
+        """The userdata keys of its container that its parameters and inputs read."""
         return frozenset(self.parameters.names).union(self.inputs.get(key, key) for key in self.signature.inputs)
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Nothing: it has no scope of its own."""
+        """Return nothing: it has no scope of its own."""
         return {}
 
     def enter(self, scope: Scope) -> NodeEntry:
@@ -112,7 +112,7 @@ class Leaf:
         except (FlexcellError, asyncio.CancelledError, GeneratorExit):
             raise
         except BaseException as error:
-            # A custom state may raise anything, SystemExit too; what travels on names the state and its place.
+            # A custom state may raise any exception, SystemExit too; the StateError names the state and its position.
             raise StateError(
                 f"{self.signature.name} raised {type(error).__name__}: {error}", where=self.position
             ) from error
@@ -130,13 +130,13 @@ class Leaf:
         )
 
     def cannot_undo(self, done: LeafActivation) -> str:
-        """Return why an activation cannot be undone; empty where it can, as far as is known beforehand."""
+        """Return why an activation cannot be undone; empty where no obstacle is known in advance."""
         state = self._past_state(done)
         with contain_errors(f"{self.signature.name}.cannot_undo", where=self.position):
             return state.cannot_undo(self._record(done))
 
     async def undo(self, done: LeafActivation, visit: int, execution: Execution) -> None:
-        """Undo what an activation has done, by the `undo` of its class; raises where that fails."""
+        """Undo an activation with the `undo` of its class; raises where that fails."""
         state = self._past_state(done)
         holder = Holder(execution.run, done.path)
         resources = self._resources(state) if self.commands_hardware else ()
@@ -165,7 +165,7 @@ class Leaf:
         return self.state.on_pause is not State.on_pause or self.state.on_resume is not State.on_resume
 
     def _instance(self, given: object) -> State:
-        with contain_errors(f"making {self.signature.name}", where=self.position):
+        with contain_errors(f"constructing {self.signature.name}", where=self.position):
             try:
                 return msgspec.convert(given, self.state)
             except msgspec.ValidationError as error:
@@ -198,16 +198,16 @@ class Leaf:
             execution.write(path, scope, target, value)
 
     def _undeclared_outcome(self, outcome: object) -> StateError:
-        said = f"outcome {outcome.name!r}" if isinstance(outcome, Outcome) else f"a {type(outcome).__name__}"
+        result = f"outcome {outcome.name!r}" if isinstance(outcome, Outcome) else f"a {type(outcome).__name__}"
         return StateError(
-            f"{self.signature.name} ended with {said}, which it does not declare",
+            f"{self.signature.name} ended with {result}, which it does not declare",
             where=self.position,
             hint=f"its outcomes are {', '.join(self.state.outcomes)}",
         )
 
 
 class PausableState:
-    """A running state that has something to do itself when its branch is held."""
+    """A running state with its own hooks for pause and resume of its branch."""
 
     def __init__(self, state: State, context: ActivationContext) -> None:
         self._state = state
@@ -217,14 +217,14 @@ class PausableState:
 
     async def hold(self) -> None:
         """Call its `on_pause`."""
-        await self._told(self._state.on_pause)
+        await self._call_hook(self._state.on_pause)
 
     async def resume(self) -> None:
         """Call its `on_resume`."""
-        await self._told(self._state.on_resume)
+        await self._call_hook(self._state.on_resume)
 
-    async def _told(self, hook: Callable[[Context], Awaitable[None]]) -> None:
-        # The pause of the others goes on, whatever this one raises.
+    async def _call_hook(self, hook: Callable[[Context], Awaitable[None]]) -> None:
+        # The pause of other branches continues, whatever this hook raises.
         with contain_errors(hook.__qualname__, where=self.path):
             await hook(self._context)
 

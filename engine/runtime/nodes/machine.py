@@ -23,7 +23,7 @@ from engine.suggestions import did_you_mean
 
 @dataclass(frozen=True, kw_only=True)
 class Machine:
-    """Children by name in document order, of which `initial` runs first."""
+    """Children by name in document order; `initial` runs first."""
 
     initial: str
     children: Mapping[str, Node]
@@ -33,7 +33,7 @@ class Machine:
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """Targets that are no children."""
+        """The transition targets that are not children."""
         leading = [target for child in self.children.values() for target in child.targets]
         return tuple(dict.fromkeys(target for target in leading if target not in self.children))
 
@@ -54,16 +54,16 @@ class Machine:
         return frozenset(reached - set(self.children))
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """The values its scope begins with."""
+        """Return the initial values of its scope."""
         return self.userdata
 
     @property
     def constant(self) -> NodeEntry:
-        """Nothing."""
+        """The empty entry."""
         return EMPTY_ENTRY
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Nothing is evaluated: the children evaluate theirs."""
+        """Return the empty entry: the children evaluate their own inputs."""
         return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
@@ -74,15 +74,15 @@ class Machine:
         diagnosis = Diagnosis(point.cause, point.reason) if point is not None else Diagnosis()
         if name not in self.children:
             return diagnosis.outcome(name, self.nominal)
-        laps = BusyLoopCounter(path, execution.waits, execution.clock)
-        standstill = LivelockDetector(path, execution) if execution.clock.virtual else None
+        busy_steps = BusyLoopCounter(path, execution.waits, execution.clock)
+        livelock = LivelockDetector(path, execution) if execution.clock.virtual else None
         machine = self
         recorder = execution.recorder
         while True:
             child = machine.children[name]
             left = await child.perform(inner, execution)
             if execution.replaced:
-                # After a hot change the transitions are those of the new version.
+                # After a hot change the transitions of the new version apply.
                 machine = execution.latest(f"{path}/", machine)
                 child = machine.children[name]
             if left.back:
@@ -91,7 +91,7 @@ class Machine:
             diagnosis.take(child, left)
             target = child.transitions.get(left.outcome) if left.target is None else left.target
             if target is None:
-                raise machine._leads_nowhere(child, left)
+                raise machine._no_transition(child, left)
             if recorder.heard:
                 seq, time_s = recorder.stamp()
                 recorder.record(
@@ -101,25 +101,25 @@ class Machine:
                 recorder.count()
             if target not in machine.children:
                 return diagnosis.outcome(target, machine.nominal)
-            if laps.step(most=execution.instant_limit):
+            if busy_steps.step(most=execution.instant_limit):
                 await asyncio.sleep(0)
-                if laps.count >= execution.instant_limit:
-                    said = f"{laps.count} transitions in a row without waiting for anything"
-                    raise machine._endless(path, target, said, "let one of these states wait for something")
-            if standstill is not None and (passed_s := standstill.step()) is not None:
-                said = f"nothing happened in {passed_s:g} s but that this loop waited, and nothing can end it"
-                raise machine._endless(path, target, said, "wait for what is to happen, with a timeout")
+                if busy_steps.count >= execution.instant_limit:
+                    problem = f"{busy_steps.count} transitions in a row without waiting for anything"
+                    raise machine._endless(path, target, problem, "let one of these states wait for something")
+            if livelock is not None and (passed_s := livelock.step()) is not None:
+                problem = f"this loop has only waited for {passed_s:g} s, and nothing can end it"
+                raise machine._endless(path, target, problem, "wait for the expected event, with a timeout")
             name = target
 
-    def _leads_nowhere(self, child: Node, left: NodeExit) -> StateError:
+    def _no_transition(self, child: Node, left: NodeExit) -> StateError:
         return StateError(
-            f"outcome {left.outcome!r} leads nowhere",
+            f"outcome {left.outcome!r} has no transition",
             where=child.position or child.path,
             hint=f"add it to `transitions`; {did_you_mean(left.outcome, child.transitions)}",
         )
 
-    def _endless(self, path: str, name: str, said: str, hint: str) -> StateError:
-        """Name the loop by following the transitions that can be followed again."""
+    def _endless(self, path: str, name: str, problem: str, hint: str) -> StateError:
+        """Return the error of an endless loop, naming the states along its transitions."""
         loop = [name]
         while True:
             targets = [t for t in self.children[loop[-1]].transitions.values() if t in self.children]
@@ -127,7 +127,7 @@ class Machine:
                 break
             loop.append(targets[0])
         return StateError(
-            f"{said}, through {' → '.join(loop)}",
+            f"{problem}, through {' → '.join(loop)}",
             where=path,
             hint=f"{hint}, or leave the loop",
         )

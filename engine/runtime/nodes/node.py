@@ -1,6 +1,6 @@
-"""A node of an executable behavior: enters its work, applies timeout, retry and on_error, exits.
+"""A node of a plan: enters its work, applies timeout, retry and on_error, exits.
 
-The same wrapper surrounds a single state and a whole container; what differs is its `NodeWork`.
+The same class wraps states and containers; only the `NodeWork` differs.
 """
 
 from __future__ import annotations
@@ -28,19 +28,19 @@ from engine.runtime.userdata.userdata import Scope
 from engine.state import Outcome
 
 _FAIRNESS = 256
-"""Repetitions in a row without a wait after which everybody else has a turn."""
+"""Consecutive retries without a wait after which other tasks have a turn."""
 _MOST_DOUBLED = 60
 
 
 class NodeAttempt(NamedTuple):
-    """An attempt that has been entered: which activation of its node it is, and its work."""
+    """An entered attempt: the visit of its node, and its work."""
 
     visit: int
     work: Awaitable[Outcome]
 
 
 class NodeWork(Protocol):
-    """What a node does between entering and leaving."""
+    """Work of a node between entry and exit."""
 
     @property
     def kind(self) -> str:
@@ -54,35 +54,35 @@ class NodeWork(Protocol):
 
     @cached_property
     def nominal(self) -> frozenset[str]:
-        """The outcomes that mean that nothing went wrong inside; asked at every transition."""
+        """The outcomes that mean success; read at every transition."""
         ...
 
     @cached_property
     def outcomes(self) -> tuple[str, ...]:
-        """All outcomes it can have."""
+        """All possible outcomes."""
         ...
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Return the values that its own scope begins with when it is entered with `inputs`."""
+        """Return the initial values of its own scope when it is entered with `inputs`."""
         ...
 
     @property
     def constant(self) -> NodeEntry | None:
-        """What it is entered with whatever the values of its scope; None where that depends on them."""
+        """The entry, where it does not depend on userdata; else None."""
         ...
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Evaluate what it is entered with; raises FlexcellError when that cannot be had."""
+        """Evaluate the entry; raises FlexcellError where that fails."""
         ...
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Do it."""
+        """Execute the work."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class Node:
-    """One node with its wiring inside the enclosing container."""
+    """One node with its connections inside the enclosing container."""
 
     path: str
     name: str
@@ -98,7 +98,7 @@ class Node:
 
     @cached_property
     def targets(self) -> tuple[str, ...]:
-        """Where it can lead inside a machine."""
+        """Its possible targets inside a machine."""
         own = [*self.transitions.values()]
         own += [self.guard.target] if self.guard is not None else []
         own += [self.timeout.target] if self.timeout is not None else []
@@ -107,12 +107,12 @@ class Node:
 
     @cached_property
     def has_choice(self) -> bool:
-        """Whether its good ends lead to different targets inside a machine."""
+        """Whether its nominal outcomes lead to different targets inside a machine."""
         return len({self.transitions[each] for each in self.work.nominal if each in self.transitions}) > 1
 
     @cached_property
     def expected(self) -> frozenset[str]:
-        """The ends that explain nothing: good ones, where it had no choice of them."""
+        """The outcomes that explain nothing: nominal ones, where the node has no choice."""
         return frozenset() if self.has_choice else self.work.nominal
 
     @cached_property
@@ -128,20 +128,20 @@ class Node:
         return self._plain and not self.work.children
 
     @cached_property
-    def _lefts(self) -> Mapping[str, NodeExit]:
-        """How a plain state is left by each of its outcomes where nothing went wrong."""
+    def _plain_exits(self) -> Mapping[str, NodeExit]:
+        """The exit of a plain state for each of its outcomes without a cause."""
         return {outcome: NodeExit(outcome) for outcome in self.work.outcomes}
 
     async def perform(self, scope: Scope, execution: Execution) -> NodeExit:
-        """Run the node to its end, whatever that is, past the gate before and after it.
+        """Run the node to its exit, passing the gate before and after it.
 
         Raises:
             FlexcellError: the work raised, retries are used up and `on_error` is not set.
-            CancelledError: the node was preempted; its clean-up is done.
+            CancelledError: the node was preempted; its clean-up is complete.
         """
         if not self._is_plain_state or execution.needs_slow_path:
             return await self._perform(scope, execution, None)
-        # Nearly all activations of nearly all behaviors are these, and nothing happens to most of them.
+        # Fast path: nearly all activations are plain states without an operator, resume or error.
         path, work = self.path, self.work
         entry, refused = self._constant, None
         if entry is None:
@@ -157,12 +157,12 @@ class Node:
             if not (execution.gate.armed or being_cancelled(execution.loop)):
                 cause = outcome.cause
                 record_exit(execution, path, visit, outcome.name, cause=cause)
-                return self._lefts[outcome.name] if cause is None else exit_from_outcome(outcome)
+                return self._plain_exits[outcome.name] if cause is None else exit_from_outcome(outcome)
             ended = _ended(outcome)
         return await self._perform(scope, execution, NodeAttempt(visit, ended))
 
     async def _perform(self, scope: Scope, execution: Execution, begun: NodeAttempt | None) -> NodeExit:
-        """Perform a node of any kind in any circumstances; its first attempt may have ended already."""
+        """Perform any node under all conditions; its first attempt may have ended already."""
         gate = execution.gate
         point = execution.point(self.path) if execution.points else None
         order: OperatorOrder | None = None
@@ -187,11 +187,11 @@ class Node:
                     else:
                         left = await node._guarded(scope, execution, point)
             except asyncio.CancelledError:
-                order = self._ordered(execution)
+                order = self._take_order(execution)
                 if order is None:
                     raise
             except FlexcellError:
-                self._ordered(execution)
+                self._take_order(execution)
                 raise
             passed, point = point is not None and point.passed, None
             if left is not None and gate.armed and not passed:
@@ -202,7 +202,7 @@ class Node:
                 return self._forced(order.outcome, execution)
 
     async def _resume_exited(self, point: NodeCheckpoint, scope: Scope, execution: Execution) -> NodeExit:
-        """Do with how it had ended what there was no time for any more: retry, on_error."""
+        """Apply retry and on_error to a recorded exit, which the crash prevented."""
         if not execution.is_resumed:
             record_diverted(execution, self.path, "start", point.left or point.diverted or "", point.cause)
         elif point.diverted is None and not point.passed and not self._plain:
@@ -211,7 +211,7 @@ class Node:
 
     def _recorded_exit(self, point: NodeCheckpoint) -> NodeExit:
         if point.failed:
-            # It had ended with this error, and nobody had handled it when the engine died.
+            # It had ended with this error, which was not handled when the engine died.
             raise StateError(point.cause.message if point.cause is not None else "failed", where=self.path)
         return NodeExit(point.left or "", point.diverted, point.cause, point.reason)
 
@@ -220,8 +220,8 @@ class Node:
         required = execution.latest(self.path, self).autonomy.get(left.outcome, "off")
         return await execution.gate.after(self.path, visit, left.outcome, required, scope)
 
-    def _ordered(self, execution: Execution) -> OperatorOrder | None:
-        """Return what the operator ordered if that, and nothing else, is why this node was preempted."""
+    def _take_order(self, execution: Execution) -> OperatorOrder | None:
+        """Return the operator's order if it is the only reason for the preemption of this node."""
         gate = execution.gate
         if not gate.has_order(self.path):
             return None
@@ -248,7 +248,7 @@ class Node:
         except (JournalError, NotStopped):
             raise
         except FlexcellError as error:
-            # A stop beats on_error, also when the clean-up fails.
+            # A stop overrides on_error, also when the clean-up fails.
             if self.on_error is None or being_cancelled(execution.loop):
                 raise
             cause = cause_of(error)
@@ -256,25 +256,26 @@ class Node:
             return NodeExit("", self.on_error, cause)
 
     def is_open(self, guard: GuardPolicy, scope: Scope, execution: Execution) -> bool:
-        """Evaluate a guard of this node; raises FlexcellError where it gives no truth value."""
+        """Evaluate a guard of this node; raises FlexcellError where the value is not a boolean."""
         where = self.position or self.path
         with execution.counted():
             value = guard.when.evaluate({name: scope.read(name, reader=where) for name in guard.when.names})
         if not isinstance(value, bool):
-            raise ExpressionError(f"the guard gave {value!r}, which is not a boolean", where=where, hint="compare it")
+            message = f"the guard evaluates to {value!r}, which is not a boolean"
+            raise ExpressionError(message, where=where, hint="use a comparison")
         return value
 
     async def _timed(
         self, timeout: TimeoutPolicy, scope: Scope, execution: Execution, point: NodeCheckpoint | None
     ) -> NodeExit:
-        # A task of its own: a stop and a timeout may come together, and clean-up must be cut by neither.
+        # A separate task: a stop and a timeout may coincide, and neither may interrupt the clean-up.
         elapsed_s = point.elapsed_s if point is not None else 0.0
         timer = execution.branch_holds.timer(self.path, max(0.0, timeout.after_s - elapsed_s))
         body = execution.activity.branch(self.path, self._retried(scope, execution, point), body=True)
         try:
             await asyncio.wait({body, timer.future}, return_when=asyncio.FIRST_COMPLETED)
             if not body.done():
-                # What ends at this very instant is in time; everything inside decides before we do.
+                # A node that ends at this instant is in time; everything inside decides first.
                 await execution.settlement.settled(self.path, around=True)
         except asyncio.CancelledError:
             await self._preempt(body, execution)
@@ -289,7 +290,7 @@ class Node:
         return NodeExit("", timeout.target, cause)
 
     async def _preempt(self, body: asyncio.Task[NodeExit], execution: Execution) -> None:
-        """Preempt what has a timeout; raises the error of its clean-up, and CancelledError if cancelled itself."""
+        """Preempt the body of a node with timeout; raises its clean-up error, and CancelledError if cancelled."""
         try:
             await preempt((body,), overdue_policy(execution, self.path))
         finally:
@@ -300,7 +301,7 @@ class Node:
         retry = self.retry
         attempt = point.attempt if point is not None else 1
         while True:
-            again: Cause | None
+            failure: Cause | None
             try:
                 if point is not None and not point.active:
                     left = self._recorded_exit(point)
@@ -308,17 +309,17 @@ class Node:
                     left = await self._attempt(scope, execution, point)
                 if retry is None or left.outcome not in retry.outcomes or attempt > retry.times:
                     return left
-                again = wrap_cause(f"outcome {left.outcome}", left.cause, where=self.path)
+                failure = wrap_cause(f"outcome {left.outcome}", left.cause, where=self.path)
             except (JournalError, NotStopped):
                 raise
             except FlexcellError as error:
                 if retry is None or not retry.errors or attempt > retry.times or being_cancelled(execution.loop):
                     raise
-                again = cause_of(error)
+                failure = cause_of(error)
             point = None
             attempt += 1
             wait_s = min(retry.backoff_s * 2.0 ** min(attempt - 2, _MOST_DOUBLED), LONGEST_S)
-            execution.recorder.emit(NodeRetried, path=self.path, attempt=attempt, wait_s=wait_s, cause=again)
+            execution.recorder.emit(NodeRetried, path=self.path, attempt=attempt, wait_s=wait_s, cause=failure)
             if wait_s > 0:
                 await execution.sleep(self.path, wait_s)
             elif attempt % _FAIRNESS == 0:
@@ -357,7 +358,7 @@ class Node:
             record_exit(execution, self.path, visit, "", cause=cause_of(error))
             raise error from stray
         except Exception as raised:
-            error = self._named(raised)
+            error = self._flexcell_error(raised)
             error.nodes = (*error.nodes, f"{path} at {self.position}" if self.position else path)
             record_exit(
                 execution, self.path, visit, "", preempted=being_cancelled(execution.loop), cause=cause_of(error)
@@ -366,27 +367,27 @@ class Node:
                 execution.recorder.log(path, f"clean-up failed: {describe_cause(cause_of(error))}", level="error")
             raise error from error.__cause__
         if being_cancelled(execution.loop):
-            # It took no notice, or was just done; whoever stops it must not find its successor running.
+            # It ignored the preemption, or ended at the same time; its successor must not start.
             record_exit(execution, self.path, visit, outcome.name, preempted=True, cause=outcome.cause)
             raise asyncio.CancelledError
         record_exit(execution, self.path, visit, outcome.name, cause=outcome.cause)
         return exit_from_outcome(outcome)
 
     def _entered(self, scope: Scope, execution: Execution) -> tuple[NodeEntry, FlexcellError | None]:
-        """Evaluate the entry; a failure counts as a failure of the node that was entered."""
+        """Evaluate the entry; an error counts as a failure of the entered node."""
         try:
             with execution.counted():
                 return self.work.enter(scope), None
         except Exception as error:
-            return EMPTY_ENTRY, self._named(error)
+            return EMPTY_ENTRY, self._flexcell_error(error)
 
-    def _named(self, error: Exception) -> FlexcellError:
-        """Return an error that retries and `on_error` take; one of Python's own gets a name and a place."""
+    def _flexcell_error(self, error: Exception) -> FlexcellError:
+        """Return an error that retries and `on_error` handle; other exceptions are wrapped with type and position."""
         if isinstance(error, FlexcellError):
             return error
-        named = StateError(f"{type(error).__name__}: {error}", where=self.position or self.path)
-        named.__cause__ = error
-        return named
+        wrapped = StateError(f"{type(error).__name__}: {error}", where=self.position or self.path)
+        wrapped.__cause__ = error
+        return wrapped
 
 
 async def _ended(outcome: Outcome) -> Outcome:
@@ -398,18 +399,18 @@ async def _raised(error: BaseException) -> Outcome:
 
 
 def overdue_policy(execution: Execution, path: str) -> OverduePolicy:
-    """Return what names, in the event log, nodes inside `path` that are slow to clean up, and gives them up."""
+    """Return the policy that logs nodes inside `path` with overdue clean-up, and finally abandons them."""
 
-    def tell(late: str, waited_s: float) -> None:
+    def report(late: str, waited_s: float) -> None:
         execution.recorder.log(late, f"asked to stop {waited_s:g} s ago and still cleaning up", level="warning")
 
     def abandon(task: asyncio.Task[Any], waited_s: float) -> None:
         execution.abandon(task, task.get_name(), waited_s)
 
-    # The innermost gives up first, or every level around it would be given up with it.
+    # The innermost level abandons first, or every level around it would be abandoned with it.
     grace_s = 0.1 * max(0, 20 - path.count("/"))
     return OverduePolicy(
-        tell=tell,
+        tell=report,
         abandon=abandon,
         abandon_after_s=execution.abandon_after_s + grace_s,
         stands_still=execution.branch_holds.held,

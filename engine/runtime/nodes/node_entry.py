@@ -1,4 +1,4 @@
-"""What a node is entered with."""
+"""Entry data of a node."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from engine.state import State
 
 @dataclass(frozen=True)
 class NodeEntry:
-    """What a node was entered with: the state to run, its input values, and both as plain data.
+    """Entry of a node: the state to run, its input values, and both as plain data.
 
-    `point` says where to go on inside a container that was entered before.
+    `point` is the checkpoint of a container that is resumed.
     """
 
     state: State | None = None

@@ -1,4 +1,4 @@
-"""What the event log of a run hears of a node: entered, left, led elsewhere."""
+"""Records the events of a node: entered, exited, diverted."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from engine.runtime.nodes.execution import Execution
 
 
 def record_entry(execution: Execution, path: str, kind: str, inputs: dict[str, object]) -> int:
-    """Record that a node is entered now, and return which activation of it this is."""
+    """Record the entry of a node, and return its visit number."""
     visit = execution.visits[path] = execution.visits.get(path, 0) + 1
     if (recorder := execution.recorder).heard:
         seq, time_s = recorder.stamp()
@@ -21,7 +21,7 @@ def record_entry(execution: Execution, path: str, kind: str, inputs: dict[str, o
 def record_exit(
     execution: Execution, path: str, visit: int, outcome: str, *, preempted: bool = False, cause: Cause | None = None
 ) -> None:
-    """Record that it was left."""
+    """Record the exit of a node."""
     execution.activity.nodes.pop(path, None)
     if (recorder := execution.recorder).heard:
         seq, time_s = recorder.stamp()
@@ -33,6 +33,6 @@ def record_exit(
 
 
 def record_diverted(execution: Execution, path: str, by: str, target: str, cause: Cause | None) -> None:
-    """Record that it led elsewhere than its outcome says."""
+    """Record that a node was diverted from the transition of its outcome."""
     visit = execution.visits.get(path, 0)
     execution.recorder.emit(NodeDiverted, path=path, visit=visit, by=by, target=target, cause=cause)

@@ -17,7 +17,7 @@ class TimeoutPolicy:
 
 @dataclass(frozen=True, kw_only=True)
 class RetryPolicy:
-    """Run the node up to `times` more, waiting `backoff_s` doubled each time, on these outcomes or errors."""
+    """Retry the node up to `times` times on these outcomes or errors; the wait `backoff_s` doubles each time."""
 
     times: int
     backoff_s: float = 0.0
@@ -27,7 +27,7 @@ class RetryPolicy:
 
 @dataclass(frozen=True, kw_only=True)
 class GuardPolicy:
-    """Enter the node only when `when` is true, else leave it for `target`."""
+    """Enter the node only when `when` is true, else divert to `target`."""
 
     when: Template
     target: str

@@ -1,7 +1,7 @@
-"""Evaluates how a state would end now, without side effects: no event, no userdata, no wait, no command.
+"""Evaluates the outcome that a state would have now, without side effects: no event, userdata, wait or command.
 
-A behavior tree does so with the checks in front of a running action. What an observation has heard from services is
-kept for the state itself, which asks the same when the tree is ticked because of it: so both have one answer.
+A behavior tree observes the checks in front of a running action. Service answers of an observation are stored for the
+state itself, which sends the same requests in the tick that follows: both use one answer.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ S = TypeVar("S", bound=msgspec.Struct)
 
 
 class Observation(msgspec.Struct, frozen=True):
-    """How a leaf would end, what its state was answered, and the topics that it read.
+    """Exit that a leaf would have, the service answers to its state, and the topics it read.
 
-    `left` is None where only running it can tell, for instance because of what it would raise.
+    `left` is None where only a run determines it, for instance because the state raises.
     """
 
     left: NodeExit | None = None
@@ -41,10 +41,10 @@ class Observation(msgspec.Struct, frozen=True):
 
 
 async def observe(node: Node, scope: Scope, execution: Execution) -> Observation:
-    """Return how a leaf would end now.
+    """Return the exit that a leaf would have now.
 
-    It can be told of a state that reads userdata, topics and the time, and of one that asks services where its class
-    says that it `observes`. Run it in a task of its own.
+    This is possible for a state that reads userdata, topics and the time, and for one that calls services where its
+    class declares `observes`. Run it in a separate task.
     """
     node = execution.latest(node.path, node)
     work = node.work
@@ -56,7 +56,7 @@ async def observe(node: Node, scope: Scope, execution: Execution) -> Observation
         with execution.counted():
             entry = work.enter(scope)
     except Exception:
-        # Whatever it is, running it meets the same, where a decorator or `on_error` may take it.
+        # A run raises the same error, where a decorator or `on_error` may handle it.
         return Observation()
     if entry.state is None:
         return Observation()
@@ -70,21 +70,21 @@ async def observe(node: Node, scope: Scope, execution: Execution) -> Observation
         if being_cancelled(execution.loop):
             raise
     except BaseException:
-        # As above: also what is no Exception is an error of the node once it is run.
+        # As above: a BaseException is also an error of the node once it runs.
         pass
     left = NodeExit(outcome.name) if isinstance(outcome, Outcome) and outcome.name in work.outcomes else None
     return Observation(left, tuple(context.answers), frozenset(context.topics))
 
 
 class ObservingContext:
-    """The `engine.state.Context` of a state that is only to say how it would end.
+    """The `engine.state.Context` of a state under observation.
 
-    What would take time, command, or show to others is refused: as when it is preempted, CancelledError is raised.
+    Waits, commands and visible effects are refused: like a preemption, they raise CancelledError.
 
     Args:
         execution: The run.
-        path: The leaf.
-        asks: Whether it may ask services.
+        path: The path of the leaf.
+        asks: Whether it may call services.
     """
 
     def __init__(self, execution: Execution, path: str, *, asks: bool) -> None:
@@ -96,11 +96,11 @@ class ObservingContext:
 
     @property
     def clock(self) -> Clock:
-        """The run's time, in which nothing is waited for."""
+        """The clock of the run, without sleep."""
         return _ReadOnlyClock(self._execution.clock)
 
     async def call(self, request: Service[R], *, to: str) -> R:
-        """Ask a service, where the class says that this has no effect."""
+        """Call a service, where the class declares that this has no effect."""
         if not self._asks:
             raise asyncio.CancelledError
         try:
@@ -112,7 +112,7 @@ class ObservingContext:
         return answer
 
     async def perform(self, goal: Action[R, F], *, to: str) -> ActionEnd[R]:
-        """Command nothing."""
+        """Refuse: an observation sends no goals."""
         raise asyncio.CancelledError
 
     async def latest(self, topic: str, kind: type[S]) -> S:
@@ -121,18 +121,18 @@ class ObservingContext:
         return await self._execution.skills.latest(topic, kind, holder=self._holder)
 
     async def next_message(self, topic: str, kind: type[S]) -> S:
-        """Wait for nothing."""
+        """Refuse: an observation does not wait."""
         raise asyncio.CancelledError
 
     async def offer(self, outcome: str) -> None:
-        """Ask nobody."""
+        """Refuse: an observation requests no confirmation."""
         raise asyncio.CancelledError
 
     def log(self, message: str, *, level: str = "info") -> None:
-        """Say nothing."""
+        """Drop the message."""
 
     def random(self) -> float:
-        """Take no number from the run's: the next state would be given another one."""
+        """Refuse: a drawn number would change the numbers of later states."""
         raise asyncio.CancelledError
 
     @property

@@ -17,7 +17,7 @@ from engine.state import Outcome
 
 @dataclass(frozen=True, kw_only=True)
 class Priority:
-    """Runs `machine`; branches that are not on its path stand still meanwhile, as in a pause."""
+    """Runs `machine`; all other branches are held meanwhile, as in a pause."""
 
     machine: Machine
 
@@ -42,22 +42,22 @@ class Priority:
         return self.machine.nominal
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """The values its scope begins with."""
+        """Return the initial values of its scope."""
         return self.machine.userdata
 
     @property
     def constant(self) -> NodeEntry:
-        """Nothing."""
+        """The empty entry."""
         return EMPTY_ENTRY
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Nothing is evaluated: the children evaluate theirs."""
+        """Return the empty entry: the children evaluate their own inputs."""
         return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Hold the others, run the machine, let them go on; a nested one holds more.
+        """Hold the other branches, run the machine, release them; a nested priority holds more branches.
 
-        Of several that are entered at one instant the first holds the others, which hold theirs when it has ended.
+        Of several priorities entered at one instant, the first holds the others; they run after it has ended.
         """
         reason = f"priority of {path}"
         await execution.branch_holds.until_free(path)

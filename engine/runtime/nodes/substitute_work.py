@@ -1,4 +1,4 @@
-"""Substitutes for nodes in tests: they wait and end as a substitutes document specifies, and command nothing."""
+"""Substitutes for nodes in tests: they wait and end as a substitutes document specifies, without commands."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ from engine.state import Outcome, State
 from engine.suggestions import did_you_mean
 
 SUBSTITUTE = "substitute"
-"""The kind of a node that is stood in for, in events and wherever they are shown."""
+"""The kind of a substituted node in events and displays."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SubstituteWork:
-    """Ends for `original` as one of `endings` says: each activation takes the next, and the last one stays."""
+    """Replaces `original`: each activation ends with the next of `endings`; the last one repeats."""
 
     original: NodeWork
     endings: tuple[SubstituteEnding, ...]
     position: str
-    """Where it is written."""
+    """Its position in the substitutes document."""
 
     @property
     def kind(self) -> str:
-        """That it is a substitute."""
+        """The kind `substitute`."""
         return SUBSTITUTE
 
     @property
     def children(self) -> Mapping[str, Node]:
-        """None: what is inside the original is not entered."""
+        """Empty: the children of the original are not entered."""
         return {}
 
     @cached_property
@@ -55,16 +55,16 @@ class SubstituteWork:
         return self.original.nominal
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Nothing: it has no scope of its own."""
+        """Return nothing: it has no scope of its own."""
         return {}
 
     @property
     def constant(self) -> NodeEntry:
-        """Nothing."""
+        """The empty entry."""
         return EMPTY_ENTRY
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Nothing is evaluated: what the original would be given may not even be there in a test."""
+        """Return the empty entry: the inputs of the original may be missing in a test."""
         return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
@@ -73,7 +73,7 @@ class SubstituteWork:
         if ending.after_s > 0.0:
             await execution.clock.sleep(ending.after_s)
         if ending.error is not None:
-            raise StateError(ending.error, where=path, hint=f"a substitute says so, {self.position}")
+            raise StateError(ending.error, where=path, hint=f"raised by the substitute at {self.position}")
         for name, value in ending.outputs.items():
             execution.write(path, scope, self.outputs.get(name, name), value)
         outcome = ending.outcome or ""
@@ -83,19 +83,19 @@ class SubstituteWork:
 
     @cached_property
     def outputs(self) -> Mapping[str, str]:
-        """The userdata keys that outputs of the original are written to, where they are called otherwise."""
+        """The userdata keys that outputs of the original are mapped to."""
         return self.original.outputs if isinstance(self.original, Leaf | BehaviorReference) else {}
 
     @cached_property
     def written(self) -> frozenset[str] | None:
-        """The names that outputs may have; None where any may be written."""
+        """The permitted output names; None where any name is permitted."""
         if isinstance(self.original, Leaf):
             return frozenset(self.original.signature.outputs)
         return frozenset(self.original.outputs) if isinstance(self.original, BehaviorReference) else None
 
 
 def substitute_for(path: str, work: NodeWork, substitutes: Substitutes, catalogue: Catalogue) -> NodeWork:
-    """Return what stands in for the work of a node, or that work where nothing does.
+    """Return the substitute for the work of a node, or the work itself where there is none.
 
     Raises:
         DocumentError: the substitute does not fit the node; `where` is its position.
@@ -107,7 +107,7 @@ def substitute_for(path: str, work: NodeWork, substitutes: Substitutes, catalogu
     if entry.state is not None:
         find = partial(find_state, catalogue, given=substitutes.classes)
         return _other_state(path, work, entry, where=substitutes.position(index, "state"), find=find)
-    made = SubstituteWork(original=work, endings=entry.endings, position=str(substitutes.position(index)))
+    substitute = SubstituteWork(original=work, endings=entry.endings, position=str(substitutes.position(index)))
     for number, ending in enumerate(entry.endings):
         keys = ("script", number) if entry.script else ()
         if ending.outcome is not None and ending.outcome not in work.outcomes:
@@ -115,26 +115,26 @@ def substitute_for(path: str, work: NodeWork, substitutes: Substitutes, catalogu
             hint = did_you_mean(ending.outcome, work.outcomes)
             raise DocumentError(f"`{path}` has no outcome `{ending.outcome}`", where=where, hint=hint)
         for output in ending.outputs:
-            if made.written is not None and output not in made.written:
+            if substitute.written is not None and output not in substitute.written:
                 where = substitutes.position(index, *keys, "outputs", output)
-                hint = did_you_mean(output, made.written)
+                hint = did_you_mean(output, substitute.written)
                 raise DocumentError(f"`{path}` has no output `{output}`", where=where, hint=hint)
-    return made
+    return substitute
 
 
 def require_used(substitutes: Substitutes, paths: Collection[str]) -> None:
-    """Refuse an entry that stands in for none of the nodes.
+    """Refuse an entry that matches none of the nodes.
 
     Raises:
-        DocumentError: one does.
+        DocumentError: an entry matches no node.
     """
     used = {substitutes.index_for(path) for path in paths}
     for index, entry in enumerate(substitutes.document.substitutes):
         if index not in used:
             raise DocumentError(
-                f"`{entry.at}` stands in for no node of this behavior",
+                f"`{entry.at}` matches no node of this behavior",
                 where=substitutes.position(index, "at"),
-                hint=f"another entry may stand in for it, or for one around it; {did_you_mean(entry.at, paths)}",
+                hint=f"another entry may replace it or a container around it; {did_you_mean(entry.at, paths)}",
             )
 
 
@@ -143,7 +143,7 @@ def _other_state(
 ) -> Leaf:
     if not isinstance(work, Leaf):
         hint = "give an `outcome` or a `script`"
-        raise DocumentError(f"`{path}` is a {work.kind}, for which no state can stand in", where=where, hint=hint)
+        raise DocumentError(f"`{path}` is a {work.kind}, which a state cannot replace", where=where, hint=hint)
     try:
         state = find(entry.state or "")
         given = work.parameters if entry.parameters is None else compile_template(entry.parameters)
@@ -151,7 +151,7 @@ def _other_state(
         raise DocumentError(error.message, where=where, hint=error.hint) from error
     others = [outcome for outcome in state.outcomes if outcome not in work.outcomes]
     if others:
-        message = f"`{entry.state}` has an outcome `{others[0]}` that leads nowhere here"
+        message = f"`{entry.state}` has an outcome `{others[0]}` without a transition here"
         raise DocumentError(message, where=where, hint=f"`{path}` has {', '.join(work.outcomes)}")
     signature = read_signature(state)
     return replace(work, state=state, signature=signature, parameters=given, position=str(where), kind=SUBSTITUTE)

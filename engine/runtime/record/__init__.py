@@ -1,1 +1,1 @@
-"""What a run leaves behind while it proceeds: recorder, marks, checkpoints of nodes, requests to the outside."""
+"""Records of a run: recorder, tree events, node checkpoints, undo log, and the port to the skill bus."""

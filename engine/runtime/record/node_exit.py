@@ -1,4 +1,4 @@
-"""How a node is left: with an outcome or for a target, with what went wrong, or what led to it."""
+"""Exit of a node: its outcome or diversion target, and the cause or reason."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from engine.state import Outcome
 
 
 class NodeExit(msgspec.Struct, frozen=True):
-    """How a node was left: with an outcome, or straight to a target (timeout, guard, on_error).
+    """Exit of a node: with an outcome, or directly to a target (timeout, guard, on_error).
 
-    `reason` is how it came to that where nothing went wrong; events do not hold it. With `back` it was given up for a
-    step back to the sibling `target`; `cause` and `reason` are what the container knew then.
+    `reason` explains the exit where nothing failed; events do not hold it. With `back` it was preempted for a step back
+    to the sibling `target`; `cause` and `reason` are then those of the container at that point.
     """
 
     outcome: str
@@ -23,22 +23,22 @@ class NodeExit(msgspec.Struct, frozen=True):
 
 
 PREEMPTED = NodeExit("")
-"""How a branch has ended that a condition of its container has preempted."""
+"""Exit of a branch that a condition of its container has preempted."""
 
 
 class ContainerOutcome(Outcome, frozen=True):
-    """The outcome of a container; `reason` is how it came to it, for an outcome that has no cause."""
+    """The outcome of a container; `reason` explains an outcome that has no cause."""
 
     reason: Cause | None = None
 
 
 def exit_from_outcome(outcome: Outcome) -> NodeExit:
-    """Return how a node is left whose work has ended so."""
+    """Return the exit of a node whose work ended with this outcome."""
     if isinstance(outcome, ContainerOutcome):
         return NodeExit(outcome.name, None, outcome.cause, outcome.reason)
     return NodeExit(outcome.name, None, outcome.cause)
 
 
 def guard_closed_cause(path: str) -> Cause:
-    """Return why a node was not entered."""
+    """Return the cause for a node whose closed guard prevented its entry."""
     return Cause(message="the guard is closed", where=path, kind="Guard")

@@ -1,6 +1,6 @@
-"""Numbers that JSON does not have, in what events keep of requests, answers and messages.
+"""Encodes NaN and infinities, which JSON does not support, in recorded requests, results and messages.
 
-A sensor may well say that the next obstacle is infinitely far, and a replay must be told the same.
+A sensor may report an infinite distance to the next obstacle, and a replay must receive the same value.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ _MARK = "~number"
 
 
 def encode_nonfinite(value: Any) -> Any:
-    """Return plain data with each NaN and infinity as `{"~number": "nan"}`; the data itself where there is none."""
+    """Return plain data with each NaN and infinity as `{"~number": "nan"}`; the same object where there is none."""
     match value:
         case float():
             return value if math.isfinite(value) else {_MARK: str(value)}
@@ -24,7 +24,7 @@ def encode_nonfinite(value: Any) -> Any:
             listed = cast("list[Any]", value)
             kinds = set(map(type, listed))
             if kinds.isdisjoint((dict, list)) and (float not in kinds or _all_finite(listed)):
-                # Long lists are of numbers or text, and are looked at on the event loop.
+                # Long lists hold numbers or text; this runs on the event loop, so it must be fast.
                 return listed
             changed = [encode_nonfinite(each) for each in listed]
             return changed if any(new is not old for new, old in zip(changed, listed, strict=True)) else listed
@@ -37,7 +37,7 @@ def _all_finite(plain: list[Any]) -> bool:
 
 
 def decode_nonfinite(value: object) -> object:
-    """Return what `encode_nonfinite` was given."""
+    """Return the data that `encode_nonfinite` encoded."""
     match value:
         case {"~number": str(text)} if len(cast("dict[object, object]", value)) == 1:
             return float(text)

@@ -1,4 +1,4 @@
-"""Records the events of one run: numbers them, journals them, hands them to those who watch."""
+"""Records the events of one run: numbers them, journals them, and passes them to watchers."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _log = logging.getLogger("flexcell.run")
 
 
 class Recorder:
-    """Numbers and hands on the events of one run, on the loop thread.
+    """Numbers, journals and publishes the events of one run, on the loop thread.
 
     Args:
-        clock: The run's time.
-        journal: Where events are kept durably.
-        after_seq: The number of the last event of a run that goes on.
+        clock: The clock of the run.
+        journal: Durable store of the events.
+        after_seq: The number of the last event of a resumed run.
         after_s: The time of that event.
     """
 
@@ -37,19 +37,19 @@ class Recorder:
         self._watchers: tuple[Watcher, ...] = ()
         self._numbers = itertools.count(after_seq + 1)
         self.count: Callable[[], int] = self._numbers.__next__
-        """Number an event that nobody hears: what `emit` does then, without its fields, where a run spends its time."""
+        """Number an event without recipients, like `emit` without its fields; for hot paths."""
         self.heard = self._keeps
-        """Whether anybody keeps or watches events; while nobody does they are only numbered."""
+        """Whether events are stored or watched; otherwise they are only numbered."""
         self.ended = False
-        """True once the end of the run is recorded; what states that were given up still say is not."""
+        """True once the end of the run is recorded; later events of abandoned states are dropped."""
 
     def now_s(self) -> float:
-        """Seconds since the run began, to the microsecond so that equal instants print equally."""
-        # Rounding to a whole number costs half of `round(…, 6)`, and every event comes through here.
+        """Seconds since the start of the run, rounded to microseconds so that equal instants print equally."""
+        # Rounding to a whole number costs half of `round(…, 6)`, and every event calls this.
         return round((self._clock_now_s() - self._start_s) * 1e6) / 1e6
 
     def emit(self, event: Callable[Concatenate[int, float, P], Event], /, *_: P.args, **fields: P.kwargs) -> None:
-        """Make the next event of this class, numbered and timed; while nobody hears it, it is only numbered."""
+        """Record the next event of this class, numbered and timed; without recipients it is only numbered."""
         if self.heard and not self.ended:
             seq, time_s = self.stamp()
             self.record(event(seq, time_s, *_, **fields))
@@ -57,34 +57,34 @@ class Recorder:
             self.count()
 
     def stamp(self) -> tuple[int, float]:
-        """Number and time the next event, which is then made and given to `record`: half of what `emit` costs."""
+        """Number and time the next event, which the caller creates and passes to `record`: half the cost of `emit`."""
         return self.count(), self.now_s()
 
     def record(self, event: Event) -> None:
-        """Keep and tell an event that was made with the last stamp."""
+        """Store and publish an event that was created with the last stamp."""
         if not self.ended:
             self._append(event)
             if self._watchers:
                 self.tell(event)
 
     def log(self, path: str, message: str, *, level: str = "info") -> None:
-        """Write a line about a node into the event log; about the run as a whole where `path` is empty."""
+        """Write a message about a node into the event log; about the run as a whole where `path` is empty."""
         self.emit(MessageLogged, path=path, level=level, message=escape_surrogates(message))
 
     def end(self, status: str, outcome: str | None, cause: Cause | None) -> RunEnded:
-        """Record the last event and return it, for `tell` once it is known whether it could be kept."""
+        """Record the last event and return it, for `tell` once it is known whether it could be stored."""
         event = RunEnded(*self.stamp(), status=status, outcome=outcome, cause=cause)
         self._journal.append(event)
         self.ended = True
         return event
 
     def tell(self, event: Event) -> None:
-        """Hand an event to all who watch."""
+        """Pass an event to all watchers."""
         for watcher in self._watchers:
             try:
                 watcher(event)
             except Exception:
-                # A viewer may fail in any way; the run it watches must go on.
+                # A watcher may raise any exception; the run must continue.
                 _log.exception("a watcher of the run failed and was removed")
                 self.unwatch(watcher)
 
@@ -94,16 +94,16 @@ class Recorder:
         self.heard = True
 
     def unwatch(self, watcher: Watcher) -> None:
-        """Stop calling it."""
+        """Stop calling `watcher`."""
         self._watchers = tuple(w for w in self._watchers if w is not watcher)
         self.heard = self._keeps or bool(self._watchers)
 
     def on_lost(self, listener: Callable[[JournalError], None]) -> None:
-        """Call `listener` when what was recorded cannot be made durable and no commit waits to be told."""
+        """Call `listener` when recorded events cannot be made durable and no commit is pending to raise the error."""
         self._journal.on_failure(listener)
 
     async def apply_backpressure(self) -> None:
-        """Let the journal write where it has fallen far behind; due now and then while events come without a wait.
+        """Wait for the journal where it lags far behind; call it regularly while events are recorded without a wait.
 
         Raises:
             JournalError: it cannot be written; the run must stop.
@@ -111,11 +111,11 @@ class Recorder:
         await self._journal.apply_backpressure()
 
     def append_world_state(self, state: bytes) -> None:
-        """Keep the simulated world as it is now with the next commit."""
+        """Store the state of the simulated world with the next commit."""
         self._journal.append_world_state(state)
 
     async def commit(self) -> None:
-        """Make what was recorded durable; due before any effect leaves the engine.
+        """Make the recorded events durable; required before any effect leaves the engine.
 
         Raises:
             JournalError: it cannot be written; the run must stop.

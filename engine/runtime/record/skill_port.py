@@ -1,7 +1,7 @@
-"""How a run reaches the outside: services, goals and topics, on the bus or on what stands in for it.
+"""Port of a run to services, goals and topics: the skill bus, or a substitute for it.
 
-Every request of a state passes here, so a recording can stand in for robots and a fault can be
-injected, without the states or the bus knowing.
+Every request of a state passes this port, so a recording can replace robots and faults can be injected transparently
+to states and bus.
 """
 
 from __future__ import annotations
@@ -33,35 +33,35 @@ class Goal(Protocol):
         ...
 
     def cancel(self) -> None:
-        """Ask for the stop; `result` tells when the device rests."""
+        """Request the cancellation; `result` returns when the device is at rest."""
         ...
 
     async def hold(self) -> None:
-        """Bring the device to rest and keep the goal; raises BusError where that cannot be."""
+        """Bring the device to rest and keep the goal; raises BusError where the skill cannot be held."""
         ...
 
     async def resume(self) -> None:
-        """Let a held goal go on."""
+        """Resume a held goal."""
         ...
 
 
 class EntrySchedule(Protocol):
-    """Of a run that is told again: when each node is entered is known, so nobody has to observe anything for it."""
+    """Recorded node entries of a replayed run; they replace observations."""
 
     def expect(self, path: str, visit: int, wake: Callable[[], None]) -> Callable[[], None]:
-        """Call `wake` when the node at `path` is due to be entered the `visit`-th time; returns what forgets that."""
+        """Call `wake` when visit `visit` of the node at `path` is due; returns a function that cancels this."""
         ...
 
 
 class SkillPort(Protocol):
-    """What a run asks of its surroundings; `holder.branch` is the path of the state that asks."""
+    """Requests of a run to its cell; `holder.branch` is the path of the requesting state."""
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
-        """Ask a service; raises what the bus raises."""
+        """Call a service; raises the errors of the bus."""
         ...
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
-        """Send a goal; raises what the bus raises."""
+        """Send a goal; raises the errors of the bus."""
         ...
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
@@ -73,25 +73,25 @@ class SkillPort(Protocol):
         ...
 
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call back at each new message of a topic that was read; returns what ends it."""
+        """Call back at each new message of a topic that was read; returns a function that ends the subscription."""
         ...
 
     @property
     def entries(self) -> EntrySchedule | None:
-        """Those of the recording that stands in for the cell; None where nothing does."""
+        """The node entries of the recording that replaces the cell; None where the cell is live."""
         ...
 
 
 @runtime_checkable
 class RunAwarePort(Protocol):
-    """A port that also writes into the event log of the run it is given to."""
+    """A port that also writes into the event log of its run."""
 
     def begin(self, recorder: Recorder) -> None:
-        """Take the log; called before the first event."""
+        """Receive the event log; called before the first event."""
         ...
 
     def end(self) -> None:
-        """Write what is left to say; called when all states are left, before the end of the run is recorded."""
+        """Write remaining events; called when all states have exited, before the end of the run is recorded."""
         ...
 
 
@@ -102,11 +102,11 @@ class BusPort:
         self._bus = bus
 
     async def call(self, request: Service[R], *, to: str, holder: Holder) -> R:
-        """Ask a service; raises what the bus raises."""
+        """Call a service; raises the errors of the bus."""
         return await self._bus.call(request, to=to, holder=holder)
 
     def send_goal(self, goal: Action[R, F], *, to: str, holder: Holder, goal_id: str) -> Goal:
-        """Send a goal; raises what the bus raises."""
+        """Send a goal; raises the errors of the bus."""
         return self._bus.send_goal(goal, to=to, holder=holder, goal_id=goal_id)
 
     async def latest(self, topic: str, kind: type[S], *, holder: Holder) -> S:
@@ -120,10 +120,10 @@ class BusPort:
             return await stream.next()
 
     def watch(self, topic: str, callback: Callable[[], None]) -> Callable[[], None]:
-        """Call back at each new message of a topic that was read; returns what ends it."""
+        """Call back at each new message of a topic that was read; returns a function that ends the subscription."""
         return self._bus.find_topic(topic).subscribe(lambda _: callback()).close
 
     @property
     def entries(self) -> EntrySchedule | None:
-        """None: what comes is not known."""
+        """None: entries of a live run are not known in advance."""
         return None

@@ -1,4 +1,4 @@
-"""Events of the nodes of behavior trees, extracted from the events of a run without loading py_trees."""
+"""Events of behavior tree nodes, extracted from the events of a run without importing py_trees."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from engine.event import Event, NodeDiverted, NodeEntered, NodeExited, NodeRetri
 
 
 class TreeEvent(NamedTuple):
-    """One thing that happened to a part: its path, what, and the run's time.
+    """One event of a tree node: its path, what happened, and the time of the run.
 
     `what` is a status, `entered`, `failed`, `outcome NAME`, `target NAME`, `attempt NUMBER` or `assigned WHEN`.
     """
@@ -19,7 +19,7 @@ class TreeEvent(NamedTuple):
 
 
 def tree_event_of(event: Event) -> TreeEvent | None:
-    """Return what an event tells of a part of a tree, None for events that tell nothing."""
+    """Return the tree event of an event; None for events that concern no tree node."""
     match event:
         case StatusChanged():
             return TreeEvent(event.path, event.status, event.time_s)
@@ -30,8 +30,8 @@ def tree_event_of(event: Event) -> TreeEvent | None:
             return TreeEvent(event.path, what, event.time_s)
         case NodeDiverted():
             # An operator names an outcome; timeout, guard and on_error name a status.
-            said = "outcome" if event.by in ("operator", "start") else "target"
-            return TreeEvent(event.path, f"{said} {event.target}", event.time_s)
+            kind = "outcome" if event.by in ("operator", "start") else "target"
+            return TreeEvent(event.path, f"{kind} {event.target}", event.time_s)
         case NodeRetried():
             return TreeEvent(event.path, f"attempt {event.attempt}", event.time_s)
         case UserdataWritten() if event.post:

@@ -1,6 +1,6 @@
 """Undo log of a run: activations, transitions and writes that have not been undone, rebuilt from its events.
 
-A step back goes along it; `engine.runtime.history.step_back` decides how far.
+`engine.runtime.history.step_back` plans step backs from it.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from engine.node_path import is_inside
 from engine.state import ActivationRecord, RequestRecord
 
 _LEAVES = ("state", "substitute")
-"""The kinds of nodes that hold no others, as events name them."""
+"""The kinds of nodes without children, as named in events."""
 
 
 @dataclass(kw_only=True)
 class LeafActivation:
-    """One activation of a state: when it was entered, with what, and what came of it."""
+    """One activation of a state: its entry event, inputs, requests and outputs."""
 
     path: str
     visit: int
@@ -46,16 +46,16 @@ class LeafActivation:
     requests: dict[str, RequestRecord] = field(default_factory=dict[str, RequestRecord])
     """By the name of the goal or call."""
     replaced: bool = False
-    """Whether a hot change has put another class in the place of its own since."""
+    """Whether a hot change has replaced its class since."""
     written: dict[str, object] = field(default_factory=dict[str, object])
-    """What it wrote last, by the key of its container."""
+    """The values it wrote last, by the key of its container."""
 
     def record(self, *, inputs: Iterable[str], outputs: Mapping[str, str]) -> ActivationRecord:
-        """Return it as its class knows it.
+        """Return the activation as its state class expects it.
 
         Args:
             inputs: The input keys of the class.
-            outputs: The keys of the container that its output keys are written to.
+            outputs: The container keys that its output keys are written to.
         """
         own = {target: key for key, target in outputs.items()}
         return ActivationRecord(
@@ -75,7 +75,7 @@ class _Write:
 
 
 class UndoLog:
-    """Fold events into it in order, those that count: `engine.runtime.history.resume.effective_events`."""
+    """Built from the effective events in order: `engine.runtime.history.resume.effective_events`."""
 
     def __init__(self) -> None:
         self.seq = 0
@@ -93,7 +93,7 @@ class UndoLog:
         return self
 
     def take(self, event: Event) -> None:
-        """Take the next event; one that it has taken already counts once."""
+        """Take the next event; an event that was already taken is ignored."""
         if event.seq <= self.seq:
             return
         self.seq = event.seq
@@ -128,28 +128,28 @@ class UndoLog:
                 pass
 
     def since(self, path: str) -> int:
-        """Return the event with which the run came to a node: a transition, or the entry of its container."""
+        """Return the event with which the run reached a node: a transition, or the entry of its container."""
         container = path.rpartition("/")[0]
         before = self._transitions.get(container)
         return before[-1].seq if before else self._entered.get(container, 0)
 
     def done(self, path: str, since: int | None = None) -> tuple[LeafActivation, ...]:
-        """Return the activations of states in a node, or of itself, the newest first.
+        """Return the state activations in a node, or of the node itself, newest first.
 
         Args:
             path: The node.
-            since: The event after which they began; by default that with which the run came to the node.
+            since: The event after which they began; by default the one with which the run reached the node.
         """
         first = self.since(path) if since is None else since
-        found = [each for each in self._done.values() if each.seq > first and is_inside(path, each.path)]
-        return tuple(sorted(found, key=lambda each: -each.seq))
+        activations = [each for each in self._done.values() if each.seq > first and is_inside(path, each.path)]
+        return tuple(sorted(activations, key=lambda each: -each.seq))
 
     def rounds(self, path: str) -> int:
-        """Return how many transitions a container has made since it was entered."""
+        """Return the number of transitions of a container since its entry."""
         return len(self._transitions.get(path, ()))
 
     def previous(self, machine: str) -> tuple[str, int] | None:
-        """Return the child that a machine has left last, and the event by which it had come to it; None at first."""
+        """Return the child that a machine exited last, and the event with which it reached it; None for none."""
         before = self._transitions.get(machine)
         if not before:
             return None
@@ -157,27 +157,27 @@ class UndoLog:
         return before[-1].source, since
 
     def written_by(self, paths: Iterable[str], since: int) -> Iterator[tuple[str, str, str]]:
-        """Go through the keys that nodes inside `paths` have written to scopes outside them after an event.
+        """Yield the keys that nodes inside `paths` have written to scopes outside them after an event.
 
-        Gives the scope, the key, and who has written it since, empty where nobody has.
+        Yields the scope, the key, and the path of a later writer; empty where there is none.
         """
         own = tuple(paths)
         later: dict[tuple[str, str], str] = {}
         for each in self._writes:
             if each.seq <= since or any(_is_scope_of(path, each.scope) for path in own):
                 continue
-            place = (each.scope, each.key)
+            target = (each.scope, each.key)
             if any(is_inside(path, each.path) for path in own):
-                later[place] = ""
-            elif place in later:
-                later[place] = each.path
+                later[target] = ""
+            elif target in later:
+                later[target] = each.path
         for (scope, key), writer in later.items():
             yield scope, key, writer
 
     def _enter(self, event: NodeEntered) -> None:
         if event.kind in _LEAVES:
-            made = LeafActivation(path=event.path, visit=event.visit, seq=event.seq, shown=event.inputs)
-            self._done[event.path, event.visit] = self._last[event.path] = made
+            activation = LeafActivation(path=event.path, visit=event.visit, seq=event.seq, shown=event.inputs)
+            self._done[event.path, event.visit] = self._last[event.path] = activation
         else:
             self._entered[event.path] = event.seq
             self._transitions.pop(event.path, None)
@@ -202,10 +202,10 @@ class UndoLog:
         if event.source != event.path and self._transitions.get(container):
             self._transitions[container].pop()
         since = self.since(event.path)
-        gone = (event.path, event.source)
-        for key in [key for key, each in self._done.items() if each.seq > since and _in_any(gone, each.path)]:
+        undone_paths = (event.path, event.source)
+        for key in [key for key, each in self._done.items() if each.seq > since and _in_any(undone_paths, each.path)]:
             del self._done[key]
-        self._writes = [each for each in self._writes if each.seq <= since or not _in_any(gone, each.path)]
+        self._writes = [each for each in self._writes if each.seq <= since or not _in_any(undone_paths, each.path)]
 
 
 def _in_any(outer: Iterable[str], path: str) -> bool:
@@ -213,5 +213,5 @@ def _in_any(outer: Iterable[str], path: str) -> bool:
 
 
 def _is_scope_of(path: str, scope: str) -> bool:
-    """Tell whether a scope is that of a node, or of something in it: it is gone with the node."""
+    """Return whether a scope belongs to a node or to a node inside it: it ends with the node."""
     return scope == path or scope.startswith((f"{path}/", f"{path}#"))

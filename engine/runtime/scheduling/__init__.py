@@ -1,1 +1,1 @@
-"""When work of a run proceeds: tasks, timers, settlement of an instant, holds. Knows no nodes."""
+"""Scheduling of a run: tasks, timers, settlement of an instant, holds. Independent of nodes."""

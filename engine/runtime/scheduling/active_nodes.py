@@ -1,4 +1,4 @@
-"""What is active in a run right now: nodes with their visits, and the task that carries each branch."""
+"""Active nodes of a run with their visits, and the task that executes each branch."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ T = TypeVar("T")
 
 
 class ActiveNodes:
-    """Belongs to one run, used on the loop thread."""
+    """Active nodes and branch tasks of one run; used on the loop thread."""
 
     def __init__(self) -> None:
         self.nodes: dict[str, int] = {}
-        """Visit of each node that was entered and not yet left, by path."""
+        """Visit of each node that was entered and has not exited, by path."""
         self.branches: dict[str, asyncio.Task[Any]] = {}
-        """The task that carries the node at a path; what carries only what is inside stands under `path/`."""
+        """The task that executes the node at a path; the task of its body alone is under `path/`."""
 
     def branch(self, path: str, work: Coroutine[Any, Any, T], *, body: bool = False) -> asyncio.Task[T]:
-        """Start a task that carries the node at `path`, or with `body` only what is inside it, which begins at once."""
+        """Start a task for the node at `path`, or with `body` for its body alone, which begins at once."""
         key = f"{path}/" if body else path
         task = asyncio.create_task(work, name=path)
         self.branches[key] = task
@@ -33,25 +33,25 @@ class ActiveNodes:
 
     def task_of(self, path: str) -> asyncio.Task[Any] | None:
         """Return the task in which the node at `path` is performed: that of its innermost branch."""
-        found: str | None = None
+        innermost: str | None = None
         for key in self.branches:
             within = path == key or path.startswith(key if key.endswith("/") else f"{key}/")
-            if within and (found is None or len(key) > len(found)):
-                found = key
-        return self.branches[found] if found is not None else None
+            if within and (innermost is None or len(key) > len(innermost)):
+                innermost = key
+        return self.branches[innermost] if innermost is not None else None
 
     def is_preempted(self, path: str) -> bool:
-        """Tell whether the task in which the node at `path` is performed has been asked to end."""
-        # A state with a time-out is performed in one task, and runs in that of what is inside it.
+        """Return whether the task in which the node at `path` is performed is preempted."""
+        # A state with a timeout is performed in one task and runs in the task of its body.
         tasks = (self.branches.get(f"{path}/"), self.task_of(path))
         return any(task is not None and is_preempted(task) for task in tasks)
 
     def branch_of(self, path: str) -> str:
-        """Return the path of that branch, empty for the whole run."""
+        """Return the path of the innermost branch of a node; empty for the whole run."""
         task = self.task_of(path)
         return task.get_name() if task is not None else ""
 
     def leave(self, path: str, task: asyncio.Task[Any]) -> None:
-        """Take note that it does no more, unless another does by now."""
+        """Remove the task of a path, unless another task has replaced it."""
         if self.branches.get(path) is task:
             del self.branches[path]

@@ -1,9 +1,9 @@
 """Runs coroutines eagerly, one after the other, in one reusable task; a coroutine that has to wait keeps the task.
 
-What ends in its first step, as most checks of a behavior tree do, needs no task, but nobody knows beforehand. Its first
-step cannot be moved into a task afterwards either: what it opens there, as `asyncio.timeout` does, belongs to the task
-that ran. So a task carries one piece of work after the other and what is decided in between, and what has to wait keeps
-it.
+A coroutine that ends in its first step, like most checks of a behavior tree, needs no task, but this is not known in
+advance. Its first step cannot be moved into a task afterwards: resources opened there, as by `asyncio.timeout`, belong
+to the task that ran. So one task executes the coroutines and the decisions between them in sequence, and a coroutine
+that has to wait keeps it.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ Piece = tuple[str, Coroutine[Any, Any, T]]
 
 
 class EagerTaskRunner(Generic[T]):
-    """Belongs to one task, which runs pieces of work in between its own steps; end it with `close`.
+    """Runs pieces of work between the steps of the owning task; end it with `close`.
 
     Args:
-        activity: Told which task carries which node.
-        loop: The running one.
-        following: Called on the spot with what a piece has ended with; gives the next one, or None.
+        activity: Registers the task of each node.
+        loop: The running loop.
+        following: Called immediately with the result of a piece; returns the next piece, or None.
     """
 
     def __init__(
@@ -37,31 +37,31 @@ class EagerTaskRunner(Generic[T]):
         self._loop = loop
         self._following = following
         self._task: asyncio.Task[T] | None = None
-        """The one that is free to carry what comes next."""
+        """The free task for the next piece."""
         self._next: asyncio.Future[Piece[T] | None] | None = None
-        """What it waits for in between."""
-        self._on_the_spot = False
+        """The future it awaits between pieces."""
+        self._is_eager = False
         self._error: BaseException | None = None
-        """What was raised between two pieces."""
+        """The exception raised between two pieces."""
 
     def run(self, piece: Piece[T]) -> asyncio.Task[T] | None:
-        """Run a piece, and those that follow, up to where one waits.
+        """Run a piece and the following ones until one waits.
 
         Returns:
-            The task that carries the one that waits, or has raised, from now on; None where nothing follows any more.
+            The task of the piece that waits or has raised; None where no piece follows.
 
         Raises:
-            BaseException: what `following` has raised.
+            BaseException: the exception of `following`.
         """
-        task, self._on_the_spot = self._task, True
+        task, self._is_eager = self._task, True
         if task is None or self._next is None or self._next.done():
-            task = self._task = asyncio.create_task(self._carry(piece), name=piece[0])
+            task = self._task = asyncio.create_task(self._execute(piece), name=piece[0])
         else:
             self._next.set_result(piece)
         try:
             start_eagerly(task)
         finally:
-            self._on_the_spot = False
+            self._is_eager = False
         if self._error is not None:
             raise self._taken_error()
         if self._next is not None and not self._next.done():
@@ -71,13 +71,13 @@ class EagerTaskRunner(Generic[T]):
         return task
 
     def close(self) -> None:
-        """Carry nothing any more; what has taken its task with it goes on."""
+        """Run no further pieces; a piece that kept its task continues."""
         if self._task is not None and self._next is not None and not self._next.done():
             self._next.set_result(None)
             start_eagerly(self._task)
         self._task = self._next = None
 
-    async def _carry(self, piece: Piece[T]) -> T:
+    async def _execute(self, piece: Piece[T]) -> T:
         task = asyncio.current_task(self._loop)
         assert task is not None, "it is one"
         branches = self._activity.branches
@@ -86,14 +86,14 @@ class EagerTaskRunner(Generic[T]):
             task.set_name(path)
             branches[path] = task
             ended = await work
-            # A task that was asked to end carries nothing else.
-            if not self._on_the_spot or task.cancelling() or is_preempted(task):
+            # A preempted task runs no further pieces.
+            if not self._is_eager or task.cancelling() or is_preempted(task):
                 return ended
             del branches[path]
             try:
                 due = self._following(ended)
             except BaseException as error:
-                # `run` raises it: whoever has this carried is to meet it, whatever it is.
+                # `run` raises it in the owning task, whatever it is.
                 self._error, due = error, None
             if due is None:
                 self._next = self._loop.create_future()

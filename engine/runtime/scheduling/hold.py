@@ -1,8 +1,7 @@
 """Holds branches of a run, each hold with a reason; goals and timers of held branches are paused.
 
-A pause of the operator covers the whole run, a priority container everything outside itself. A
-branch goes on when no reason covers it any more. Goals are held by their devices, which confirm
-when they are at rest; timers, and the timeouts of nodes, do not run meanwhile.
+A pause of the operator covers the whole run, a priority container everything outside itself. A branch resumes when no
+reason covers it. Devices hold their goals and confirm when they are at rest; timers and node timeouts are suspended.
 """
 
 from __future__ import annotations
@@ -19,29 +18,29 @@ Covers = Callable[[str], bool]
 
 
 class Holdable(Protocol):
-    """Work of a state that can be brought to rest and go on later."""
+    """Work of a state that can be held and resumed."""
 
     @property
     def path(self) -> str:
-        """The state that it belongs to."""
+        """The path of its state."""
         ...
 
     @property
     def label(self) -> str:
-        """What it is, for messages."""
+        """Its name in messages."""
         ...
 
     async def hold(self) -> None:
-        """Bring it to rest; returns when it is. Raises FlexcellError where that cannot be."""
+        """Bring the work to rest and return then. Raises FlexcellError where it cannot be held."""
         ...
 
     async def resume(self) -> None:
-        """Let it go on."""
+        """Resume the work."""
         ...
 
 
 class _Member:
-    """One piece of work, led towards being held or not by one task at a time."""
+    """One piece of work, held or resumed by at most one task at a time."""
 
     def __init__(self, work: Holdable, settled: Callable[[], None], *, of_clean_up: bool) -> None:
         self.work = work
@@ -63,14 +62,14 @@ class _Member:
             try:
                 await (self.work.hold() if self.wanted else self.work.resume())
             except FlexcellError as error:
-                # What cannot be held goes on to its end; the operator is told, the pause stands.
+                # Work that cannot be held continues to its end; the operator is notified, the pause remains.
                 self.cannot = f"{self.work.label}: {error.message}"
             self.held = not self.held
         self._settled()
 
 
 class BranchHolds:
-    """Who is held and why; belongs to one run, used on the loop thread."""
+    """The held branches of one run and the reasons; used on the loop thread."""
 
     def __init__(self) -> None:
         self._reasons: dict[str, Covers] = {}
@@ -80,33 +79,33 @@ class BranchHolds:
         self._waiters: list[asyncio.Future[None]] = []
         self.on_settled: Callable[[], None] = lambda: None
         self.is_preempted: Callable[[str], bool] = lambda path: False
-        """Whether what is at a path has been asked to end, and cleans up."""
+        """Whether the node at a path is preempted and cleans up."""
 
     @property
     def active(self) -> bool:
-        """True while there is any reason."""
+        """True while any hold is active."""
         return bool(self._reasons)
 
     def held(self, path: str) -> bool:
-        """Tell whether the branch of `path` has to stand still."""
-        return any(covers(path) for covers in self._reasons.values()) and not self._cleans_up(path)
+        """Return whether the branch of `path` is held."""
+        return any(covers(path) for covers in self._reasons.values()) and not self._is_cleaning_up(path)
 
     def reasons(self, path: str) -> tuple[str, ...]:
-        """Return why it has to."""
+        """Return the reasons that hold `path`."""
         return tuple(reason for reason, covers in self._reasons.items() if covers(path))
 
     def hold(self, reason: str, covers: Covers) -> None:
-        """Hold every branch that `covers` is true for, until `release`; replaces an earlier one of this name."""
+        """Hold every branch that `covers` matches, until `release`; replaces an earlier hold with this reason."""
         self._reasons[reason] = covers
         self._apply()
 
     def release(self, reason: str) -> None:
-        """Take a reason away."""
+        """Release the hold with this reason."""
         if self._reasons.pop(reason, None) is not None:
             self._apply()
 
     def let_clean_up(self, path: str) -> None:
-        """Hold no clean-up inside `path` any more; what is about to be preempted stays held until it is."""
+        """Stop holding clean-ups inside `path`; nodes stay held until they are preempted."""
         self._cleaning_up.add(path)
         for timer in self._timers.values():
             if not self.held(timer.path):
@@ -117,38 +116,38 @@ class BranchHolds:
         self.wake()
 
     def has_cleaned_up(self, path: str) -> None:
-        """Hold what is inside `path` again."""
+        """Allow holds of clean-ups inside `path` again."""
         self._cleaning_up.discard(path)
 
     def attach(self, work: Holdable) -> None:
-        """Hold and resume `work` along with its branch, from now on until `detach`."""
-        member = _Member(work, self._tell_settled, of_clean_up=self.is_preempted(work.path))
+        """Hold and resume `work` with its branch, until `detach`."""
+        member = _Member(work, self._notify_settled, of_clean_up=self.is_preempted(work.path))
         self._members[id(work)] = member
         if self._reasons and self.held(work.path):
             member.want(True)
 
     async def detach(self, work: Holdable) -> None:
-        """Forget it; returns when nothing holds or resumes it any more."""
+        """Detach `work`; returns when no hold or resume of it is in progress."""
         member = self._members.pop(id(work))
         if member.task is not None and not member.task.done():
             member.task.cancel()
             await asyncio.wait({member.task})
         if member.wanted:
-            self._tell_settled()
+            self._notify_settled()
 
     def timer(self, path: str, duration_s: float) -> Timer:
-        """Start a timer that stands still while `path` is held; end it with `drop`."""
+        """Start a timer that is suspended while `path` is held; end it with `drop`."""
         timer = Timer(path, duration_s, held=bool(self._reasons) and self.held(path))
         self._timers[id(timer)] = timer
         return timer
 
     @property
     def timers(self) -> tuple[Timer, ...]:
-        """Those that somebody waits for, held or not."""
+        """The active timers, held or not."""
         return tuple(self._timers.values())
 
     def drop(self, timer: Timer) -> None:
-        """Stop and forget a timer."""
+        """Cancel and remove a timer."""
         timer.cancel()
         del self._timers[id(timer)]
 
@@ -164,18 +163,18 @@ class BranchHolds:
         await waiter
 
     def wake(self) -> None:
-        """Let everybody who waits for a change look again, in the order in which they came."""
+        """Wake all tasks that wait for a change, in order of arrival."""
         waiters, self._waiters = self._waiters, []
         for waiter in waiters:
             if not waiter.done():
                 waiter.set_result(None)
 
     def settled(self) -> bool:
-        """Tell whether everything that is to be held is."""
+        """Return whether all work to be held is held."""
         return all(member.held for member in self._members.values() if member.wanted)
 
     def cannot(self) -> tuple[str, ...]:
-        """Return what is to be held and cannot."""
+        """Return the messages of work that cannot be held."""
         return tuple(member.cannot for member in self._members.values() if member.wanted and member.cannot)
 
     def _apply(self) -> None:
@@ -185,14 +184,14 @@ class BranchHolds:
             else:
                 timer.resume()
         for member in self._members.values():
-            if not self._cleans_up(member.work.path):
+            if not self._is_cleaning_up(member.work.path):
                 member.want(self.held(member.work.path))
         self.wake()
 
-    def _cleans_up(self, path: str) -> bool:
-        let = any(is_inside(around, path) for around in self._cleaning_up)
-        return let and self.is_preempted(path)
+    def _is_cleaning_up(self, path: str) -> bool:
+        is_released = any(is_inside(around, path) for around in self._cleaning_up)
+        return is_released and self.is_preempted(path)
 
-    def _tell_settled(self) -> None:
+    def _notify_settled(self) -> None:
         if self.settled():
             self.on_settled()

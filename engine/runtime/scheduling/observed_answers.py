@@ -1,4 +1,4 @@
-"""What services have just answered an observation, for the state that asks the same in the tick that follows."""
+"""Service answers of observations, for states that send the same requests in the following tick."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from engine.skill import Service
 
 @dataclass(frozen=True)
 class ObservedAnswer:
-    """One request with its answer, or the error that it ended with."""
+    """One request with its answer or error."""
 
     request: Service[Any]
     to: str
@@ -22,17 +22,17 @@ class ObservedAnswer:
 
 
 class ObservedAnswers:
-    """By the path of the state; belongs to one run."""
+    """Observed answers of one run, by the path of the state."""
 
     def __init__(self) -> None:
         self._answers: dict[str, deque[ObservedAnswer]] = {}
 
     def keep(self, path: str, answers: Iterable[ObservedAnswer]) -> None:
-        """Have the next requests of a state answered so."""
+        """Store the answers to the next requests of a state."""
         self._answers[path] = deque(answers)
 
     def take(self, path: str, request: Service[Any], to: str) -> ObservedAnswer | None:
-        """Return the answer to the next request of a state; None where it asks something else than was observed."""
+        """Return the answer to the next request of a state; None where the request was not observed."""
         if not self._answers:
             return None
         known = self._answers.get(path)
@@ -42,5 +42,5 @@ class ObservedAnswers:
         return known.popleft()
 
     def forget(self, path: str) -> None:
-        """Have a state ask anew."""
+        """Drop the stored answers of a state."""
         self._answers.pop(path, None)

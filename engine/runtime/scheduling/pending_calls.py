@@ -1,4 +1,4 @@
-"""The services whose answers states of one run wait for: a tick of a tree waits for those of its checks."""
+"""Service calls that states of one run wait for; a tick of a tree waits for the calls of its checks."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from engine.node_path import is_inside
 
 
 class PendingCalls:
-    """By the path of the state that has asked; belongs to one run, used on the loop thread."""
+    """Pending calls of one run, by the path of the calling state; used on the loop thread."""
 
     def __init__(self) -> None:
         self._open = Counter[str]()
@@ -19,24 +19,24 @@ class PendingCalls:
 
     @contextmanager
     def of(self, path: str) -> Generator[None]:
-        """Count a call of the state at `path` as open while inside."""
+        """Count a call of the state at `path` as pending inside the context."""
         self._open[path] += 1
-        self._tell()
+        self._notify()
         try:
             yield
         finally:
             self._open[path] -= 1
             if not self._open[path]:
                 del self._open[path]
-            self._tell()
+            self._notify()
 
     def any_inside(self, path: str) -> bool:
-        """Tell whether the node at `path`, or one in it, waits for an answer."""
+        """Return whether the node at `path`, or one inside it, waits for an answer."""
         return any(is_inside(path, each) for each in self._open)
 
     @contextmanager
     def changed(self) -> Generator[asyncio.Future[None]]:
-        """Give a future that is done once a call was begun or has ended; forgotten at the end."""
+        """Provide a future that is done once a call has begun or ended; dropped on exit."""
         waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._waiters.append(waiter)
         try:
@@ -44,7 +44,7 @@ class PendingCalls:
         finally:
             self._waiters.remove(waiter)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         for waiter in self._waiters:
             if not waiter.done():
                 waiter.set_result(None)

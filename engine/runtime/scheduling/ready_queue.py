@@ -1,4 +1,4 @@
-"""What an asyncio loop has ready to run: of no public name, so it is named in one place only."""
+"""The ready queue of an asyncio loop: a private attribute, accessed only here."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from typing import cast
 
 
 def ready_queue(loop: AbstractEventLoop) -> deque[Handle]:
-    """Return the loop's own queue, first that which runs next."""
+    """Return the queue of the loop, next handle first."""
     return cast("deque[Handle]", getattr(loop, "_ready"))  # noqa: B009 - private, and typed nowhere

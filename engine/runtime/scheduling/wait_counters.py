@@ -6,24 +6,24 @@ from engine.clock import Clock
 from engine.node_path import is_inside
 
 SHORTEST_S = 1e-6
-"""What waits for less, the resolution of times in events, does not wait."""
+"""Shorter waits do not count: this is the resolution of event times."""
 _FAIRNESS = 256
 
 
 class WaitCounter:
-    """Counts what the states of one run have waited for, by their paths."""
+    """Counts the waits of the states of one run, by path."""
 
     def __init__(self) -> None:
         self.count = 0
         self._last: dict[str, int] = {}
 
     def add(self, path: str) -> None:
-        """Note that the state, or part of a tree, at `path` waits for something."""
+        """Count a wait of the state or tree node at `path`."""
         self.count += 1
         self._last[path] = self.count
 
     def add_timed(self, path: str, duration_s: float) -> None:
-        """Note that it waits for so long."""
+        """Count a wait of `duration_s`, unless it is shorter than `SHORTEST_S`."""
         if duration_s >= SHORTEST_S:
             self.add(path)
 
@@ -33,12 +33,12 @@ class WaitCounter:
 
 
 class BusyLoopCounter:
-    """Counts the steps of one loop in which nothing was waited for; what siblings wait for does not count.
+    """Counts the steps of one loop without a wait; waits of siblings do not count.
 
     Args:
-        path: The container that loops.
-        waits: Those of the run.
-        clock: Virtual time passes when all wait and only then, so there it tells by itself.
+        path: The path of the looping container.
+        waits: The wait counter of the run.
+        clock: The clock; virtual time advances only when everything waits, so there it replaces `waits`.
     """
 
     __slots__ = ("_clock", "_path", "_seen", "_waits", "count")
@@ -51,7 +51,7 @@ class BusyLoopCounter:
         self._seen = clock.now_s() if clock.virtual else waits.count
 
     def step(self, *, most: int) -> bool:
-        """Count a step; tell whether everybody else is due a turn, or there were `most` without a wait."""
+        """Count a step; return whether other tasks are due a turn, or `most` steps passed without a wait."""
         self.count += 1
         if self.count % _FAIRNESS and self.count < most:
             return False

@@ -1,4 +1,4 @@
-"""Behavior trees: planned from documents, executed by py_trees, ticked only when something woke them.
+"""Behavior trees: planned from documents, executed by py_trees, ticked only on demand.
 
 `new_tree` plans one; `Tree` is the work of its node; `TreeRunner` is one activation of it.
 """

@@ -1,9 +1,8 @@
-"""The leaves of one tree that are active: asked for and halted inside a tick, begun and stopped around it.
+"""Active leaves of one tree: requested and halted inside a tick, started and stopped after it.
 
-py_trees halts in the middle of a tick and cannot wait. So a tick only notes what it halts and what
-it begins; what it begins starts after everything it has halted has confirmed its clean-up. A leaf
-that is a check starts inside the tick, which is held up until it is clear whether the check ends
-at once; what was halted before it in the tick has confirmed by then.
+py_trees halts during a tick and cannot wait. So a tick only registers the leaves that it halts and requests; requested
+leaves start after all halted leaves have confirmed their clean-up. A check starts inside the tick, which waits until it
+is known whether the check ends at once; leaves halted before it in the tick have confirmed by then.
 """
 
 from __future__ import annotations
@@ -23,20 +22,20 @@ from engine.runtime.tree.scope_access import ScopeAccess
 from engine.runtime.tree.tree_node import LeafPlan
 
 CHECK_TIMEOUT_S = 1.0
-"""How long a tick waits for a check that has asked a service, before the check counts as RUNNING."""
+"""Maximum time a tick waits for a check that calls a service, before the check counts as RUNNING."""
 
 
 class TreeLeafActivation(msgspec.Struct, eq=False):
-    """One activation of a leaf, from the tick that asks for it to the tick that reads how it ended.
+    """One activation of a leaf, from the tick that requests it to the tick that reads its exit.
 
     Args:
         plan: The leaf.
-        place: Where it reads and writes.
-        rank: Its place in the document.
-        caught: Whether a decorator around it takes its errors.
-        task: What it is carried by; None before it begins.
-        restored: How it had ended, unread, in an activation of the tree that was cut.
-        passed: Whether a tick has not come to it since it has ended.
+        place: Access to its scope.
+        rank: Its position in document order.
+        caught: Whether a decorator around it handles its errors.
+        task: Its task; None before it begins.
+        restored: Its unread exit in an interrupted activation of the tree.
+        passed: Whether a tick after its end has not reached it.
     """
 
     plan: LeafPlan
@@ -54,7 +53,7 @@ class TreeLeafActivation(msgspec.Struct, eq=False):
 
     @property
     def left(self) -> NodeExit | None:
-        """How it ended; None while it has not.
+        """Its exit; None while it has not ended.
 
         Raises:
             FlexcellError: it ended with this error.
@@ -63,12 +62,12 @@ class TreeLeafActivation(msgspec.Struct, eq=False):
 
     @property
     def begun(self) -> bool:
-        """Whether it was entered, or is about to be."""
+        """Whether it was entered, or is about to be entered."""
         return self.task is not None or self.restored is not None
 
     @property
     def ended(self) -> bool:
-        """Whether it has ended, be it with an error."""
+        """Whether it has ended, with an exit or an error."""
         return self.restored is not None or (self.task is not None and self.task.done())
 
     @property
@@ -83,19 +82,19 @@ class ActiveLeaves:
     """The active leaves of one activation of the tree at `path`.
 
     Args:
-        execution: The run.
-        path: The tree.
-        wake: Called when a leaf has ended that the next tick has to read.
+        execution: The execution of the run.
+        path: The path of the tree.
+        wake: Called when a leaf has ended that the next tick must read.
     """
 
     def __init__(self, execution: Execution, path: str, wake: Callable[[], None]) -> None:
         self._execution = execution
         self._path = path
         self._wake = wake
-        self._asked: list[TreeLeafActivation] = []
+        self._requested: list[TreeLeafActivation] = []
         self._running: set[TreeLeafActivation] = set()
         self.halted: list[TreeLeafActivation] = []
-        """What was halted in this tick and has not confirmed yet."""
+        """The leaves halted in this tick that have not confirmed yet."""
         self._unread: set[TreeLeafActivation] = set()
         self._probed: TreeLeafActivation | None = None
         self.begun: list[str] = []
@@ -103,15 +102,15 @@ class ActiveLeaves:
 
     @property
     def unread(self) -> frozenset[TreeLeafActivation]:
-        """Those that have ended and that no tick has read."""
+        """The leaves that have ended and that no tick has read."""
         return frozenset(self._unread)
 
     def ask(self, activation: TreeLeafActivation) -> None:
-        """Have a leaf begin when the tick is carried out."""
-        self._asked.append(activation)
+        """Request a leaf; it begins when the tick is executed."""
+        self._requested.append(activation)
 
     def read(self, activation: TreeLeafActivation) -> NodeExit | None:
-        """Return how it ended and forget it; None while it runs.
+        """Return the exit of a leaf and remove it; None while it runs.
 
         Raises:
             FlexcellError: it ended with this error.
@@ -123,13 +122,13 @@ class ActiveLeaves:
         return activation.left
 
     def halt(self, activation: TreeLeafActivation) -> None:
-        """Have a leaf stopped before anything else begins; one that has not begun never does.
+        """Halt a leaf before any other begins; one that has not begun never begins.
 
-        How it ended no longer matters, unless with an error that nothing in the tree takes.
+        Its exit no longer matters, except for an error that nothing in the tree handles.
         """
         if not activation.begun:
-            if activation in self._asked:
-                self._asked.remove(activation)
+            if activation in self._requested:
+                self._requested.remove(activation)
             return
         self._running.discard(activation)
         self._unread.discard(activation)
@@ -137,12 +136,12 @@ class ActiveLeaves:
             self.halted.append(activation)
 
     def keep(self, activation: TreeLeafActivation) -> None:
-        """Have one that has ended in an activation of the tree that was cut wake the tree, unless that was ticked."""
+        """Keep an unread exit of an interrupted activation; it wakes the tree unless a tick passed it over."""
         if not activation.passed:
             self._unread.add(activation)
 
     def forget(self, seen: frozenset[TreeLeafActivation]) -> Sequence[TreeLeafActivation]:
-        """Do not wake for these any more: a tick has followed. Return those to which it has not come, by rank."""
+        """Drop leaves that a tick has followed from the unread ones; return those that it did not reach, by rank."""
         passed = sorted(self._unread & seen, key=lambda each: each.rank) if self._unread else ()
         self._unread -= seen
         for each in passed:
@@ -150,7 +149,7 @@ class ActiveLeaves:
         return passed
 
     async def confirm(self) -> None:
-        """Stop what was halted, in document order, and return when all clean-up is done.
+        """Stop the halted leaves in document order, and return when all clean-up is complete.
 
         Raises:
             FlexcellError: a clean-up failed, or did not end in time.
@@ -165,18 +164,18 @@ class ActiveLeaves:
                 raise each.error
 
     async def begin(self) -> None:
-        """Carry out the tick: stop what it halted, then begin what it asked for."""
+        """Execute the tick: stop the halted leaves, then begin the requested ones."""
         await self.confirm()
-        asked, self._asked = self._asked, []
-        for activation in asked:
+        requested, self._requested = self._requested, []
+        for activation in requested:
             self._start(activation)
 
     async def go_on(self) -> None:
-        """Begin what is asked for in place of activations that were cut; a check may have been in mid-tick."""
-        for activation in tuple(self._asked):
+        """Begin the leaves that resume interrupted activations; a check may have been interrupted during a tick."""
+        for activation in tuple(self._requested):
             if not activation.plan.check:
                 continue
-            self._asked.remove(activation)
+            self._requested.remove(activation)
             start_eagerly(self._start(activation))
             await self.settled(activation)
             if activation.ended:
@@ -184,13 +183,13 @@ class ActiveLeaves:
         await self.begin()
 
     def follow(self, activation: TreeLeafActivation, task: asyncio.Task[NodeExit]) -> None:
-        """Have it be carried by this task, and wake the tree when that ends."""
+        """Assign the task of an activation, and wake the tree when it ends."""
         activation.task = task
         self._running.add(activation)
         task.add_done_callback(partial(self._end, activation))
 
     async def settled(self, activation: TreeLeafActivation) -> None:
-        """Return when a check that goes on has ended, or waits for something but the answer of a service."""
+        """Return when a running check has ended, or waits for anything but the answer of a service."""
         execution, path, task = self._execution, activation.path, activation.task
         assert task is not None, "it has begun"
         self._probed = activation
@@ -208,12 +207,12 @@ class ActiveLeaves:
             self._probed = None
 
     async def stop(self) -> Sequence[asyncio.Task[NodeExit]]:
-        """Stop everything and return what was stopped, once all clean-up is done; errors of clean-ups are not raised.
+        """Stop all leaves and return their tasks once all clean-up is complete; clean-up errors are not raised.
 
         Raises:
             NotStopped: a clean-up did not end in time.
         """
-        self._asked.clear()
+        self._requested.clear()
         self.halted += self._running
         self._running.clear()
         self._unread.clear()
@@ -238,7 +237,7 @@ class ActiveLeaves:
         return halted
 
     async def _answer(self, task: asyncio.Task[NodeExit], timeout_s: float) -> float:
-        """Wait until the check has an answer or has ended; return how long that took."""
+        """Wait until the check has an answer or has ended; return the elapsed time."""
         clock = self._execution.clock
         since_s = clock.now_s()
         with self._execution.pending_calls.changed() as changed:

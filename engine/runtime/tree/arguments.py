@@ -1,4 +1,4 @@
-"""Arguments of a py_trees behaviour from the `with:` of a document, as its constructor's types say."""
+"""Converts `with:` of a document to constructor arguments of a py_trees behaviour, by its type hints."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from engine.suggestions import did_you_mean
 
 
 def takes_name(kind: type[Behaviour]) -> bool:
-    """Tell whether the constructor has a `name`, as py_trees' own have."""
+    """Return whether the constructor has a parameter `name`, like those of py_trees."""
     return "name" in inspect.signature(kind).parameters
 
 
 def wrong_arguments(kind: type[Behaviour], given: Collection[str]) -> tuple[str, str] | None:
-    """Return what is wrong with the names of the arguments and what to do about it, or None."""
+    """Return the error and hint for wrong argument names, or None."""
     known = inspect.signature(kind).parameters
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in known.values()):
         return None
@@ -35,7 +35,7 @@ def wrong_arguments(kind: type[Behaviour], given: Collection[str]) -> tuple[str,
 
 
 def converted_arguments(kind: type[Behaviour], given: Mapping[str, Any], *, position: str) -> dict[str, Any]:
-    """Return the arguments as the types that the constructor names: `SUCCESS` becomes a status.
+    """Return the arguments converted to the types of the constructor: `SUCCESS` becomes a status.
 
     Raises:
         StateError: a value does not fit its type.
@@ -51,6 +51,6 @@ def converted_arguments(kind: type[Behaviour], given: Mapping[str, Any], *, posi
         except msgspec.ValidationError as error:
             raise StateError(f"argument `{name}` of {kind.__qualname__}: {error}", where=position) from error
         except TypeError:
-            # The type is one that documents cannot say; the constructor judges for itself.
+            # The type has no representation in documents; the constructor validates the value.
             arguments[name] = value
     return arguments

@@ -1,9 +1,8 @@
-"""A blackboard of its own for one activation of a tree, though py_trees keeps one for the whole process.
+"""A separate blackboard for each activation of a tree, in place of the process-wide blackboard of py_trees.
 
-py_trees' behaviours reach the blackboard through attributes of a class. While one of ours is in
-use these attributes are its own, so two runs in one process never see each other's keys, and
-nothing stays behind. What a behaviour does on the blackboard from a thread of its own, outside a
-tick, reaches the common one.
+py_trees behaviours access the blackboard through class attributes. While an isolated blackboard is in use, these
+attributes are its own, so two runs in one process never see each other's keys, and no keys remain. Accesses from a
+thread of a behaviour, outside a tick, reach the process-wide blackboard.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ _SWITCH = threading.RLock()
 
 
 class IsolatedBlackboard:
-    """Use it with `with` around everything in which behaviours of py_trees' kind run; never across an await."""
+    """Context manager for all code that runs py_trees behaviours; never hold it across an await."""
 
     def __init__(self) -> None:
         self._storage: dict[str, Any] = {}
@@ -29,19 +28,19 @@ class IsolatedBlackboard:
         self._stream: ActivityStream | None = None
 
     def __enter__(self) -> None:
-        """Put it in the place of the common one."""
+        """Replace the process-wide blackboard."""
         _SWITCH.acquire()
         self._exchange()
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Put the common one back."""
+        """Restore the process-wide blackboard."""
         self._exchange()
         _SWITCH.release()
 
     def _exchange(self) -> None:
         own = (self._storage, self._metadata, self._clients, self._stream)
-        common = (Blackboard.storage, Blackboard.metadata, Blackboard.clients, Blackboard.activity_stream)
+        shared = (Blackboard.storage, Blackboard.metadata, Blackboard.clients, Blackboard.activity_stream)
         Blackboard.storage, Blackboard.metadata, Blackboard.clients, Blackboard.activity_stream = own
-        self._storage, self._metadata, self._clients, self._stream = common
+        self._storage, self._metadata, self._clients, self._stream = shared

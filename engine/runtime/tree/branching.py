@@ -1,4 +1,4 @@
-"""Parts of a tree whose first child chooses which of the others is run."""
+"""Tree nodes whose first child selects which of the others runs."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _FINAL = (Status.SUCCESS, Status.FAILURE)
 
 
 class IfThenElse(Composite):
-    """Asks its condition once, runs the branch that it chooses, and ends as that does.
+    """Ticks its condition until it ends, runs the branch that it selects, and ends with the status of that branch.
 
-    This is IfThenElseNode of BehaviorTree.CPP 4. Without a branch for failure it fails where its condition has failed.
+    This is IfThenElseNode of BehaviorTree.CPP 4. Without a branch for failure it fails when its condition fails.
 
     Args:
         path: Its node path.
-        children: The condition, the branch for success and, if there is one, that for failure.
-        skips: Which parts are skipped: this one is when the branch that runs is.
+        children: The condition, the branch for success, and optionally the branch for failure.
+        skips: The skipped nodes; this node is skipped when its branch is.
     """
 
     def __init__(self, path: str, children: list[Behaviour], skips: SkippedNodes) -> None:
@@ -31,14 +31,14 @@ class IfThenElse(Composite):
 
     @property
     def chosen(self) -> Behaviour | None:
-        """The branch that the condition chooses; None where it has not ended, or there is no such branch."""
+        """The branch that the condition selects; None where it has not ended, or there is no such branch."""
         if self.condition.status not in _FINAL:
             return None
         number = 0 if self.condition.status is Status.SUCCESS else 1
         return self.branches[number] if number < len(self.branches) else None
 
     def tick(self) -> Iterator[Behaviour]:
-        """Ask, unless a branch has been chosen; then tick that."""
+        """Tick the condition, unless a branch is selected; then tick the branch."""
         if self.status is not Status.RUNNING:
             self._reset()
         if self.current_child is self.condition:
@@ -72,13 +72,13 @@ class IfThenElse(Composite):
 
 
 class WhileDoElse(IfThenElse):
-    """Asks its condition at every tick; halts the branch that it no longer chooses before the other begins.
+    """Ticks its condition at every tick; halts the branch that is no longer selected before the other begins.
 
-    This is WhileDoElseNode of BehaviorTree.CPP 4: while its condition is RUNNING, the branch at work goes on.
+    This is WhileDoElseNode of BehaviorTree.CPP 4: while its condition is RUNNING, the active branch continues.
     """
 
     def tick(self) -> Iterator[Behaviour]:
-        """Ask, halt what is no longer chosen, then tick what is."""
+        """Tick the condition, halt the branch that is no longer selected, then tick the selected one."""
         if self.status is not Status.RUNNING:
             self._reset()
         yield from self.condition.tick()

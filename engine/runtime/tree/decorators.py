@@ -1,7 +1,6 @@
-"""Decorators that py_trees lacks, or has with another clock or without a wake-up of their own.
+"""Decorators that py_trees lacks, or implements with another clock or without a wake-up.
 
-In every `tick` the last thing yielded is the decorator itself: the composite above stops listening
-there, so nothing may be left to do.
+Every `tick` yields the decorator itself last: the composite above stops iterating there, so no work may remain.
 """
 
 from __future__ import annotations
@@ -20,39 +19,39 @@ from engine.runtime.tree.timers import TreeTimers
 from engine.runtime.tree.tree_history import TreeNodeState
 
 WHERE_NOTHING_WAKES_S = 0.1
-"""How often a part is ticked by default that is RUNNING while nothing that could wake it runs below."""
+"""Default tick period of a node that is RUNNING while nothing below it can wake the tree."""
 
 
 class Timeout(Decorator):
-    """Fails when its child has not ended in time; a child that ends at that very moment has."""
+    """Fails when its child does not end in time; a child that ends at that instant is in time."""
 
     def __init__(self, path: str, child: Behaviour, after_s: float, tree_timers: TreeTimers) -> None:
         super().__init__(path, child)
         self.refusal = ""
-        """Why it failed of itself."""
+        """Reason of its own failure; empty where the child determines the status."""
         self._after_s = after_s
         self._tree_timers = tree_timers
 
     def initialise(self) -> None:
-        """Begin to count when this tick is carried out."""
+        """Start the timer when this tick is executed."""
         self._tree_timers.set(self.name, self._after_s)
 
     def update(self) -> Status:
-        """Stop the child when time is up."""
+        """Stop the child when the time has elapsed."""
         self.refusal = ""
         if self.decorated.status is Status.RUNNING and not self._tree_timers.pending(self.name):
             self.decorated.stop(Status.INVALID)
-            self.refusal = f"no end within {self._after_s:g} s"
+            self.refusal = f"did not end within {self._after_s:g} s"
             return Status.FAILURE
         return self.decorated.status
 
     def terminate(self, new_status: Status) -> None:
-        """Count no longer."""
+        """Drop the timer."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, standing: TreeNodeState, elapsed_s: float, *, reached: bool) -> None:
-        """Go on counting; when time was up and no tick comes here, one has followed that all the same."""
-        if standing.status == "running" and (reached or elapsed_s <= self._after_s):
+    def restore(self, state: TreeNodeState, elapsed_s: float, *, reached: bool) -> None:
+        """Resume the timer; if it had elapsed and no tick reaches this node, its tick has already followed."""
+        if state.status == "running" and (reached or elapsed_s <= self._after_s):
             self._tree_timers.set(self.name, max(0.0, self._after_s - elapsed_s))
 
 
@@ -62,55 +61,55 @@ class Cooldown(Decorator):
     def __init__(self, path: str, child: Behaviour, after_s: float, tree_timers: TreeTimers) -> None:
         super().__init__(path, child)
         self.refusal = ""
-        """Why it failed of itself."""
+        """Reason of its own failure; empty where the child determines the status."""
         self._after_s = after_s
         self._tree_timers = tree_timers
-        self._busy = False
+        self._child_active = False
 
     @property
     def cooling(self) -> bool:
-        """Whether it fails without asking its child."""
+        """Whether it fails without ticking its child."""
         return self._tree_timers.pending(self.name)
 
     def tick(self) -> Iterator[Behaviour]:
         """Tick the child, or fail while cooling down."""
         if not self.cooling:
-            self._busy = True
+            self._child_active = True
             yield from super().tick()
             return
-        self.refusal = f"cooling down, {self._after_s:g} s in all"
+        self.refusal = f"the cooldown of {self._after_s:g} s is active"
         self.stop(Status.FAILURE)
         yield self
 
     def update(self) -> Status:
-        """Tell what the child says."""
+        """Return the status of the child."""
         self.refusal = ""
         return self.decorated.status
 
     def terminate(self, new_status: Status) -> None:
-        """Cool down if the child was at work."""
-        if self._busy:
-            self._busy = False
+        """Start the cooldown if the child was ticked."""
+        if self._child_active:
+            self._child_active = False
             self._tree_timers.set(self.name, self._after_s)
 
-    def restore(self, standing: TreeNodeState, elapsed_s: float) -> None:
-        """Go on cooling down, where it had ended less than its time ago."""
-        self._busy = standing.status == "running"
+    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+        """Resume the cooldown, where it has not elapsed."""
+        self._child_active = state.status == "running"
         left_s = self._after_s - elapsed_s
-        if not self._busy and left_s > 0 and (standing.first is not None or standing.ended_s is not None):
+        if not self._child_active and left_s > 0 and (state.first is not None or state.ended_s is not None):
             self._tree_timers.set(self.name, left_s)
 
 
 class Guard(Decorator):
-    """Ticks its child only while a condition holds; stops it when it does not, and then has its target for a status.
+    """Ticks its child only while a condition holds; otherwise stops it and takes the status of its target.
 
     Args:
         path: Its node path.
-        child: What is guarded.
+        child: The guarded node.
         keys: The userdata keys and parameters that the condition reads.
         holds: Evaluates the condition; may raise FlexcellError.
         text: The condition as written.
-        closed: Gives the status that it has when the condition does not hold.
+        closed: Returns the status for a condition that does not hold.
     """
 
     def __init__(
@@ -125,16 +124,16 @@ class Guard(Decorator):
     ) -> None:
         super().__init__(path, child)
         self.refusal = ""
-        """Why it failed of itself."""
+        """Reason of its own failure; empty where the child determines the status."""
         self.keys = keys
         self.holds = holds
         self.said: bool | None = None
-        """What the condition was in the tick under way, or in the last one; None where it was not asked."""
+        """Value of the condition in the current or last tick; None where it was not evaluated."""
         self._text = text
         self._closed = closed
 
     def tick(self) -> Iterator[Behaviour]:
-        """Ask, then tick the child or stop it."""
+        """Evaluate the condition, then tick the child or stop it."""
         self.said = self.holds()
         if self.said:
             yield from super().tick()
@@ -144,13 +143,13 @@ class Guard(Decorator):
         yield self
 
     def update(self) -> Status:
-        """Tell what the child says."""
+        """Return the status of the child."""
         self.refusal = ""
         return self.decorated.status
 
 
 class Repeat(decorators.Repeat):
-    """py_trees' Repeat, which has the tree ticked again at once where py_trees waits for a next tick."""
+    """Repeat of py_trees that requests the next tick at once instead of waiting for it."""
 
     def __init__(
         self, path: str, child: Behaviour, times: int, tree_timers: TreeTimers, tell: Callable[[Behaviour], None]
@@ -160,7 +159,7 @@ class Repeat(decorators.Repeat):
         self._tell = tell
 
     def update(self) -> Status:
-        """Count, and go on at once."""
+        """Count a success and request the next tick."""
         status = super().update()
         if status is Status.RUNNING and self.decorated.status is Status.SUCCESS:
             self._tree_timers.call_again(self.name)
@@ -168,22 +167,22 @@ class Repeat(decorators.Repeat):
         return status
 
     def terminate(self, new_status: Status) -> None:
-        """Go on no more."""
+        """Drop the request for a tick."""
         self._tree_timers.drop(self.name)
 
 
 class Retry(Decorator):
-    """Runs its child again after FAILURE, and after errors below when `errors`, waiting in between.
+    """Runs its child again after FAILURE, and with `errors` after errors below, waiting in between.
 
     Args:
         path: Its node path.
-        child: What is tried.
-        times: How often it is tried again.
+        child: The node that is retried.
+        times: Maximum number of retries.
         backoff_s: The first wait; it doubles each time.
-        errors: Whether an error of a leaf below is a failed attempt.
-        tree_timers: Where waits are set.
-        clear: Brings a subtree to rest whose tick was torn by an error.
-        tell: Told the number of the attempt that comes, the wait, and the error before it, if it was one.
+        errors: Whether an error of a leaf below counts as a failed attempt.
+        tree_timers: The timers of the tree.
+        clear: Halts a subtree whose tick was interrupted by an error.
+        tell: Called with the number of the next attempt, the wait, and the error before it, if any.
     """
 
     def __init__(
@@ -208,11 +207,11 @@ class Retry(Decorator):
         self._tell = tell
 
     def initialise(self) -> None:
-        """Begin with the first attempt."""
+        """Start the first attempt."""
         self.attempt = 1
 
     def tick(self) -> Iterator[Behaviour]:
-        """Tick the child, or wait for the next attempt to begin."""
+        """Tick the child, or wait for the next attempt."""
         if self.status is not Status.RUNNING:
             self.initialise()
         elif self._tree_timers.pending(self.name):
@@ -237,20 +236,20 @@ class Retry(Decorator):
         yield self
 
     def update(self) -> Status:
-        """Try again after a failure as long as attempts are left."""
+        """Retry after a failure while attempts remain."""
         if self.decorated.status is Status.FAILURE and self.attempt <= self._times:
             self._try_again(None)
             return Status.RUNNING
         return self.decorated.status
 
     def terminate(self, new_status: Status) -> None:
-        """Wait no longer."""
+        """Drop the timer of the wait."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, standing: TreeNodeState, elapsed_s: float) -> None:
-        """Go on with the attempt, or with the wait before it."""
-        if standing.status == "running":
-            self.attempt = standing.attempt
+    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+        """Resume the attempt, or the wait before it."""
+        if state.status == "running":
+            self.attempt = state.attempt
             left_s = self._backoff_s * 2 ** (self.attempt - 2) - elapsed_s
             if self.attempt > 1 and self.decorated.status is not Status.RUNNING and left_s > 0:
                 self._tree_timers.set(self.name, left_s)
@@ -266,40 +265,41 @@ class Retry(Decorator):
 
 
 class Remap(Decorator):
-    """Shows another status than its child has; ticked from time to time where it hides an end."""
+    """Maps the status of its child to another; ticked periodically where it hides an end as RUNNING."""
 
     def __init__(
         self, path: str, child: Behaviour, shown: Mapping[Status, Status], every_s: float, tree_timers: TreeTimers
     ) -> None:
         super().__init__(path, child)
         self.refusal = ""
-        """Why it failed of itself."""
+        """Reason of its own failure; empty where the child determines the status."""
         self.shown = shown
         self._every_s = every_s
         self._tree_timers = tree_timers
 
     def update(self) -> Status:
-        """Show what is to be shown."""
+        """Return the mapped status."""
         actual = self.decorated.status
         shown = self.shown[actual]
         self.refusal = ""
         if shown is not actual and shown is Status.FAILURE:
             self.refusal = f"{actual.value} counts as FAILURE"
-        _wake_up(self._tree_timers, self.name, self._every_s, hidden=shown is Status.RUNNING and shown is not actual)
+        hidden = shown is Status.RUNNING and shown is not actual
+        _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=hidden)
         return shown
 
     def terminate(self, new_status: Status) -> None:
-        """Be ticked no longer."""
+        """Drop the periodic tick."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, standing: TreeNodeState, elapsed_s: float) -> None:
-        """Be ticked again from time to time if need be."""
-        hidden = standing.status == "running" and self.decorated.status is not Status.RUNNING
-        _wake_up(self._tree_timers, self.name, self._every_s, hidden=hidden)
+    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+        """Resume the periodic tick if it is needed."""
+        hidden = state.status == "running" and self.decorated.status is not Status.RUNNING
+        _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=hidden)
 
 
 class StatusCondition(decorators.Condition):
-    """py_trees' Condition, ticked from time to time while its child has ended otherwise."""
+    """Condition of py_trees, ticked periodically while its child has ended with another status."""
 
     def __init__(self, path: str, child: Behaviour, status: Status, every_s: float, tree_timers: TreeTimers) -> None:
         super().__init__(path, child, status)
@@ -307,24 +307,24 @@ class StatusCondition(decorators.Condition):
         self._tree_timers = tree_timers
 
     def update(self) -> Status:
-        """Wait for the status."""
+        """Return RUNNING until the child has the status."""
         status = super().update()
         ended = self.decorated.status is not Status.RUNNING
-        _wake_up(self._tree_timers, self.name, self._every_s, hidden=status is Status.RUNNING and ended)
+        _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=status is Status.RUNNING and ended)
         return status
 
     def terminate(self, new_status: Status) -> None:
-        """Be ticked no longer."""
+        """Drop the periodic tick."""
         self._tree_timers.drop(self.name)
 
-    def restore(self, standing: TreeNodeState, elapsed_s: float) -> None:
-        """Be ticked again from time to time if need be."""
-        hidden = standing.status == "running" and self.decorated.status is not Status.RUNNING
-        _wake_up(self._tree_timers, self.name, self._every_s, hidden=hidden)
+    def restore(self, state: TreeNodeState, elapsed_s: float) -> None:
+        """Resume the periodic tick if it is needed."""
+        hidden = state.status == "running" and self.decorated.status is not Status.RUNNING
+        _schedule_tick(self._tree_timers, self.name, self._every_s, hidden=hidden)
 
 
-def _wake_up(tree_timers: TreeTimers, path: str, every_s: float, *, hidden: bool) -> None:
-    """Have a part ticked soon that is RUNNING though its child has ended: nothing below will wake it."""
+def _schedule_tick(tree_timers: TreeTimers, path: str, every_s: float, *, hidden: bool) -> None:
+    """Schedule a tick for a node that is RUNNING although its child has ended: nothing below wakes the tree."""
     if hidden:
         tree_timers.set(path, every_s)
     else:

@@ -1,4 +1,4 @@
-"""The guard of a composite, decorator or py_trees behaviour that is asked before it begins, and not while it runs."""
+"""Guard of a composite, decorator or py_trees behaviour, evaluated before it begins and not while it runs."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _STATUS = {"success": Status.SUCCESS, "failure": Status.FAILURE}
 
 
 class EntryGuard:
-    """Stands before the ticks of one part; where it is closed the part has its target for a status, and is not ticked.
+    """Wraps the ticks of one node; a closed guard gives the node the status of its target without a tick.
 
     Args:
-        part: What is guarded.
+        part: The guarded node.
         keys: The userdata keys and parameters that the condition reads.
         holds: Evaluates the condition; may raise FlexcellError.
         text: The condition as written.
         to: success, failure or skipped.
-        skips: Told when the part is skipped.
+        skips: Records whether the node is skipped.
     """
 
     def __init__(
@@ -37,9 +37,9 @@ class EntryGuard:
         self.keys = keys
         self.holds = holds
         self.said: bool | None = None
-        """False where it was closed in the tick under way, or in the last one; else None."""
+        """False where it was closed in the current or last tick; else None."""
         self.refusal = ""
-        """Why the part has failed, where that is because of this guard."""
+        """Reason of a failure by this guard; else empty."""
         self._part = part
         self._text = text
         self._to = to
@@ -48,7 +48,7 @@ class EntryGuard:
         vars(part)["tick"] = self.tick
 
     def tick(self) -> Iterator[Behaviour]:
-        """Ask, unless the part is at work already; then tick it."""
+        """Evaluate the guard, unless the node is RUNNING; then tick the node."""
         part, self.refusal = self._part, ""
         if part.status is Status.RUNNING or self.holds():
             self._skips.run(part)

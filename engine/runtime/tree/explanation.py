@@ -1,4 +1,4 @@
-"""Why a tree failed: from the part that failed down to the leaf and its own cause."""
+"""Cause of a tree failure: from the failed node down to the leaf and its own cause."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from engine.runtime.tree.tree_node import TreeNode
 def explain_tree_failure(
     behaviour: Behaviour, parts: Mapping[Behaviour, TreeNode], guards: Mapping[Behaviour, EntryGuard]
 ) -> Cause:
-    """Return why a behaviour is FAILURE, the outermost part first."""
+    """Return the cause of a FAILURE, the outermost node first."""
     part = parts[behaviour]
     if isinstance(behaviour, TreeLeaf):
         if behaviour.left is None:
@@ -35,27 +35,27 @@ def explain_tree_failure(
     if isinstance(behaviour, Timeout | Cooldown | Guard | Remap) and behaviour.refusal:
         return Cause(message=behaviour.refusal, where=part.path, kind=type(behaviour).__name__)
     if part.foreign is not None:
-        said = f": {behaviour.feedback_message}" if behaviour.feedback_message else ""
-        return Cause(message=f"{part.name} failed{said}", where=part.path)
+        feedback = f": {behaviour.feedback_message}" if behaviour.feedback_message else ""
+        return Cause(message=f"{part.name} failed{feedback}", where=part.path)
     if isinstance(behaviour, Inverter):
         return Cause(message=f"{part.children[0].name} succeeded, which counts as FAILURE", where=part.path)
-    below = _culprit(behaviour)
+    below = _failed_child(behaviour)
     because = explain_tree_failure(below, parts, guards) if below is not None else None
     if isinstance(behaviour, composites.Selector) and len(part.children) > 1:
         return wrap_cause(
             f"none of {len(part.children)} alternatives succeeded; the last one", because, where=part.path
         )
     if isinstance(behaviour, ThresholdParallel):
-        said = (
+        message = (
             f"{behaviour.failed} of {len(part.children)} failed, and {behaviour.success_count} must succeed; the first"
         )
-        return wrap_cause(said, because, where=part.path)
+        return wrap_cause(message, because, where=part.path)
     if isinstance(behaviour, Retry) and behaviour.attempt > 1:
         return wrap_cause(f"failed {behaviour.attempt} times", because, where=part.path)
     return because or Cause(message=f"{part.name} had failed before", where=part.path)
 
 
-def _culprit(behaviour: Behaviour) -> Behaviour | None:
+def _failed_child(behaviour: Behaviour) -> Behaviour | None:
     if isinstance(behaviour, Decorator):
         candidates = [behaviour.decorated]
     elif isinstance(behaviour, IfThenElse):

@@ -1,7 +1,7 @@
-"""A behaviour of py_trees' own kind in a tree of ours: what it raises is contained and named.
+"""A native py_trees behaviour in a tree: its exceptions are contained and named.
 
-An exception in one of its methods becomes an error that names the node. Its `terminate` runs
-once at most for each `initialise`, also where py_trees, torn by an exception, would call it twice.
+An exception in one of its methods becomes an error that names the node. Its `terminate` runs at most once for each
+`initialise`, also where py_trees would call it twice after an exception.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ T = TypeVar("T")
 
 
 class ForeignBehaviour:
-    """Holds one such behaviour in `behaviour`, made ready to stand in the tree.
+    """Creates the behaviour and adapts it to the tree; `behaviour` holds it.
 
     Args:
-        part: Where it stands.
+        part: Its tree node.
         plan: Its class and arguments.
-        place: Where it reads and writes userdata.
-        execution: The run.
-        leaves: Those that are active; what is being halted confirms before this one begins.
-        tree_timers: Has it ticked while it is RUNNING.
-        turn: What the tick yields to have clean-up confirmed.
+        place: Access to its userdata scope.
+        execution: The execution of the run.
+        leaves: The active leaves; halted ones confirm before this behaviour begins.
+        tree_timers: Timers for its periodic tick while it is RUNNING.
+        turn: The pause that a tick yields until clean-up is confirmed.
 
     Raises:
         FlexcellError: its constructor raised, or an argument does not fit.
@@ -64,7 +64,7 @@ class ForeignBehaviour:
         self._tree_timers = tree_timers
         self._turn = turn
         self._open: set[Behaviour] = set()
-        self.behaviour = self._made()
+        self.behaviour = self._create()
         self._tick = self.behaviour.tick
         for inner in self.behaviour.iterate():
             vars(inner)["initialise"] = partial(self._initialise, inner, inner.initialise)
@@ -74,28 +74,28 @@ class ForeignBehaviour:
 
     @property
     def reads(self) -> Collection[str]:
-        """The userdata keys that it is shown."""
+        """The userdata keys that it reads."""
         return self._plan.inputs.values()
 
     def set_up(self) -> None:
-        """Let it and what it brings with it set up, once, before the first tick."""
+        """Call `setup` of the behaviour and its children once, before the first tick."""
         for inner in self.behaviour.iterate():
             self._contain("setup", inner.setup)
 
     def shut_down(self) -> None:
-        """Let it take down what it has set up."""
+        """Call `shutdown` of the behaviour and its children."""
         for inner in self.behaviour.iterate():
             self._contain("shutdown", inner.shutdown)
 
     def clear(self) -> None:
-        """Terminate what was initialised and not terminated, which py_trees forgets after an exception."""
+        """Terminate initialised behaviours, which py_trees does not do after an exception."""
         for inner in self.behaviour.iterate():
             if inner in self._open:
                 inner.terminate(Status.INVALID)
             inner.status = Status.INVALID
 
     def tick(self) -> Iterator[Behaviour]:
-        """Tick it once; the first time only after what this tick has halted is at rest."""
+        """Tick the behaviour once; the first tick waits until halted leaves are at rest."""
         behaviour = self.behaviour
         if behaviour.status is not Status.RUNNING and self._leaves.halted:
             yield self._turn
@@ -113,7 +113,7 @@ class ForeignBehaviour:
         self._tree_timers.drop(self._part.path)
         self._write_outputs()
 
-    def _made(self) -> Behaviour:
+    def _create(self) -> Behaviour:
         plan, position = self._plan, self._part.position
         scope = self._place.scope
         given = plan.arguments.evaluate({name: scope.read(name, reader=position) for name in plan.arguments.names})

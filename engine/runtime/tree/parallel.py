@@ -1,4 +1,4 @@
-"""py_trees' Parallel with a userdata scope for each branch, merged in document order when it ends; with thresholds."""
+"""Parallel of py_trees with a userdata scope for each branch, merged in document order at its end; thresholds."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from engine.runtime.tree.skipped_nodes import SkippedNodes
 
 
 class Parallel(composites.Parallel):
-    """Branches do not see what the others write until the parallel has ended, as in a concurrency container.
+    """Branches see writes of other branches only after the parallel has ended, as in a concurrency container.
 
     Args:
         path: Its node path.
-        policy: Whose success is its own.
+        policy: Determines whose success it requires.
         children: The branches.
-        places: Where each branch reads and writes, by name, in document order.
-        outside: Where the parallel itself stands.
-        execution: The run.
-        skips: Which parts are skipped.
+        places: Access to the scope of each branch, by name, in document order.
+        outside: Access to the enclosing scope.
+        execution: The execution of the run.
+        skips: The skipped nodes.
     """
 
     def __init__(
@@ -45,25 +45,25 @@ class Parallel(composites.Parallel):
         self._execution = execution
 
     def initialise(self) -> None:
-        """Give each branch a scope of its own."""
+        """Create a scope for each branch."""
         for name, place in self._places.items():
             place.scope = branch_scope(self.name, name, self._outside.scope, {})
 
     def restore(self, written: Mapping[str, Mapping[str, object]]) -> None:
-        """Give each branch the scope it had, by the path of the branch."""
+        """Restore the scope of each branch from its values, by the path of the branch."""
         for name, place in self._places.items():
             values = written.get(f"{self.name}/{name}", {})
             place.scope = branch_scope(self.name, name, self._outside.scope, values)
 
     def terminate(self, new_status: Status) -> None:
-        """Merge what was written, unless the parallel was halted."""
+        """Merge the scopes of the branches, unless the parallel was halted."""
         if new_status is not Status.INVALID:
             for place in self._places.values():
                 merge_scope(place.scope, self._outside.scope, self._execution)
 
 
 class ThresholdPolicy(ParallelPolicy.Base):
-    """How many children must succeed, all that are not skipped where that is None, and how many must fail."""
+    """Number of children that must succeed (None: all that are not skipped), and number that must fail."""
 
     def __init__(self, success_count: int | None, failure_count: int) -> None:
         super().__init__(synchronise=True)
@@ -72,14 +72,14 @@ class ThresholdPolicy(ParallelPolicy.Base):
 
 
 class ThresholdParallel(Parallel):
-    """Its policy is `ThresholdPolicy`; children that have ended are not run again meanwhile.
+    """A parallel with `ThresholdPolicy`; ended children do not run again meanwhile.
 
-    This is ParallelNode of BehaviorTree.CPP 4: it fails as well when too few children are left to succeed.
+    This is ParallelNode of BehaviorTree.CPP 4; it also fails when too few children remain to succeed.
     """
 
     @property
     def success_count(self) -> int:
-        """How many children must succeed."""
+        """Number of children that must succeed."""
         needed = self._thresholds.success_count
         return len(self.children) - self._skipped if needed is None else needed
 
@@ -94,12 +94,12 @@ class ThresholdParallel(Parallel):
 
     @property
     def failed(self) -> int:
-        """How many children have failed."""
+        """Number of failed children."""
         return sum(child.status is Status.FAILURE for child in self.children)
 
     @property
     def verdict(self) -> Status:
-        """What follows from how the children stand."""
+        """Status that follows from the statuses of the children."""
         succeeded = sum(child.status is Status.SUCCESS for child in self.children)
         left = len(self.children) - self.failed - self._skipped
         if succeeded >= self.success_count:
@@ -109,7 +109,7 @@ class ThresholdParallel(Parallel):
         return Status.RUNNING
 
     def tick(self) -> Iterator[Behaviour]:
-        """Tick the children that have not ended, then judge."""
+        """Tick the children that have not ended, then evaluate the thresholds."""
         if self.status is not Status.RUNNING:
             for child in self.children:
                 if child.status is not Status.INVALID:

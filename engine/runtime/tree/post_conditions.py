@@ -1,4 +1,4 @@
-"""The post-conditions of a part of a tree: userdata that is assigned when the part has ended, or was halted."""
+"""Post-conditions of a tree node: userdata assigned when the node has ended or was halted."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ _KEYS = {Status.SUCCESS: "on_success", Status.FAILURE: "on_failure"}
 
 
 class PostConditions:
-    """Stands around the ticks and stops of one part; as in BehaviorTree.CPP 4 nothing is assigned for what is skipped.
+    """Wraps the ticks and stops of one node; as in BehaviorTree.CPP 4 a skipped node assigns nothing.
 
-    Assignments are made in the order of the document, each with what those before it have written.
+    Assignments are made in document order; each reads the writes of earlier ones.
 
     Args:
-        node: The part at work.
-        part: The part as planned.
-        place: Where it reads and writes.
-        execution: The run.
-        statuses: Tells what is skipped, and whether the tree comes to an end without a status.
+        node: The py_trees node.
+        part: The planned tree node.
+        place: Access to its scope.
+        execution: The execution of the run.
+        statuses: Holds the skipped nodes, and whether the tree ends without a status.
     """
 
     def __init__(
         self, node: Behaviour, part: TreeNode, place: ScopeAccess, execution: Execution, statuses: StatusLog
     ) -> None:
         self.made: dict[str, int] = {}
-        """How many assignments were made already, by `on_success` and so on, in an activation that was cut."""
+        """Number of assignments already made in an interrupted activation, by `on_success` and so on."""
         self._node = node
         self._part = part
         self._place = place
@@ -48,29 +48,29 @@ class PostConditions:
         vars(node)["stop"] = self.stop
 
     def tick(self) -> Iterator[Behaviour]:
-        """Tick the part, and assign when it has ended."""
+        """Tick the node, and assign when it has ended."""
         if self._node.status is not Status.RUNNING:
             self.made.clear()
         for step in self._tick():
             if step is self._node:
-                # Its end is told first: an activation that goes on from here assigns what is left.
+                # Its end is recorded first: an activation resumed from here makes the remaining assignments.
                 self._statuses.note(step)
                 self.conclude()
             yield step
 
     def conclude(self) -> None:
-        """Assign what is due after the end of the part, if it has ended."""
+        """Make the assignments for the end of the node, if it has ended."""
         key = _KEYS.get(self._node.status)
         if key is not None and self._node not in self._statuses.skips:
             self._assign(key)
             self._assign("always")
 
     def stop(self, new_status: Status) -> None:
-        """Stop the part, and assign if that has halted it."""
+        """Stop the node, and assign if this halts it."""
         node = self._node
         begun = node.begun if isinstance(node, TreeLeaf) else node.status is Status.RUNNING
         if begun and new_status is Status.INVALID:
-            # Before it tells that it is halted: an activation that goes on from there has nothing left to assign.
+            # Before the halt is recorded: an activation resumed from there has no assignments left.
             self._halted()
         self._stop(new_status)
 
@@ -80,9 +80,9 @@ class PostConditions:
         except FlexcellError as error:
             if not self._statuses.closing:
                 raise
-            # What ends the tree goes on; this is told beside it.
-            said = f"post-condition failed: {describe_cause(cause_of(error))}"
-            self._execution.recorder.log(self._part.path, said, level="error")
+            # The error that ends the tree propagates; this one is only logged.
+            message = f"post-condition failed: {describe_cause(cause_of(error))}"
+            self._execution.recorder.log(self._part.path, message, level="error")
 
     def _assign(self, when: str) -> None:
         for key, value in islice(self._part.post[when], self.made.pop(when, 0), None):

@@ -1,9 +1,9 @@
-"""Re-evaluates the checks of composites without memory while an action is running.
+"""Re-evaluates the checks of composites without memory while an action runs.
 
-A composite without memory asks them again at every tick, a `while_do_else` its condition, and acts on what they say.
-Nothing ticks while nothing has ended, so they are observed beside the tree: when userdata that they read is written,
-when a topic that they have read has news, and at their period. Only where one would end otherwise than it has, a tick
-is due, which runs it.
+A composite without memory ticks its checks at every tick, a `while_do_else` its condition, and reacts to their status.
+The tree is not ticked while no leaf ends, so checks are observed outside of ticks: when userdata that they read is
+written, when a topic that they read has a new message, and at their period. A tick is due only when the status of a
+check would change.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _FINAL = (Status.SUCCESS, Status.FAILURE)
 
 
 class _Watch:
-    """One check that is observed while what stands behind it is at work."""
+    """One check that is observed while the nodes behind it are active."""
 
     def __init__(self, leaf: TreeLeaf) -> None:
         self.leaf = leaf
@@ -51,14 +51,14 @@ class _Watch:
 
 
 class ReactiveChecks:
-    """The checks that one activation of a tree would ask again; used on the loop thread.
+    """The checks that the next tick of one tree activation would tick again; used on the loop thread.
 
     Args:
-        path: The tree.
-        execution: The run.
-        builder: What stands in the tree.
-        polling: Counts what is asked in vain.
-        wake: Called when one may say something else, or a tick is due.
+        path: The path of the tree.
+        execution: The execution of the run.
+        builder: The nodes of the tree.
+        polling: Counts observations without a change.
+        wake: Called when the status of a check may have changed, or a tick is due.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class ReactiveChecks:
         wake: Callable[[], None],
     ) -> None:
         self.tick_due = False
-        """Whether something has changed that the tree has to be ticked for."""
+        """Whether a change requires a tick of the tree."""
         self._path = path
         self._execution = execution
         self._builder = builder
@@ -83,46 +83,46 @@ class ReactiveChecks:
 
     @property
     def timers(self) -> tuple[Timer, ...]:
-        """Those that are set."""
+        """The active timers."""
         return tuple(watch.timer for watch in self._watches.values() if watch.timer is not None)
 
     @property
     def stale(self) -> bool:
-        """Whether a check may say something else than it has, so that `ask` has something to do."""
+        """Whether the status of a check may have changed, so that `ask` has to observe it."""
         return any(watch.leaf.stale for watch in self._watches.values())
 
     def follow(self, root: Behaviour) -> None:
-        """Watch what the next tick would ask again, after one has been carried out."""
+        """Watch the checks that the next tick would tick again; called after each tick."""
         self.tick_due = False
         if not self._builder.reactive:
             return
-        found = tuple(self._in_front(root)) if root.status is Status.RUNNING else ()
-        for gone in [leaf for leaf in self._watches if leaf not in found]:
-            self._end(self._watches.pop(gone))
-        self._foreign = {each: self._builder.foreign[each] for each in found if each in self._builder.foreign}
-        for leaf in found:
+        leaves = tuple(self._reactive_leaves(root)) if root.status is Status.RUNNING else ()
+        for removed in [leaf for leaf in self._watches if leaf not in leaves]:
+            self._end(self._watches.pop(removed))
+        self._foreign = {each: self._builder.foreign[each] for each in leaves if each in self._builder.foreign}
+        for leaf in leaves:
             if isinstance(leaf, TreeLeaf) and leaf.plan.check:
                 self._watch(self._watches.setdefault(leaf, _Watch(leaf)))
-        # In document order: so they are asked.
-        self._watches = {leaf: self._watches[leaf] for leaf in found if leaf in self._watches}
+        # In document order, which is the order of observation.
+        self._watches = {leaf: self._watches[leaf] for leaf in leaves if leaf in self._watches}
 
     def hear(self, event: Event) -> None:
         """Take an event of the run."""
         if isinstance(event, UserdataWritten | UserdataAppended):
             if (self._watches or self._foreign) and self._execution.skills.entries is None:
-                self._hear_write(event)
+                self._on_write(event)
         elif isinstance(event, MessageReceived) and self._builder.reactive and is_inside(self._path, event.path):
             self._topics[event.path].add(event.topic)
 
     async def ask(self, *, until: Callable[[], bool], news: asyncio.Event) -> None:
-        """Observe what may have changed, in document order, until there is a reason to tick.
+        """Observe the checks that may have changed, in document order, until a tick is due.
 
         Args:
-            until: Whether there is another reason, for which an observation is given up.
-            news: Set when there may be one.
+            until: Returns whether a tick is due for another reason, which ends the observation.
+            news: Set when there may be such a reason.
 
         Raises:
-            StateError: in virtual time nothing but observing can go on for ever.
+            StateError: in virtual time only observations would continue, forever.
             CancelledError: the tree was preempted.
         """
         for watch in tuple(self._watches.values()):
@@ -137,37 +137,37 @@ class ReactiveChecks:
                 watch.leaf.stale = True
                 return
             self._compare(watch, observed)
-            self._time(watch)
+            self._start_timer(watch)
             if not self.tick_due:
                 self._polling.count(self._names)
 
     def forget_answers(self) -> None:
-        """Have the checks ask anew: time has passed since they were observed."""
+        """Drop the observed answers: time has passed since the observation."""
         for watch in self._watches.values():
             self._execution.observed.forget(watch.path)
 
     def close(self) -> None:
-        """Watch nothing any more."""
+        """End all watches."""
         for watch in self._watches.values():
             self._end(watch)
         self._watches.clear()
         self._foreign.clear()
 
-    def _in_front(self, node: Behaviour) -> Iterator[Behaviour]:
-        """Go through the leaves in front of what is RUNNING in composites without memory, below a RUNNING node."""
+    def _reactive_leaves(self, node: Behaviour) -> Iterator[Behaviour]:
+        """Yield the leaves in front of the RUNNING child of composites without memory, below a RUNNING node."""
         without_memory = isinstance(node, WhileDoElse) or (
             isinstance(node, composites.Sequence | composites.Selector) and not node.memory
         )
         for child in node.children:
             if child.status is Status.RUNNING:
-                yield from self._in_front(child)
+                yield from self._reactive_leaves(child)
                 if without_memory:
                     return
             elif without_memory:
                 yield from self._ended(child)
 
     def _ended(self, node: Behaviour) -> Iterator[Behaviour]:
-        """Go through the leaves of a part that has ended, which a tick would ask again."""
+        """Yield the leaves of an ended node, which a tick would tick again."""
         if node.status not in _FINAL:
             return
         if isinstance(node, decorators.OneShot) and node.final_status is not None:
@@ -182,12 +182,12 @@ class ReactiveChecks:
 
     def _compare(self, watch: _Watch, observed: Observation) -> None:
         self._topics[watch.path] |= observed.topics
-        self._hear_topics(watch)
+        self._subscribe_topics(watch)
         if observed.left is not None:
             status = watch.leaf.status_of(observed.left)
             if status is watch.leaf.said:
                 return
-            # Should the tick not ask it, it is not the reason for another one.
+            # If the tick does not reach it, it must not cause another tick.
             watch.leaf.said = status
         self._execution.observed.keep(watch.path, observed.answers)
         self.tick_due = True
@@ -196,35 +196,35 @@ class ReactiveChecks:
         path = leaf.plan.node.path
         work = observe(leaf.plan.node, leaf.scope, self._execution)
         task = asyncio.create_task(work, name=f"observing {path}")
-        hearing: asyncio.Task[bool] | None = None
+        news_task: asyncio.Task[bool] | None = None
         try:
-            # Most end in the first turn of the loop.
+            # Most observations end in the first iteration of the loop.
             await asyncio.sleep(0)
             deadline_s = self._execution.clock.now_s() + CHECK_TIMEOUT_S
             while not task.done() and not until():
                 left_s = deadline_s - self._execution.clock.now_s()
                 if left_s <= 0:
                     break
-                if hearing is None or hearing.done():
+                if news_task is None or news_task.done():
                     news.clear()
-                    hearing = asyncio.create_task(news.wait(), name=f"news of {self._path}")
-                await asyncio.wait({task, hearing}, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
+                    news_task = asyncio.create_task(news.wait(), name=f"news of {self._path}")
+                await asyncio.wait({task, news_task}, timeout=left_s, return_when=asyncio.FIRST_COMPLETED)
         finally:
-            if hearing is not None:
-                hearing.cancel()
+            if news_task is not None:
+                news_task.cancel()
             await preempt((task,), overdue_policy(self._execution, self._path))
         return Observation() if task.cancelled() else task.result()
 
-    def _hear_write(self, event: UserdataWritten | UserdataAppended) -> None:
-        heard = False
+    def _on_write(self, event: UserdataWritten | UserdataAppended) -> None:
+        affected = False
         for watch in self._watches.values():
             reads = watch.leaf.plan.reads
             if (reads is None or event.key in reads) and not is_inside(watch.path, event.path):
-                watch.leaf.stale = heard = True
+                watch.leaf.stale = affected = True
         for foreign in self._foreign.values():
             if event.key in foreign.reads:
-                self.tick_due = heard = True
-        if heard:
+                self.tick_due = affected = True
+        if affected:
             if not is_inside(self._path, event.path):
                 self._execution.waits.add(self._path)
             self._wake()
@@ -238,24 +238,24 @@ class ReactiveChecks:
                 watch.visit = visit
                 watch.forget_entry = entries.expect(watch.path, visit, self._tick)
             return
-        self._time(watch)
-        self._hear_topics(watch)
+        self._start_timer(watch)
+        self._subscribe_topics(watch)
 
-    def _hear_topics(self, watch: _Watch) -> None:
+    def _subscribe_topics(self, watch: _Watch) -> None:
         for topic in self._topics[watch.path] - watch.topics.keys():
-            watch.topics[topic] = self._execution.skills.watch(topic, partial(self._outdate, watch))
+            watch.topics[topic] = self._execution.skills.watch(topic, partial(self._mark_stale, watch))
 
-    def _time(self, watch: _Watch) -> None:
-        """Set the next time at which it is asked, unless that is set."""
+    def _start_timer(self, watch: _Watch) -> None:
+        """Start the timer of the next periodic observation, unless it is running."""
         every_s = watch.leaf.plan.every_s
         if every_s is None or (watch.timer is not None and not watch.timer.future.done()):
             return
         if watch.timer is not None:
             self._execution.branch_holds.drop(watch.timer)
         watch.timer = self._execution.branch_holds.timer(watch.path, every_s)
-        watch.timer.future.add_done_callback(lambda _: self._outdate(watch))
+        watch.timer.future.add_done_callback(lambda _: self._mark_stale(watch))
 
-    def _outdate(self, watch: _Watch) -> None:
+    def _mark_stale(self, watch: _Watch) -> None:
         if watch.leaf in self._watches:
             self._execution.waits.add(watch.path)
             watch.leaf.stale = True

@@ -1,7 +1,7 @@
 """Restores a newly built tree to the state of an interrupted activation.
 
-Leaves that were at work are begun again (their own points say from where); timers go on with what
-was left of them; a py_trees behaviour that was RUNNING begins anew, as nobody knows its inside.
+Active leaves are started again (from their own checkpoints); timers continue with the remaining time; a py_trees
+behaviour that was RUNNING starts over, as its internal state is unknown.
 """
 
 from __future__ import annotations
@@ -28,25 +28,25 @@ _FINAL = (Status.SUCCESS, Status.FAILURE)
 _NEVER = TreeNodeState()
 
 BranchValues = Mapping[str, Mapping[str, object]]
-"""What branches of parallels had written, by the path of the branch."""
+"""Values written by branches of parallels, by the path of the branch."""
 
 
 def restore_tree(
     root: Behaviour, builder: TreeBuilder, known: Mapping[str, TreeNodeState], branches: BranchValues
 ) -> bool:
-    """Give every part the state it stood in; return whether a tick is due at once.
+    """Restore the state of every node; return whether a tick is due at once.
 
     Args:
-        root: The tree as grown.
-        builder: What its parts share.
-        known: How each part stood, by path.
-        branches: Values of the branches of parallels that were at work.
+        root: The newly built tree.
+        builder: The builder of the tree.
+        known: The state of each node, by path.
+        branches: Values of the branches of active parallels.
     """
     restoring = _Restoring(builder, known, branches, builder.execution.recorder.now_s())
     if not restoring.part(root):
         restoring.tick_due = True
-    # In the order in which they had begun, so that those which end together end in the same order.
-    for leaf, _ in sorted(restoring.going_on, key=lambda each: each[1]):
+    # In order of their starts, so that leaves that end together end in the same order.
+    for leaf, _ in sorted(restoring.resumed_leaves, key=lambda each: each[1]):
         leaf.go_on()
     for post in builder.posts.values():
         post.conclude()
@@ -61,33 +61,33 @@ class _Restoring:
     now_s: float
     tick_due: bool = False
     unreached: int | None = None
-    """The mark since which no tick comes to the part at hand, as the condition of a `while_do_else` is RUNNING."""
+    """The event since which no tick reaches the current node, as the condition of a `while_do_else` is RUNNING."""
     echoed: set[Behaviour] = field(default_factory=set[Behaviour])
-    going_on: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
+    resumed_leaves: list[tuple[TreeLeaf, int]] = field(default_factory=list[tuple[TreeLeaf, int]])
 
     @cached_property
     def newest(self) -> int:
-        """The last of all marks."""
+        """The number of the last event."""
         return max((max(each.order, each.passed) for each in self.known.values()), default=-1)
 
     def part(self, node: Behaviour) -> bool:
-        """Restore a part and everything below it; tell whether anything there will wake the tree."""
+        """Restore a node and everything below it; return whether anything there will wake the tree."""
         part = self.builder.parts[node]
-        standing = self.known.get(part.path, _NEVER)
-        if standing.status != "running" and self._last(node) > standing.order:
-            # It was in its first tick, and had not come to tell its status.
+        state = self.known.get(part.path, _NEVER)
+        if state.status != "running" and self._last(node) > state.order:
+            # It was in its first tick, and its status was not recorded yet.
             self.tick_due = True
-            standing = replace(standing, status="running", since_s=self.now_s, attempt=1, rounds=0)
+            state = replace(state, status="running", since_s=self.now_s, attempt=1, rounds=0)
         if node in self.builder.posts:
-            self.builder.posts[node].made = dict(standing.assigned)
+            self.builder.posts[node].made = dict(state.assigned)
         if isinstance(node, TreeLeaf):
-            return self._leaf(node, standing)
+            return self._leaf(node, state)
         if part.foreign is not None:
-            # Its own state is lost; it is INVALID, so the tick that is due initialises it again.
+            # Its internal state is lost; it is INVALID, so the pending tick initialises it again.
             return False
         skips = self.builder.statuses.skips
-        skipped = standing.status == "skipped"
-        node.status = skips.skip(node) if skipped else _STATUS.get(standing.status, Status.INVALID)
+        skipped = state.status == "skipped"
+        node.status = skips.skip(node) if skipped else _STATUS.get(state.status, Status.INVALID)
         self.builder.statuses.take(node)
         running = node.status is Status.RUNNING
         if isinstance(node, Parallel) and running:
@@ -95,20 +95,20 @@ class _Restoring:
         wakes = [self._inside(node, child) for child in node.children]
         awake = any(wakes)
         if isinstance(node, Decorator):
-            awake = self._decorator(node, standing) or awake
+            awake = self._decorator(node, state) or awake
         if running:
-            skips.restore(node, (child for child in node.children if self._was_skipped(child, standing)))
-            unread = self._unread(node, standing)
+            skips.restore(node, (child for child in node.children if self._was_skipped(child, state)))
+            unread = self._unread(node, state)
             for child in unread:
                 self._echo(child)
             if isinstance(node, composites.Composite):
-                node.current_child = unread[0] if unread else self._current(node, standing)
-            # A tick was under way, or had just ended, when it was cut: it is done again.
+                node.current_child = unread[0] if unread else self._current(node, state)
+            # A tick was in progress, or had just ended, at the interruption: it is repeated.
             self.tick_due = self.tick_due or bool(unread) or not awake
         return awake
 
     def _inside(self, node: Behaviour, child: Behaviour) -> bool:
-        """Restore a child; a branch of a `while_do_else` whose condition is RUNNING gives no reason to tick."""
+        """Restore a child; a branch of a `while_do_else` whose condition is RUNNING does not make a tick due."""
         if not (isinstance(node, WhileDoElse) and child in node.branches and node.condition.status is Status.RUNNING):
             return self.part(child)
         around, due, since = self.unreached, self.tick_due, self._passed_since(node.condition, child)
@@ -118,32 +118,32 @@ class _Restoring:
         return wakes
 
     def _passed_since(self, condition: Behaviour, branch: Behaviour) -> int:
-        """Return the mark since which no tick has come to a branch, by when its condition became RUNNING."""
-        standing, last = self._standing(condition), max(self._order(condition), self._last(condition))
+        """Return the event since which no tick has reached a branch: when its condition became RUNNING."""
+        state, last = self._state(condition), max(self._order(condition), self._last(condition))
         if last == self.newest:
-            # The tick that asked it may have been under way, and not have come to tell what it passed over.
-            return max(standing.over, *map(self._ticked, branch.iterate()))
-        return standing.opened if standing.status == "running" else last
+            # The tick of the condition may have been in progress, before it recorded the nodes that it passed over.
+            return max(state.over, *map(self._ticked, branch.iterate()))
+        return state.opened if state.status == "running" else last
 
     def _ticked(self, node: Behaviour) -> int:
-        """Return the last mark by which a tick had come to a part; leaves that command begin when it is over."""
-        standing = self._standing(node)
+        """Return the last event by which a tick had reached a node; leaves that command begin after the tick."""
+        state = self._state(node)
         if not isinstance(node, TreeLeaf):
-            return standing.order
+            return state.order
         if not node.plan.check:
             return -1
-        # One whose guard was closed was not entered.
-        return standing.order if standing.target is not None else standing.began
+        # A leaf with a closed guard was not entered.
+        return state.order if state.target is not None else state.began
 
-    def _unread(self, node: Behaviour, standing: TreeNodeState) -> list[Behaviour]:
-        """Return the children whose end a RUNNING part had not come to read."""
-        ended = [child for child in node.children if child.status in _FINAL and self._order(child) > standing.over]
+    def _unread(self, node: Behaviour, state: TreeNodeState) -> list[Behaviour]:
+        """Return the children whose end a RUNNING node had not read."""
+        ended = [child for child in node.children if child.status in _FINAL and self._order(child) > state.over]
         if isinstance(node, ThresholdParallel):
             return ended if node.verdict is not Status.RUNNING else []
         if isinstance(node, composites.Parallel):
             return ended if _decided(node, ended) else []
         if isinstance(node, IfThenElse):
-            return self._unread_choice(node, standing)
+            return self._unread_choice(node, state)
         if isinstance(node, composites.Composite):
             final = Status.FAILURE if isinstance(node, composites.Sequence) else Status.SUCCESS
             decisive = [child for child in ended if child.status is final]
@@ -152,8 +152,8 @@ class _Restoring:
         match node:
             case Repeat() | Retry():
                 again = Status.SUCCESS if isinstance(node, Repeat) else Status.FAILURE
-                told = standing.order > max(self._last(node), self._order(node.children[0]))
-                return [] if told and node.children[0].status is again else ended
+                is_recorded = state.order > max(self._last(node), self._order(node.children[0]))
+                return [] if is_recorded and node.children[0].status is again else ended
             case Remap():
                 return [child for child in ended if node.shown[child.status] is not Status.RUNNING]
             case StatusCondition():
@@ -161,21 +161,21 @@ class _Restoring:
             case _:
                 return ended
 
-    def _unread_choice(self, node: IfThenElse, standing: TreeNodeState) -> list[Behaviour]:
-        """Return what has ended, in the order in which it is to be read: the condition, the branch at work."""
+    def _unread_choice(self, node: IfThenElse, state: TreeNodeState) -> list[Behaviour]:
+        """Return the unread ended children, in the order to read them: the condition, then the active branch."""
         ended = [branch for branch in node.branches if branch.status in _FINAL]
-        unread = [branch for branch in ended if self._order(branch) > standing.over]
-        if node.condition.status not in _FINAL or self._order(node.condition) < standing.over:
+        unread = [branch for branch in ended if self._order(branch) > state.over]
+        if node.condition.status not in _FINAL or self._order(node.condition) < state.over:
             return []
-        asked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
+        ticked_last = all(self._order(node.condition) > self._order(branch) for branch in ended)
         at_work = [branch for branch in node.branches if branch.status is Status.RUNNING]
-        if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or asked_last)):
-            # A tick was cut in which the condition had been asked, and nothing had come of it.
+        if not (unread or at_work) or (isinstance(node, WhileDoElse) and (at_work or ticked_last)):
+            # The interrupted tick had ticked the condition, without an effect yet.
             return [] if at_work == [node.chosen] else [node.condition, *unread]
         return unread
 
-    def _current(self, node: composites.Composite, standing: TreeNodeState) -> Behaviour:
-        """Return the child at which a composite with memory goes on."""
+    def _current(self, node: composites.Composite, state: TreeNodeState) -> Behaviour:
+        """Return the child at which a composite with memory resumes."""
         if isinstance(node, IfThenElse):
             return next((branch for branch in node.branches if branch.status is Status.RUNNING), node.condition)
         passed = Status.SUCCESS if isinstance(node, composites.Sequence) else Status.FAILURE
@@ -183,77 +183,77 @@ class _Restoring:
         for index, child in enumerate(node.children):
             if child.status is Status.RUNNING:
                 return child
-            if child.status is passed and self._order(child) > standing.over:
+            if child.status is passed and self._order(child) > state.over:
                 following = index + 1
         return node.children[min(following, len(node.children) - 1)]
 
     def _was_skipped(self, child: Behaviour, around: TreeNodeState) -> bool:
-        standing = self._standing(child)
-        return standing.skipped > max(around.over, standing.began)
+        state = self._state(child)
+        return state.skipped > max(around.over, state.began)
 
     def _order(self, node: Behaviour) -> int:
-        """Return which of the marks was the last one of a part."""
-        return self._standing(node).order
+        """Return the number of the last event of a node."""
+        return self._state(node).order
 
-    def _standing(self, node: Behaviour) -> TreeNodeState:
-        # What a py_trees behaviour brings with it is no part.
+    def _state(self, node: Behaviour) -> TreeNodeState:
+        # Children of a py_trees behaviour are not tree nodes.
         return self.known.get(self.builder.parts[node].path, _NEVER) if node in self.builder.parts else _NEVER
 
     def _last(self, node: Behaviour) -> int:
-        """Return which of the marks was the last one by which something below a part was at work, or ended."""
-        found = -1
+        """Return the number of the last event by which something below a node was active, or ended."""
+        last = -1
         for child in node.children:
-            standing = self._standing(child)
-            own = standing.order if standing.status != "invalid" else -1
-            found = max(found, own, self._last(child))
-        return found
+            state = self._state(child)
+            own = state.order if state.status != "invalid" else -1
+            last = max(last, own, self._last(child))
+        return last
 
-    def _leaf(self, leaf: TreeLeaf, standing: TreeNodeState) -> bool:
+    def _leaf(self, leaf: TreeLeaf, state: TreeNodeState) -> bool:
         execution = self.builder.execution
         path = leaf.plan.node.path
-        told_again = not standing.read and path in execution.points
-        if standing.status == "running" or told_again:
+        is_repeated = not state.read and path in execution.points
+        if state.status == "running" or is_repeated:
             leaf.status = Status.RUNNING
-            self.going_on.append((leaf, standing.order))
+            self.resumed_leaves.append((leaf, state.order))
             return True
         execution.points.pop(path, None)
-        if standing.status == "ended" and (standing.outcome is not None or standing.target is not None):
-            left = NodeExit(standing.outcome or "", standing.target)
-            if self._is_unread(standing):
-                leaf.keep(left, passed=standing.passed >= 0)
+        if state.status == "ended" and (state.outcome is not None or state.target is not None):
+            left = NodeExit(state.outcome or "", state.target)
+            if self._is_unread(state):
+                leaf.keep(left, passed=state.passed >= 0)
                 return True
             leaf.restore(left)
         return False
 
     def _is_unread(self, ended: TreeNodeState) -> bool:
-        """Tell whether no tick has come to a leaf since it has ended."""
+        """Return whether no tick has reached a leaf since its end."""
         if self.unreached is None:
-            # A tick was under way that was about to come there.
+            # A tick was in progress that had not reached it yet.
             self.tick_due = self.tick_due or ended.passed >= 0
             return ended.passed >= 0
         return ended.passed >= 0 or ended.order > self.unreached
 
     def _echo(self, node: Behaviour) -> None:
-        """Have a part that has ended tell its status once more in the next tick, without doing anything."""
+        """Let an ended node yield its status again in the next tick, without work."""
         if node not in self.echoed:
             self.echoed.add(node)
             _echo(node)
 
-    def _decorator(self, node: Behaviour, standing: TreeNodeState) -> bool:
-        """Restore what a decorator keeps; tell whether it has set a timer."""
-        elapsed_s = self.now_s - standing.since_s
+    def _decorator(self, node: Behaviour, state: TreeNodeState) -> bool:
+        """Restore the state of a decorator; return whether it has set a timer."""
+        elapsed_s = self.now_s - state.since_s
         match node:
             case Timeout():
-                node.restore(standing, elapsed_s, reached=self.unreached is None)
+                node.restore(state, elapsed_s, reached=self.unreached is None)
             case Retry() | Remap() | StatusCondition():
-                node.restore(standing, elapsed_s)
+                node.restore(state, elapsed_s)
             case Cooldown():
-                ended_s = standing.since_s if standing.first is not None else 0.0
-                node.restore(standing, self.now_s - max(standing.ended_s or 0.0, ended_s))
+                ended_s = state.since_s if state.first is not None else 0.0
+                node.restore(state, self.now_s - max(state.ended_s or 0.0, ended_s))
             case Repeat():
-                node.success = standing.rounds
+                node.success = state.rounds
             case decorators.OneShot():
-                kept = standing.first if node.policy is OneShotPolicy.ON_COMPLETION else standing.final
+                kept = state.first if node.policy is OneShotPolicy.ON_COMPLETION else state.final
                 node.final_status = _STATUS[kept] if kept is not None and _STATUS[kept] in node.policy.value else None
             case _:
                 pass
@@ -262,7 +262,7 @@ class _Restoring:
 
 
 def _decided(node: composites.Parallel, ended: Sequence[Behaviour]) -> bool:
-    """Tell whether a parallel would end with a tick that reads these."""
+    """Return whether a parallel ends with a tick that reads these children."""
     policy = node.policy
     if isinstance(policy, ParallelPolicy.SuccessOnOne) or any(child.status is Status.FAILURE for child in ended):
         return True
@@ -280,6 +280,6 @@ def _echo(node: Behaviour) -> None:
         if node.status in _FINAL:
             yield node
         else:
-            yield from node.tick()  # it was halted before the tick came to it
+            yield from node.tick()  # it was halted before the tick reached it
 
     vars(node)["tick"] = tick

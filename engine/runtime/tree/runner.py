@@ -1,4 +1,4 @@
-"""Ticks one activation of a tree when something woke it, and carries out what each tick decided."""
+"""Ticks one activation of a tree on demand, and executes the decisions of each tick."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from engine.state import Outcome
 
 _FINAL = (Status.SUCCESS, Status.FAILURE)
 _REMEMBERED = 32
-"""How many names are kept to name an endless loop."""
+"""Number of recent names kept to describe an endless loop."""
 
 
 class TreeRunner:
@@ -45,11 +45,11 @@ class TreeRunner:
 
     Args:
         root: The planned tree.
-        path: The node that it is the work of.
-        scope: Where its parts read and write.
-        execution: The run.
-        history: What had happened in an activation that was cut, to go on from there; see `mark_of`.
-        branches: What branches of its parallels had written, by the path of the branch.
+        path: The path of the tree.
+        scope: The scope of the tree.
+        execution: The execution of the run.
+        history: The events of an interrupted activation that is resumed; see `tree_event_of`.
+        branches: Values written by branches of its parallels, by the path of the branch.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class TreeRunner:
         branches: BranchValues | None = None,
     ) -> None:
         self.ticks = 0
-        """How often the tree was ticked."""
+        """Number of ticks."""
         self._path = path
         self._execution = execution
         self._news = asyncio.Event()
@@ -89,25 +89,25 @@ class TreeRunner:
         self._branches: BranchValues = branches or {}
 
     async def run(self) -> Outcome:
-        """Tick until the root has ended; everything it has begun has ended then.
+        """Tick until the root has ended; all leaves have ended then.
 
         Raises:
-            FlexcellError: a leaf, a foreign behaviour or a clean-up failed and nothing in the tree takes that.
-            CancelledError: the tree was preempted; all clean-up is done.
+            FlexcellError: a leaf, a foreign behaviour or a clean-up failed and nothing in the tree handles the error.
+            CancelledError: the tree was preempted; all clean-up is complete.
         """
-        recorder, hear = self._execution.recorder, self._hear
+        recorder, watcher = self._execution.recorder, self._on_event
         ready: list[ForeignBehaviour] = []
         try:
-            root = self._grow(ready)
+            root = self._build(ready)
             if self._builder.reactive or self._watched:
-                # Events that nobody hears are not even made.
-                recorder.watch(hear)
+                # Without watchers and journal events are not even created.
+                recorder.watch(watcher)
             return await self._run(root)
         except asyncio.CancelledError:
             raise_failure(await self._leaves.stop())
             raise
         finally:
-            recorder.unwatch(hear)
+            recorder.unwatch(watcher)
             self._tree_timers.close()
             self._reactive.close()
             try:
@@ -116,7 +116,7 @@ class TreeRunner:
                 self._shut_down(ready)
                 self._builder.dismantle()
 
-    def _grow(self, ready: list[ForeignBehaviour]) -> Behaviour:
+    def _build(self, ready: list[ForeignBehaviour]) -> Behaviour:
         with self._blackboard:
             root = self._builder.build(self._planned, self._place)
             self._watched = frozenset(key for guard in self._builder.guards for key in guard.keys)
@@ -126,29 +126,29 @@ class TreeRunner:
         return root
 
     async def _run(self, root: Behaviour) -> Outcome:
-        instants, moment = 0, self._moment()
+        idle_ticks, wait = 0, self._last_wait()
         try:
             if self._history:
-                await self._go_on(root)
+                await self._resume(root)
             while root.status not in _FINAL:
                 await self._tick(root)
                 if root.status is Status.INVALID:
                     raise StateError("the root of the tree has no status", where=self._path)
                 if root.status is Status.RUNNING:
                     await self._wait()
-                last, moment = moment, self._moment()
-                instants = instants + 1 if moment == last else 0
-                if instants >= self._execution.instant_limit:
-                    raise self._endless(instants)
+                last, wait = wait, self._last_wait()
+                idle_ticks = idle_ticks + 1 if wait == last else 0
+                if idle_ticks >= self._execution.instant_limit:
+                    raise self._endless(idle_ticks)
             return self._outcome(root)
         except BaseException:
-            # Whatever it is goes on; nothing in the tree may be left RUNNING.
+            # The exception propagates; no node of the tree may remain RUNNING.
             self._builder.statuses.closing = True
             self._clear(root)
             raise
 
-    async def _go_on(self, root: Behaviour) -> None:
-        """Stand where the history ends, and return when there is a reason to tick."""
+    async def _resume(self, root: Behaviour) -> None:
+        """Restore the tree to the end of its history, and return when a tick is due."""
         tick_due = restore_tree(root, self._builder, fold_tree_events(self._history), self._branches)
         await self._leaves.go_on()
         self._tree_timers.begin()
@@ -156,8 +156,8 @@ class TreeRunner:
         if root.status is Status.RUNNING and not tick_due:
             await self._wait()
 
-    def _moment(self) -> float:
-        """What is unchanged while no time passes: virtual time itself, else what was last waited for."""
+    def _last_wait(self) -> float:
+        """Return a value that changes only with waits: virtual time, else the number of the last wait."""
         clock = self._execution.clock
         return clock.now_s() if clock.virtual else self._execution.waits.last(self._path)
 
@@ -181,7 +181,7 @@ class TreeRunner:
         self._reactive.follow(root)
 
     def _count_polling(self) -> None:
-        """Count a tick that only a timer of the tree has made due; what a foreign behaviour counts nobody knows."""
+        """Count a tick that only a timer of the tree made due; not with foreign behaviours, whose state is unknown."""
         if self._tree_timers.rang and not (self._leaves.unread or self._reactive.tick_due or self._builder.foreign):
             self._polling.count(lambda: ", ".join(dict.fromkeys(map(self._short, self._recent))) or "its parts")
         else:
@@ -192,10 +192,10 @@ class TreeRunner:
 
     def _steps(self, root: Behaviour) -> Iterator[Behaviour]:
         steps = root.tick()
-        # Nothing else in a tree evaluates anything, or runs code of others.
-        return self._watched_over(steps) if self._builder.guards or self._builder.foreign else steps
+        # Only guards and foreign behaviours evaluate expressions or run user code.
+        return self._contained_steps(steps) if self._builder.guards or self._builder.foreign else steps
 
-    def _watched_over(self, steps: Iterator[Behaviour]) -> Iterator[Behaviour]:
+    def _contained_steps(self, steps: Iterator[Behaviour]) -> Iterator[Behaviour]:
         while True:
             with self._execution.counted(), self._blackboard:
                 step = next(steps, None)
@@ -204,13 +204,13 @@ class TreeRunner:
             yield step
 
     def _raise_error(self, ended: frozenset[TreeLeafActivation]) -> None:
-        """Raise the first error, in document order, that no decorator takes: it ends the tree at once."""
+        """Raise the first error, in document order, that no decorator handles: it ends the tree at once."""
         for each in sorted(ended, key=lambda each: each.rank):
             if each.error is not None and not each.caught:
                 raise each.error
 
     async def _wait(self) -> None:
-        """Return when there is a reason to tick, everything of this instant has played out, and nothing holds us."""
+        """Return when a tick is due, this instant has settled, and the branch is not held."""
         while not (self._is_due() or self._guard_has_changed()):
             self._news.clear()
             if self._reactive.stale:
@@ -228,16 +228,16 @@ class TreeRunner:
         return self._tree_timers.due or bool(self._leaves.unread) or self._reactive.tick_due
 
     def _guard_has_changed(self) -> bool:
-        """Tell whether a guard that was asked in the last tick would now say something else."""
+        """Return whether the value of a guard that was evaluated in the last tick has changed."""
         written, self._written = self._written, set()
-        asked = [each for each in self._builder.guards if each.said is not None and each.keys & written]
+        evaluated = [each for each in self._builder.guards if each.said is not None and each.keys & written]
         try:
             with METER.limited(MAX_STEPS, "the guards of this tree"):
-                return any(each.holds() is not each.said for each in asked)
+                return any(each.holds() is not each.said for each in evaluated)
         except FlexcellError:
-            return True  # the tick will meet the error where a decorator may take it
+            return True  # the tick raises the error where a decorator may handle it
 
-    def _hear(self, event: Event) -> None:
+    def _on_event(self, event: Event) -> None:
         self._reactive.hear(event)
         if isinstance(event, UserdataWritten | UserdataAppended) and event.key in self._watched:
             self._written.add(event.key)
@@ -251,7 +251,7 @@ class TreeRunner:
         return Outcome("failure", cause=explain_tree_failure(root, self._builder.parts, self._builder.entry_guards))
 
     def _clear(self, torn: Behaviour) -> None:
-        """Halt everything at and below a node, also what py_trees forgets when an exception has torn its tick."""
+        """Halt a node and everything below it, also nodes that py_trees misses after an exception in a tick."""
         with self._blackboard:
             nodes = tuple(torn.iterate())
             for node in nodes:
@@ -271,15 +271,15 @@ class TreeRunner:
         try:
             clean_up()
         except FlexcellError as error:
-            # What made the clean-up necessary goes on; this is told beside it.
+            # The error that caused the clean-up propagates; this one is only logged.
             self._execution.recorder.log(
                 self._path, f"clean-up failed: {describe_cause(cause_of(error))}", level="error"
             )
 
-    def _endless(self, instants: int) -> StateError:
+    def _endless(self, idle_ticks: int) -> StateError:
         names = list(dict.fromkeys(map(self._short, self._recent)))
         return StateError(
-            f"ticked {instants} times in a row without waiting for anything, through {' → '.join(names)}",
+            f"ticked {idle_ticks} times in a row without waiting for anything, through {' → '.join(names)}",
             where=self._path,
             hint="let one of these wait for something, or leave the loop",
         )

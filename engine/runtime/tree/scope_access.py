@@ -1,4 +1,4 @@
-"""Where a part of a tree reads and writes: the scope of the tree, or its own branch of a parallel."""
+"""Access of a tree node to its scope: the scope of the tree, or of its branch of a parallel."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from engine.runtime.userdata.userdata import Scope
 
 
 class ScopeAccess:
-    """Holds the scope of the moment; a parallel gives its branches new ones at each activation."""
+    """Holds the current scope; a parallel gives its branches new scopes at each activation."""
 
     __slots__ = ("scope",)
 

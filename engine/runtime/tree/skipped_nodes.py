@@ -1,8 +1,8 @@
-"""Which parts of a tree have been skipped: py_trees has no status for that.
+"""Skipped nodes of a tree; py_trees has no status for them.
 
-SKIPPED is that of BehaviorTree.CPP 4: a part that was not to run at all, which the part around it passes over. A part
-that is skipped has the status by which py_trees passes over it there, SUCCESS in a sequence and FAILURE in a selector,
-and is marked here beside it. Only parts below which something can be skipped pay for that.
+SKIPPED is defined as in BehaviorTree.CPP 4: the node does not run, and its parent passes over it. A skipped node has
+the status by which py_trees passes over it in its parent, SUCCESS in a sequence and FAILURE in a selector, and is
+registered here. Only nodes with skippable nodes below pay for that.
 """
 
 from __future__ import annotations
@@ -18,48 +18,48 @@ from engine.runtime.tree.decorators import Cooldown
 
 
 class SkippedNodes:
-    """The parts of one activation of a tree that are skipped at present."""
+    """The currently skipped nodes of one activation of a tree."""
 
     def __init__(self) -> None:
         self._passing: dict[Behaviour, Status] = {}
         self.skipped: set[Behaviour] = set()
-        """Those that were skipped when they were last due."""
+        """The nodes that were skipped at their last tick."""
         self._passed: dict[Behaviour, set[Behaviour]] = {}
-        """The children that each composite has passed over in its present activation."""
+        """The children that each composite has passed over in its current activation."""
 
     def __contains__(self, part: object) -> bool:
-        """Tell whether a part is skipped."""
+        """Return whether a node is skipped."""
         return part in self.skipped and isinstance(part, Behaviour) and part.status is self._passing[part]
 
     def __bool__(self) -> bool:
-        """Tell whether anything has been skipped."""
+        """Return whether any node is skipped."""
         return bool(self.skipped)
 
     def place(self, part: Behaviour, passing: Status) -> None:
-        """Let a part have this status when it is skipped: the part around it passes over that."""
+        """Set the status of a node when it is skipped, by which its parent passes over it."""
         self._passing[part] = passing
 
     def skip(self, part: Behaviour) -> Status:
-        """Mark a part as skipped; return the status that it is to have."""
+        """Mark a node as skipped; return its status."""
         self.skipped.add(part)
         return self.passing(part)
 
     def passing(self, part: Behaviour) -> Status:
-        """Return the status that a part has when it is skipped."""
+        """Return the status of a node when it is skipped."""
         return self._passing.setdefault(part, Status.SUCCESS)
 
     def run(self, part: Behaviour) -> None:
-        """Mark a part as one that was run."""
+        """Mark a node as not skipped."""
         self.skipped.discard(part)
 
     def forget_all(self) -> None:
-        """Forget all parts; the tree has ended."""
+        """Remove all nodes; the tree has ended."""
         self._passing.clear()
         self.skipped.clear()
         self._passed.clear()
 
     def follow(self, part: Behaviour) -> None:
-        """Have a composite be skipped when all its children are, and a decorator when its child is."""
+        """Track a node: a composite is skipped when all its children are, a decorator when its child is."""
         if isinstance(part, Decorator):
             self._follow_child(part)
         elif isinstance(part, composites.Composite):
@@ -67,7 +67,7 @@ class SkippedNodes:
             vars(part)["tick"] = self._ticked(part, part.tick)
 
     def restore(self, part: Behaviour, passed: Iterable[Behaviour]) -> None:
-        """Let a composite that is at work have passed over these children."""
+        """Restore the children that an active composite has passed over."""
         if part in self._passed:
             self._passed[part].update(passed)
 
@@ -81,7 +81,7 @@ class SkippedNodes:
                 passed.clear()
             for step in own():
                 if step is part:
-                    self._judge(part)
+                    self._update_skipped(part)
                 elif step in self:
                     passed.add(step)
                 else:
@@ -90,11 +90,11 @@ class SkippedNodes:
 
         return tick
 
-    def _judge(self, part: composites.Composite) -> None:
+    def _update_skipped(self, part: composites.Composite) -> None:
         if not self._passed[part].issuperset(part.children):
             self.run(part)
         elif part.status is Status.RUNNING:
-            # A parallel that waits for what was not to run.
+            # A parallel that waits for skipped children.
             part.stop(self.skip(part))
         else:
             part.status = self.skip(part)
@@ -109,7 +109,7 @@ class SkippedNodes:
             return own_update()
 
         def terminate(new_status: Status) -> None:
-            # Nothing has ended that was to be remembered, or to cool down.
+            # A skipped child starts no cooldown and is not remembered.
             if not (part in self.skipped and isinstance(part, decorators.OneShot | Cooldown)):
                 own_terminate(new_status)
 

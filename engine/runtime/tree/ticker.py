@@ -1,4 +1,4 @@
-"""Goes through the steps of a tick; only where something has to be waited for does it come back to the tree's task."""
+"""Executes the steps of a tick; it returns to the task of the tree only where it has to wait."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from engine.runtime.tree.status_log import StatusLog
 from engine.runtime.tree.tree_leaf import TickPause, TreeLeaf
 
 _MOST_IN_A_ROW = 255
-"""Checks that begin in a row before everybody else has a turn."""
+"""Consecutive checks before other tasks have a turn."""
 
 
 class Ticker:
-    """Belongs to one activation of a tree.
+    """Executes the ticks of one activation of a tree.
 
     Args:
-        execution: The run.
-        leaves: Those that are active.
-        at_turn: What is among the steps where a check is to begin, or where what was halted has to confirm first.
-        statuses: Told of each part that was ticked.
+        execution: The execution of the run.
+        leaves: The active leaves.
+        at_turn: The step at which a check begins, or halted leaves have to confirm first.
+        statuses: Records the status of each ticked node.
     """
 
     def __init__(self, execution: Execution, leaves: ActiveLeaves, at_turn: TickPause, statuses: StatusLog) -> None:
@@ -34,53 +34,53 @@ class Ticker:
         self._leaves = leaves
         self._at_turn = at_turn
         self._statuses = statuses
-        self._carrier = EagerTaskRunner[NodeExit](execution.activity, execution.loop, self._next_piece)
+        self._runner = EagerTaskRunner[NodeExit](execution.activity, execution.loop, self._next_piece)
         self._steps: Iterator[Behaviour] = iter(())
         self._over = True
-        self._late: Behaviour | None = None
-        """A step that is due once everybody else has had a turn."""
+        self._deferred: Behaviour | None = None
+        """A step that is deferred until other tasks have had a turn."""
         self._check: TreeLeaf | None = None
-        """The one that begins on the spot, or did so last."""
+        """The check that begins at once, or the last one that did."""
         self._in_a_row = 0
-        """How many checks have begun since everybody else had a turn."""
+        """Number of checks begun since other tasks had a turn."""
 
     async def tick(self, steps: Iterator[Behaviour]) -> None:
-        """Go through what py_trees yields.
+        """Execute the steps that py_trees yields.
 
-        The checks on the way begin in it. The steps that follow one that ends at once are gone through where it ran.
+        Checks begin inside the tick. Steps after a check that ends at once run in the task of that check.
 
         Raises:
-            FlexcellError: what a step raises, or a clean-up of what was halted.
+            FlexcellError: a step raised it, or a clean-up of a halted leaf failed.
         """
         self._steps, self._over = steps, False
         try:
             piece = self._next_piece()
             while not self._over:
-                piece = await (self._past_what_is_due() if piece is None else self._run(piece))
+                piece = await (self._after_pending() if piece is None else self._run(piece))
         finally:
-            # Between ticks nothing stands by that would count among what waits.
-            self._carrier.close()
+            # Between ticks no idle task may count as waiting.
+            self._runner.close()
             self._check = None
 
     async def _run(self, piece: Piece[NodeExit]) -> Piece[NodeExit] | None:
-        """Run a check and what follows it; return the next one that may begin."""
-        task, check = self._carrier.run(piece), self._check
+        """Run a check and the following steps; return the next check that may begin."""
+        task, check = self._runner.run(piece), self._check
         if task is None or check is None:
             return None
         await self._leaves.settled(check.follow(task))
         return self._next_piece()
 
     def _next_piece(self, left: NodeExit | None = None) -> Piece[NodeExit] | None:
-        """Go on to the next check that may begin at once; None at the end, and where others are due before.
+        """Advance to the next check that may begin at once; None at the end, or where a wait is due first.
 
         Args:
-            left: How the last check has ended on the spot.
+            left: The exit of the last check, if it ended at once.
         """
         execution, at_turn = self._execution, self._at_turn
         at_turn.left = left
         for step in self._steps:
             if execution.steps > MAX_STEPS:
-                self._late = step
+                self._deferred = step
                 return None
             if step is at_turn:
                 if self._leaves.halted or self._in_a_row >= _MOST_IN_A_ROW:
@@ -93,13 +93,13 @@ class Ticker:
         self._over = True
         return None
 
-    async def _past_what_is_due(self) -> Piece[NodeExit] | None:
-        """Wait for what is due first; return the check that may begin then."""
-        late, self._late = self._late, None
-        if late is not None:
+    async def _after_pending(self) -> Piece[NodeExit] | None:
+        """Wait for pending turns and clean-ups; return the check that may begin then."""
+        deferred, self._deferred = self._deferred, None
+        if deferred is not None:
             await self._execution.yield_turn()
-            if late is not self._at_turn:
-                self._statuses.note(late)
+            if deferred is not self._at_turn:
+                self._statuses.note(deferred)
                 return self._next_piece()
         await self._leaves.confirm()
         check = self._at_turn.check

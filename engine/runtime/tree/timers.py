@@ -1,7 +1,7 @@
-"""Timers of the decorators of one tree: set during a tick, running once the tick is carried out.
+"""Timers of the decorators of one tree: set during a tick, started when the tick is executed.
 
-A decorator that is entered while others are still cleaning up begins to count when they are done,
-as its leaves begin only then. Timers stand still while their branch is held.
+A timer of a decorator that is entered while other leaves clean up starts when they are finished, like its leaves.
+Timers are suspended while their branch is held.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from engine.runtime.scheduling.timer import Timer
 
 
 class TreeTimers:
-    """One timer for each part at most, by path; belongs to one activation of a tree.
+    """At most one timer for each node, by path; belongs to one activation of a tree.
 
     Args:
-        execution: Gives timers that stand still while held.
-        wake: Called when one has rung.
+        execution: Provides timers that are suspended while held.
+        wake: Called when a timer has expired.
     """
 
     def __init__(self, execution: Execution, wake: Callable[[], None]) -> None:
@@ -27,41 +27,41 @@ class TreeTimers:
         self._set: dict[str, float] = {}
         self._running: dict[str, Timer] = {}
         self.again: dict[str, None] = {}
-        """The parts that want another tick at once, in the order in which they asked."""
+        """The nodes that request another tick at once, in order of request."""
         self.rang = False
-        """Whether one has rung that no tick has followed yet."""
+        """Whether a timer has expired since the last tick."""
 
     @property
     def timers(self) -> tuple[Timer, ...]:
-        """Those that are set."""
+        """The running timers."""
         return tuple(self._running.values())
 
     @property
     def due(self) -> bool:
-        """Whether there is a reason to tick."""
+        """Whether a tick is due."""
         return self.rang or bool(self.again)
 
     def follow(self) -> None:
-        """A tick follows: what was due is no more."""
+        """Clear what was due, as a tick follows."""
         self.rang = False
         self.again.clear()
 
     def call_again(self, path: str) -> None:
-        """Have the tree ticked again at once, unless the part is dropped in this tick."""
+        """Request another tick at once, unless the node is dropped in this tick."""
         self.again[path] = None
 
     def set(self, path: str, after_s: float) -> None:
-        """Have the part woken `after_s` after this tick is carried out; replaces what was set before."""
+        """Set a timer that expires `after_s` after this tick is executed; replaces an earlier timer of the node."""
         self.drop(path)
         self._set[path] = after_s
 
     def pending(self, path: str) -> bool:
-        """Tell whether a timer of the part is set and has not rung."""
+        """Return whether a timer of the node is set and has not expired."""
         timer = self._running.get(path)
         return path in self._set or (timer is not None and not timer.future.done())
 
     def drop(self, path: str) -> None:
-        """Forget what a part has set or called for, if anything."""
+        """Drop the timer and tick request of a node, if any."""
         self.again.pop(path, None)
         self._set.pop(path, None)
         timer = self._running.pop(path, None)
@@ -69,18 +69,18 @@ class TreeTimers:
             self._execution.branch_holds.drop(timer)
 
     def begin(self) -> None:
-        """Let run what was set in this tick."""
+        """Start the timers that were set in this tick."""
         for path, after_s in self._set.items():
             self._execution.waits.add_timed(path, after_s)
             timer = self._running[path] = self._execution.branch_holds.timer(path, after_s)
-            timer.future.add_done_callback(self._ring)
+            timer.future.add_done_callback(self._expire)
         self._set.clear()
 
     def close(self) -> None:
-        """Forget all."""
+        """Drop all timers."""
         for path in (*self._set, *self._running):
             self.drop(path)
 
-    def _ring(self, _: Future[None]) -> None:
+    def _expire(self, _: Future[None]) -> None:
         self.rang = True
         self._wake()

@@ -1,4 +1,4 @@
-"""The tree container: a behavior tree executed by py_trees, ticked only when something woke it."""
+"""The tree container: a behavior tree executed by py_trees, ticked only on demand."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from engine.state import Outcome
 
 @dataclass(frozen=True, kw_only=True)
 class Tree:
-    """A planned tree as a node's work."""
+    """Work of a tree node of a plan."""
 
     root: TreeNode
 
@@ -49,20 +49,20 @@ class Tree:
         return frozenset(("success",))
 
     def initial_values(self, inputs: Mapping[str, object]) -> Mapping[str, object]:
-        """Nothing: its scope begins empty."""
+        """Return nothing: its scope starts empty."""
         return {}
 
     @property
     def constant(self) -> NodeEntry:
-        """Nothing."""
+        """The empty entry."""
         return EMPTY_ENTRY
 
     def enter(self, scope: Scope) -> NodeEntry:
-        """Nothing is evaluated: the leaves evaluate theirs."""
+        """Return the empty entry: the leaves evaluate their own inputs."""
         return EMPTY_ENTRY
 
     async def run(self, entry: NodeEntry, path: str, visit: int, scope: Scope, execution: Execution) -> Outcome:
-        """Tick it to its end; from where it stood, if it is gone on with."""
+        """Tick the tree to its end; from its checkpoint, if it is resumed."""
         point = entry.point
         runner = TreeRunner(
             self.root,

@@ -35,13 +35,13 @@ _ONE_SHOT = {"completion": OneShotPolicy.ON_COMPLETION, "success": OneShotPolicy
 
 @dataclass(kw_only=True)
 class TreeBuilder:
-    """What the parts of one activation of a tree share, and what has grown so far.
+    """Builds the nodes of one activation of a tree, and holds what they share.
 
     Args:
-        execution: The run.
-        leaves: Those that are active.
+        execution: The execution of the run.
+        leaves: The active leaves.
         tree_timers: Timers of decorators.
-        clear: Brings a subtree to rest whose tick was torn by an error.
+        clear: Halts a subtree whose tick was interrupted by an error.
     """
 
     execution: Execution
@@ -56,26 +56,26 @@ class TreeBuilder:
     posts: dict[Behaviour, PostConditions] = field(default_factory=dict[Behaviour, PostConditions])
     statuses: StatusLog = field(init=False)
     reactive: bool = False
-    """Whether it holds a part that asks again what has ended: a composite without memory, or a `while_do_else`."""
+    """Whether a node ticks ended children again: a composite without memory, or a `while_do_else`."""
     _rank: int = 0
 
     def __post_init__(self) -> None:
-        """Begin with nothing recorded."""
+        """Create an empty status log."""
         self.statuses = StatusLog(self.execution)
 
     def build(
         self, part: TreeNode, place: ScopeAccess, *, caught: bool = False, passing: Status = Status.SUCCESS
     ) -> Behaviour:
-        """Return the py_trees node for a part with everything below it.
+        """Return the py_trees node for a planned node with everything below it.
 
         Args:
-            part: What to grow.
-            place: Where it reads and writes.
-            caught: Whether a decorator around it takes the errors of its leaves.
-            passing: The status by which the part around it passes over it when it is skipped.
+            part: The planned node.
+            place: Access to its scope.
+            caught: Whether a decorator around it handles the errors of its leaves.
+            passing: Its status when it is skipped, by which its parent passes over it.
 
         Raises:
-            FlexcellError: a foreign behaviour cannot be made.
+            FlexcellError: a foreign behaviour cannot be created.
         """
         if part.leaf is not None:
             self._rank += 1
@@ -91,7 +91,7 @@ class TreeBuilder:
         elif part.source.parallel is not None:
             node = self._parallel(part, place, caught)
         elif part.source.kind in ("sequence", "selector"):
-            node = self._line(part, place, caught)
+            node = self._composite(part, place, caught)
         elif part.source.kind in nodes.SLOTS:
             node = self._branching(part, place, caught)
         else:
@@ -114,16 +114,16 @@ class TreeBuilder:
         self.posts[node] = PostConditions(node, part, place, self.execution, self.statuses)
 
     def dismantle(self) -> None:
-        """Let go of everything once the tree has ended: nodes that know each other would wait for the collector."""
+        """Release all nodes once the tree has ended: reference cycles would wait for the garbage collector."""
         for node in self.parts:
             node.parent = None
             if node in self.posts or (node.children and node not in self.foreign):
-                # Its children, its iterator, and what was put in the place of its methods.
+                # Its children, its iterator, and its wrapped methods.
                 vars(node).clear()
         self.parts.clear()
         self.statuses.skips.forget_all()
 
-    def _line(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
+    def _composite(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
         passing = Status.SUCCESS if part.source.sequence is not None else Status.FAILURE
         children = [self.build(child, place, caught=caught, passing=passing) for child in part.children]
         group = part.source.sequence or part.source.selector
@@ -134,7 +134,7 @@ class TreeBuilder:
         return composites.Selector(part.path, memory, children)
 
     def _branching(self, part: TreeNode, place: ScopeAccess, caught: bool) -> Behaviour:
-        # A condition that is skipped does not hold.
+        # A skipped condition does not hold.
         children = [self.build(child, place, caught=caught, passing=Status.FAILURE) for child in part.children]
         if part.source.if_then_else is not None:
             return IfThenElse(part.path, children, self.statuses.skips)
@@ -145,7 +145,7 @@ class TreeBuilder:
         places = {child.name: ScopeAccess(place.scope) for child in part.children}
         group = part.source.parallel
         written = group if isinstance(group, nodes.ParallelSpec) else nodes.ParallelSpec(children=())
-        # Where one success or a number of them decides, what is skipped is neither.
+        # Where one success or a count of successes decides, a skipped child is neither success nor failure.
         passing = Status.INVALID if written.counts or written.policy == "one" else Status.SUCCESS
         children = [self.build(child, places[child.name], caught=caught, passing=passing) for child in part.children]
         policy: ParallelPolicy.Base
@@ -213,7 +213,7 @@ class TreeBuilder:
     def _guard(self, part: TreeNode, guard: nodes.GuardSpec, child: Behaviour, place: ScopeAccess) -> Behaviour:
         when = part.when
         if when is None:
-            raise StateError("a guard without a condition", where=part.position)
+            raise StateError("the guard has no condition", where=part.position)
         holds = partial(_holds, when, place, part.position)
         closed = partial(self._closed, guard.to or "failure")
         node = Guard(part.path, child, keys=when.names, holds=holds, text=guard.when, closed=closed)
@@ -223,9 +223,9 @@ class TreeBuilder:
     def _entry_guard(self, part: TreeNode, guard: nodes.GuardSpec, node: Behaviour, place: ScopeAccess) -> None:
         when = part.when
         if when is None:
-            raise StateError("a guard without a condition", where=part.position)
+            raise StateError("the guard has no condition", where=part.position)
         holds = partial(_holds, when, place, part.position)
-        made = EntryGuard(
+        entry_guard = EntryGuard(
             node,
             keys=when.names,
             holds=holds,
@@ -233,8 +233,8 @@ class TreeBuilder:
             to=guard.to or "failure",
             skips=self.statuses.skips,
         )
-        self.guards.append(made)
-        self.entry_guards[node] = made
+        self.guards.append(entry_guard)
+        self.entry_guards[node] = entry_guard
 
     def _closed(self, to: str, node: Behaviour) -> Status:
         if to == "skipped":
@@ -251,10 +251,10 @@ class TreeBuilder:
             errors=retry.errors,
             tree_timers=self.tree_timers,
             clear=self.clear,
-            tell=partial(self._tell_retry, part.path, child),
+            tell=partial(self._record_retry, part.path, child),
         )
 
-    def _tell_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
+    def _record_retry(self, path: str, child: Behaviour, attempt: int, wait_s: float, error: Cause | None) -> None:
         self.execution.recorder.emit(
             NodeRetried,
             path=path,
@@ -267,5 +267,6 @@ class TreeBuilder:
 def _holds(when: Template, place: ScopeAccess, position: str) -> bool:
     value = when.evaluate({name: place.scope.read(name, reader=position) for name in when.names})
     if not isinstance(value, bool):
-        raise ExpressionError(f"the guard gave {value!r}, which is not a boolean", where=position, hint="compare it")
+        message = f"the guard evaluates to {value!r}, which is not a boolean"
+        raise ExpressionError(message, where=position, hint="use a comparison")
     return value

@@ -1,7 +1,7 @@
-"""What the events of a run tell of one activation of a tree, so that another can go on from there.
+"""State of the nodes of one tree activation, derived from the events of a run, to resume the tree.
 
-`fold_tree_events` folds the marks of an activation, in order, into how each part stood. That is enough: composites
-of py_trees keep nothing that does not follow from it.
+`fold_tree_events` folds the events of an activation, in order, into the state of each node. This is sufficient: the
+internal state of py_trees composites follows from it.
 """
 
 from __future__ import annotations
@@ -17,41 +17,41 @@ _STATUSES = ("running", "success", "failure", "skipped")
 
 @dataclass
 class TreeNodeState:
-    """How one part stood at the end of its marks."""
+    """State of one node after its events; events are numbered from 0."""
 
     status: str = "invalid"
     since_s: float = 0.0
     order: int = -1
-    """Which of the marks was the last one of this part."""
+    """The last event of this node."""
     began: int = -1
-    """Which was the last one by which it was at work."""
+    """The last event by which it was active."""
     skipped: int = -1
-    """Which was the last one by which it was skipped."""
+    """The last event by which it was skipped."""
     over: int = -1
-    """Which was the last one by which it was not RUNNING: what is older belongs to an earlier activation."""
+    """The last event by which it was not RUNNING: older events belong to an earlier activation."""
     opened: int = -1
-    """Which was the one by which it became RUNNING last."""
+    """The event by which it last became RUNNING."""
     passed: int = -1
-    """For a leaf that has ended: the one by which a tick had not come to it; -1 where none tells so, or it was read."""
+    """For an ended leaf: the event of a tick that did not reach it; -1 where there is none, or it was read."""
     ended_s: float | None = None
-    """When it was last RUNNING no more; None where it never was."""
+    """When it last stopped being RUNNING; None where it never was RUNNING."""
     final: str | None = None
-    """The first status that a one-shot keeps: success wins over an earlier failure."""
+    """The status that a one-shot keeps: success overrides an earlier failure."""
     first: str | None = None
-    """The first final status at all."""
+    """The first final status."""
     assigned: dict[str, int] = field(default_factory=dict[str, int])
-    """Assignments of post-conditions since anything else happened to it, by `on_success` and so on."""
+    """Number of post-condition assignments since its last other event, by `on_success` and so on."""
     attempt: int = 1
     rounds: int = 0
-    """How often it has begun a further round in this activation."""
+    """Number of further rounds begun in this activation."""
     outcome: str | None = None
     target: str | None = None
     read: bool = True
-    """For a leaf that has ended: whether anything followed, so that a tick has read its end."""
+    """For an ended leaf: whether later events show that a tick has read its end."""
 
 
 def decode_tree_events(kept: Iterable[tuple[object, ...]]) -> Iterator[TreeEvent]:
-    """Go through marks that were kept as plain tuples; what is none is passed over."""
+    """Yield the events that were stored as plain tuples; invalid ones are ignored."""
     for each in kept:
         match each:
             case (str(path), str(what), float() | int() as at_s):
@@ -60,67 +60,67 @@ def decode_tree_events(kept: Iterable[tuple[object, ...]]) -> Iterator[TreeEvent
                 pass
 
 
-def fold_tree_events(marks: Iterable[TreeEvent]) -> dict[str, TreeNodeState]:
-    """Return how each part stood after these marks."""
-    found: dict[str, TreeNodeState] = {}
+def fold_tree_events(events: Iterable[TreeEvent]) -> dict[str, TreeNodeState]:
+    """Return the state of each node after these events."""
+    states: dict[str, TreeNodeState] = {}
     unread: list[TreeNodeState] = []
-    for number, mark in enumerate(marks):
-        standing = found.setdefault(mark.path, TreeNodeState())
-        if mark.what.startswith("assigned "):
-            when = mark.what.partition(" ")[2]
-            standing.assigned[when] = standing.assigned.get(when, 0) + 1
+    for number, event in enumerate(events):
+        state = states.setdefault(event.path, TreeNodeState())
+        if event.what.startswith("assigned "):
+            when = event.what.partition(" ")[2]
+            state.assigned[when] = state.assigned.get(when, 0) + 1
             continue
-        if standing.status == "ended" and mark.what in _STATUSES:
-            standing.passed = number if mark.what == "running" else -1
+        if state.status == "ended" and event.what in _STATUSES:
+            state.passed = number if event.what == "running" else -1
             _read(unread)
             continue
-        standing.assigned.clear()
-        standing.order, standing.passed = number, -1
-        what, _, name = mark.what.partition(" ")
+        state.assigned.clear()
+        state.order, state.passed = number, -1
+        what, _, name = event.what.partition(" ")
         ended = what in ("outcome", "target", "failed")
-        standing.over = number if ended or mark.what in _OVER else standing.over
-        standing.began = number if what in ("entered", "running", "attempt") else standing.began
-        standing.skipped = number if mark.what in ("skipped", "target skipped") else standing.skipped
-        own_retry = what == "attempt" and any(other is standing for other in unread)
+        state.over = number if ended or event.what in _OVER else state.over
+        state.began = number if what in ("entered", "running", "attempt") else state.began
+        state.skipped = number if event.what in ("skipped", "target skipped") else state.skipped
+        own_retry = what == "attempt" and any(other is state for other in unread)
         if not ended and not own_retry:
             _read(unread)
         if ended:
-            standing.read = False
-            unread.append(standing)
-        was_running = standing.status == "running"
-        _fold(standing, what, name, mark.at_s)
-        standing.opened = number if standing.status == "running" and not was_running else standing.opened
-    return found
+            state.read = False
+            unread.append(state)
+        was_running = state.status == "running"
+        _fold(state, what, name, event.at_s)
+        state.opened = number if state.status == "running" and not was_running else state.opened
+    return states
 
 
 def _read(unread: list[TreeNodeState]) -> None:
-    for standing in unread:
-        standing.read = True
+    for state in unread:
+        state.read = True
     unread.clear()
 
 
-def _fold(standing: TreeNodeState, what: str, name: str, at_s: float) -> None:
-    before = standing.status
+def _fold(state: TreeNodeState, what: str, name: str, at_s: float) -> None:
+    before = state.status
     match what:
         case "attempt":
-            # A node's own retry runs it again; a retry that is a decorator is RUNNING anyway.
-            standing.attempt = int(name)
-            standing.status = "running"
-            standing.read = True
+            # The retry of a node runs it again; a retry decorator is RUNNING in any case.
+            state.attempt = int(name)
+            state.status = "running"
+            state.read = True
         case "outcome" | "target" | "failed":
-            standing.status = "ended"
-            standing.outcome = name if what == "outcome" else None
-            standing.target = name if what == "target" else None
+            state.status = "ended"
+            state.outcome = name if what == "outcome" else None
+            state.target = name if what == "target" else None
         case "entered":
-            standing.status = "running"
+            state.status = "running"
         case _:
-            standing.rounds = standing.rounds + 1 if what == before == "running" else 0
-            standing.attempt = standing.attempt if what == "running" else 1
-            standing.status = what
+            state.rounds = state.rounds + 1 if what == before == "running" else 0
+            state.attempt = state.attempt if what == "running" else 1
+            state.status = what
     if what in ("success", "failure"):
-        standing.first = standing.first or what
-        standing.final = what if standing.final != "success" else "success"
-    if before == "running" and standing.status != "running":
-        standing.ended_s = at_s
-    if standing.status != before or what == "attempt":
-        standing.since_s = at_s
+        state.first = state.first or what
+        state.final = what if state.final != "success" else "success"
+    if before == "running" and state.status != "running":
+        state.ended_s = at_s
+    if state.status != before or what == "attempt":
+        state.since_s = at_s

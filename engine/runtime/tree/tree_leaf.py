@@ -18,37 +18,37 @@ from engine.runtime.tree.tree_node import LeafPlan
 from engine.runtime.userdata.userdata import Scope
 
 _SUCCESS, _FAILURE, _RUNNING, _INVALID = Status.SUCCESS, Status.FAILURE, Status.RUNNING, Status.INVALID
-"""To look up a member of an enumeration costs more, in Python 3.11, than all else that a leaf tells of itself."""
+"""Module constants: in Python 3.11 the lookup of an enumeration member costs more than the rest of a leaf's status."""
 
 
 class TickPause(Behaviour):
-    """What a tick yields where it has to wait: for clean-up of what it halted, and for `check`."""
+    """Step that a tick yields where it has to wait: for clean-up of halted leaves, and for `check`."""
 
     def __init__(self) -> None:
         super().__init__("turn")
         self.check: TreeLeaf | None = None
         self.left: NodeExit | None = None
-        """How that has ended on the spot, until its tick goes on."""
+        """The exit of a check that ended at once, until its tick continues."""
 
     def update(self) -> Status:
-        """Never be ticked."""
+        """Return INVALID; this step is never ticked."""
         return Status.INVALID
 
 
 class TreeLeaf(Behaviour):
-    """One leaf.
+    """One leaf of a tree.
 
-    It does without the constructor of py_trees, which makes an id, a logger and an iterator for each: trees grow anew
-    in each activation, and these cost more than to run a leaf that ends at once. Nothing is looked up by id here.
+    It skips the constructor of py_trees, which creates an id, a logger and an iterator: trees are rebuilt in each
+    activation, and these cost more than running a leaf that ends at once. Nothing is looked up by id here.
 
     Args:
-        plan: What it runs and which outcomes are SUCCESS.
-        place: Where it reads and writes.
-        leaves: Those that are active in this tree.
-        turn: What the tick yields to have a check begin.
-        statuses: Told when it has ended, and when it is halted or an end of it counts no more.
-        rank: Its place in the document.
-        caught: Whether a decorator around it takes its errors.
+        plan: Its node and the outcomes that are SUCCESS.
+        place: Access to its scope.
+        leaves: The active leaves of this tree.
+        turn: The step that the tick yields to start a check.
+        statuses: Records its end, its halt, and the reset of an end.
+        rank: Its position in document order.
+        caught: Whether a decorator around it handles its errors.
     """
 
     id = UUID(int=0)
@@ -57,7 +57,7 @@ class TreeLeaf(Behaviour):
     feedback_message = ""
     children = []
     stale = False
-    """Whether it may end otherwise now."""
+    """Whether its status may have changed."""
 
     def __init__(
         self,
@@ -69,28 +69,28 @@ class TreeLeaf(Behaviour):
         rank: int,
         caught: bool,
     ) -> None:
-        # All that a leaf sets later is set here: a name that comes later costs a dictionary of its own.
+        # All attributes are set here: an attribute added later costs a separate dictionary.
         self.name = plan.node.name
         self.status = _INVALID
         self.parent = None
         self.plan = plan
         self.place = place
         self.left: NodeExit | None = None
-        """How it ended last."""
+        """Its last exit."""
         self.said = _INVALID
-        """How it ended when it was last run or observed."""
+        """Its status when it last ran or was observed."""
         self._leaves = leaves
         self._turn = turn
         self._statuses = statuses
         self._rank = rank
         self._caught = caught
         self._activation: TreeLeafActivation | None = None
-        """While it is active, unless that is over on the spot."""
+        """Its activation while it is active, unless it ends at once."""
         self._counted = False
-        """Whether an earlier end counted when the present activation was asked for."""
+        """Whether an earlier end was valid when the current activation was requested."""
 
     def tick(self) -> Iterator[Behaviour]:
-        """Begin when it is not active, then tell how it stands."""
+        """Request an activation where none is active, then yield the status."""
         turn = self._turn
         if self._activation is None:
             if self.plan.check:
@@ -114,35 +114,35 @@ class TreeLeaf(Behaviour):
         yield self
 
     def follow(self, task: asyncio.Task[NodeExit]) -> TreeLeafActivation:
-        """Be active, as a check, in this task, in which it has begun."""
+        """Activate it as a check that runs in this task."""
         activation = self._activate()
         self._leaves.follow(activation, task)
         return activation
 
     def update(self) -> Status:
-        """Return the present status; `tick` does the work."""
+        """Return the current status; `tick` does the work."""
         return self.status
 
     def stop(self, new_status: Status) -> None:
-        """Halt it if it is active."""
+        """Halt the leaf if it is active."""
         activation, self._activation = self._activation, None
         if activation is None:
             counted = self.status is not _INVALID
         else:
             self._leaves.halt(activation)
-            # One that never began has told nothing; what it had told before still counts.
+            # An activation that never began recorded nothing; an earlier end remains valid.
             counted = activation.begun or self._counted
         if counted:
             self._statuses.reset(self.plan.node.path)
         self.status = new_status
 
     def go_on(self) -> None:
-        """Be at work again, without a tick, in place of an activation that was cut."""
+        """Resume an interrupted activation without a tick."""
         self._leaves.ask(self._activate())
         self.status = _RUNNING
 
     def keep(self, left: NodeExit, *, passed: bool) -> None:
-        """Have ended so in an activation that was cut, and wait for a tick to read it; `passed` if one has not come."""
+        """Restore an unread exit, which the next tick reads; `passed` if a tick did not reach it."""
         self._activation = TreeLeafActivation(
             self.plan, self.place, self._rank, self._caught, restored=left, passed=passed
         )
@@ -150,23 +150,23 @@ class TreeLeaf(Behaviour):
         self.status = _RUNNING
 
     def restore(self, left: NodeExit) -> None:
-        """Have ended so, in an activation that was read before."""
+        """Restore an exit that was already read."""
         self._end(left)
-        # Nobody knows what has changed meanwhile.
+        # Its inputs may have changed meanwhile.
         self.stale = self.plan.every_s is not None or bool(self.plan.reads)
 
     @property
     def begun(self) -> bool:
-        """Whether it is at work and has begun."""
+        """Whether it is active and has begun."""
         return self._activation is not None and self._activation.task is not None
 
     @property
     def scope(self) -> Scope:
-        """Where it reads and writes at present."""
+        """The current scope."""
         return self.place.scope
 
     def status_of(self, left: NodeExit) -> Status:
-        """Return what it means in the tree to end so."""
+        """Return the status of an exit."""
         if left.target is None:
             return _SUCCESS if left.outcome in self.plan.success else _FAILURE
         if left.target == "skipped":
@@ -184,7 +184,7 @@ class TreeLeaf(Behaviour):
         try:
             left = self._leaves.read(activation)
         except BaseException:
-            # It has ended with this, whatever it is, and begins anew when it is ticked again.
+            # It has ended with this exception and starts again at its next tick.
             self._activation = None
             raise
         if left is not None:

@@ -1,4 +1,4 @@
-"""Detects trees that poll in virtual time for something that can no longer change (a livelock)."""
+"""Detects trees that poll in virtual time for a condition that can no longer change (a livelock)."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _LOOK_EVERY = 1_000
 
 
 class TreeLivelockDetector:
-    """Counts what one activation of a tree asks because of its own timers alone.
+    """Counts ticks and observations of one activation of a tree that only its own timers cause.
 
-    On a real clock somebody may always come. In virtual time there is nobody else where no other
-    timer is set, no simulation is busy and nothing outside is waited for: then it would go on for ever.
+    On a real clock an external event is always possible. In virtual time there is none where no other timer is set, no
+    simulation is busy and nothing external is awaited: then the tree would poll forever.
 
     Args:
-        path: The tree.
-        execution: The run.
-        timers: Gives those of the tree that are set.
+        path: The path of the tree.
+        execution: The execution of the run.
+        timers: Returns the running timers of the tree.
     """
 
     def __init__(self, path: str, execution: Execution, timers: Callable[[], Iterable[Timer]]) -> None:
@@ -32,17 +32,17 @@ class TreeLivelockDetector:
         self._count = 0
 
     def forget(self) -> None:
-        """Begin to count anew: something else has happened."""
+        """Reset the count, as something else has happened."""
         self._count = 0
 
     def count(self, asked: Callable[[], str]) -> None:
-        """Count once more that a timer of the tree has rung.
+        """Count an expired timer of the tree.
 
         Args:
-            asked: Names what was asked, for the error.
+            asked: Returns the names of the ticked nodes, for the error.
 
         Raises:
-            StateError: it was in vain too often.
+            StateError: the limit is reached without progress.
         """
         self._count += 1
         loop = asyncio.get_running_loop()
@@ -54,7 +54,7 @@ class TreeLivelockDetector:
             self._count = 0
         elif self._count >= self._execution.polling_limit:
             raise StateError(
-                f"asked {asked()} again {self._count} times, and nothing else can happen any more",
+                f"ticked {asked()} again {self._count} times, and nothing else can happen",
                 where=self._path,
-                hint="let something end it, such as a timeout",
+                hint="add something that ends it, such as a timeout",
             )

@@ -1,4 +1,4 @@
-"""A behavior tree as planned: its parts with everything compiled, shared by any number of runs."""
+"""Planned behavior tree: its compiled nodes, shared by any number of runs."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ from engine.runtime.nodes.node import Node
 class LeafPlan:
     """A state or container as a leaf.
 
-    `success` names the outcomes that mean SUCCESS. A `check` commands no device: it may begin
-    while others are still being stopped, and what it says at once counts in the same tick.
-    `reads` are the userdata keys that it depends on, None where that may be any; `every_s` is how
-    often it is asked again while it stands in front of what is at work, None for never by time.
+    `success` names the outcomes that mean SUCCESS. A `check` commands no device: it may begin while other leaves are
+    still being stopped, and a status that it has at once applies in the same tick. `reads` are the userdata keys that
+    it depends on, None for any key; `every_s` is the period of its observation in front of active nodes, None for none.
     """
 
     node: Node
@@ -34,7 +33,7 @@ class LeafPlan:
 class ForeignPlan:
     """A py_trees behaviour as a leaf: its class, its arguments, and which blackboard keys are userdata.
 
-    `every_s` is how often it is ticked while it is RUNNING, as nothing else would wake it.
+    `every_s` is its tick period while it is RUNNING, as nothing else wakes the tree.
     """
 
     kind: type[Behaviour]
@@ -46,12 +45,12 @@ class ForeignPlan:
 
 
 Assignment = tuple[str, Template]
-"""A userdata key and the value that it is given."""
+"""A userdata key and its assigned value."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TreeNode:
-    """One node of a tree: a composite or decorator as documented in `source`, or a leaf."""
+    """One node of a tree: a composite or decorator as specified in `source`, or a leaf."""
 
     path: str
     name: str
@@ -63,11 +62,11 @@ class TreeNode:
     when: Template | None = None
     """The condition of a guard."""
     post: Mapping[str, tuple[Assignment, ...]] = field(default_factory=dict[str, tuple[Assignment, ...]])
-    """What is assigned, by `on_success` and so on; empty where nothing ever is."""
+    """The assignments by `on_success` and so on; empty for none."""
 
     @cached_property
     def skips(self) -> bool:
-        """Whether it may be skipped, by a guard of its own or because of what is inside."""
+        """Whether it may be skipped, by its own guard or because a node inside may be skipped."""
         guard = self.source.guard
         return (guard is not None and guard.to == "skipped") or any(child.skips for child in self.children)
 
@@ -77,7 +76,7 @@ class TreeNode:
         return self.foreign is not None or any(child.holds_foreign for child in self.children)
 
     def walk(self) -> Iterator[TreeNode]:
-        """Go through this part and everything below it, in document order."""
+        """Yield this node and everything below it, in document order."""
         due: list[TreeNode] = [self]
         while due:
             part = due.pop()

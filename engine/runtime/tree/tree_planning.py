@@ -1,4 +1,4 @@
-"""Plans a tree of a document: leaves as nodes, expressions compiled, py_trees behaviours found."""
+"""Plans a tree of a document: plans leaves, compiles expressions, resolves py_trees behaviours."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ def new_tree(
         node: The node, whose kind is `tree`.
         base: The path of the document's root in the run.
         behavior: The document.
-        catalogue: What it may name.
-        plan: Plans a state or container; given its name, its path in the document, and itself.
+        catalogue: The states and behaviours that it may name.
+        plan: Plans a state or container, from its name, its path in the document, and its specification.
 
     Raises:
-        DocumentError: something in it cannot be run; `where` is the position.
+        DocumentError: a node of the tree is invalid; `where` is the position.
     """
     return Tree(root=_Planner(base, behavior, catalogue, plan).children(inside, node)[0])
 
@@ -88,9 +88,9 @@ class _Planner:
 
     def _foreign(self, inside: str, node: nodes.NodeSpec) -> ForeignPlan:
         kind = self._class(inside, node.behaviour or "")
-        wrong = wrong_arguments(kind, node.parameters)
-        if wrong is not None:
-            raise DocumentError(wrong[0], where=self.behavior.position(inside, "with"), hint=wrong[1])
+        problem = wrong_arguments(kind, node.parameters)
+        if problem is not None:
+            raise DocumentError(problem[0], where=self.behavior.position(inside, "with"), hint=problem[1])
         return ForeignPlan(
             kind=kind,
             takes_name=takes_name(kind),
@@ -123,18 +123,18 @@ class _Planner:
 
 
 def _commands(node: Node) -> bool:
-    """Tell whether a leaf may command a device, as far as its states declare it."""
+    """Return whether a leaf may command a device, as declared by its states."""
     work = node.work
     if isinstance(work, Leaf):
         return work.commands_hardware
     if isinstance(work, Tree) and any(part.foreign is not None for part in work.root.walk()):
         return True
-    # A priority container holds whatever else is at work.
+    # A priority container holds all other branches.
     return work.kind == "priority" or _any_commands(work.children.values())
 
 
 def _reads(node: Node) -> frozenset[str] | None:
-    """Return the userdata keys that a state depends on; None for a container, of which nobody looks."""
+    """Return the userdata keys that a state depends on; None for a container, which is not analyzed."""
     work = node.work
     if not isinstance(work, Leaf):
         return None

@@ -1,1 +1,1 @@
-"""Userdata: scopes of keys, and the values that they hold."""
+"""Userdata: scopes of keys, and their values."""

@@ -1,4 +1,4 @@
-"""Append-only lists that are extended in place, without a copy for each value."""
+"""Lists that are extended in place, without a copy for each value."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from engine.event import UserdataAppended, UserdataWritten
 
 
 class AppendOnlyLists:
-    """Knows which lists nobody else holds, because they were made here: only those may grow in place."""
+    """Tracks lists that were created here and are not shared: only these are extended in place."""
 
     __slots__ = ("_own",)
 
@@ -17,7 +17,7 @@ class AppendOnlyLists:
         self._own: dict[Hashable, list[object]] = {}
 
     def appended(self, place: Hashable, before: list[object], value: object) -> list[object]:
-        """Return the list at `place` with one more value: `before` itself if it was made here for that place."""
+        """Return the list at `place` with one more value: `before` itself if it was created here for that place."""
         own = self._own.get(place)
         if own is not before or own is None:
             own = self._own[place] = list(before)
@@ -25,12 +25,12 @@ class AppendOnlyLists:
         return own
 
     def value_after(self, event: UserdataWritten | UserdataAppended, before: object) -> object:
-        """Return what the key of a write holds after it; `before` is None where it held nothing."""
+        """Return the value of a key after a write; `before` is its previous value, None for none."""
         if isinstance(event, UserdataWritten):
             return event.value
         so_far = cast("list[object]", [] if before is None else before)
         return self.appended((event.scope, event.key), so_far, event.value)
 
     def give_away(self) -> None:
-        """Leave all lists as they are from now on, since somebody else holds them."""
+        """Stop extending all lists in place, as other code holds them now."""
         self._own.clear()

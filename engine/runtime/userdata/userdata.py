@@ -1,10 +1,9 @@
-"""Userdata: the values that states of one container share, scoped like the containers are nested.
+"""Userdata: values that the states of one container share, in scopes nested like the containers.
 
-A read looks outward from the innermost container; a write goes to the nearest scope that has
-the key, else it makes the key in the innermost one. A branch of a concurrency container writes
-into a scope of its own that is merged, in document order, when the container finishes; keys that
-the container shares are written where they live around it. A behavior reference is a wall: only
-what `in` and `out` name passes.
+A read searches from the innermost scope outward. A write goes to the nearest scope that has the key, else it creates
+the key in the innermost scope. A branch of a concurrency container writes into its own scope, which is merged in
+document order when the container finishes; shared keys are written directly to the enclosing scope that owns them. A
+behavior reference isolates its scope: only the keys in `in` and `out` cross it.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from engine.suggestions import did_you_mean
 
 _MISSING = object()
 _COPY = 1.5
-"""Steps for each list, mapping or other object that is copied."""
+"""Steps per copied list, mapping or other object."""
 _COPY_ITEM = 0.3
 
 
@@ -29,11 +28,11 @@ class Scope:
     """The values of one container while it is active.
 
     Args:
-        path: The path of the container; that of a branch has `*` behind it.
-        values: What it begins with.
-        parent: The scope around it.
-        isolated: Whether what is written inside stays in it, as in a branch.
-        shared: The keys that do not stay in an isolated one.
+        path: The path of the container; the path of a branch ends with `*`.
+        values: The initial values.
+        parent: The enclosing scope.
+        isolated: Whether it keeps writes from inside, as for a branch.
+        shared: The keys that an isolated scope passes on to its parent.
     """
 
     __slots__ = ("_grown", "_isolated", "_shared", "_values", "parent", "path")
@@ -55,10 +54,10 @@ class Scope:
         self._grown: AppendOnlyLists | None = None
 
     def read(self, key: str, *, reader: str) -> object:
-        """Return a value that the reader may change without changing the container's.
+        """Return a value, copied where it is mutable.
 
         Raises:
-            UserdataError: no scope from here outward has the key; names the reader.
+            UserdataError: neither this scope nor an enclosing one has the key; names the reader.
         """
         value = self._find(key)
         if value is _MISSING:
@@ -68,17 +67,17 @@ class Scope:
         return copy_if_mutable(value)
 
     def has(self, key: str) -> bool:
-        """Tell whether a read of `key` would succeed."""
+        """Return whether a read of `key` succeeds."""
         return self._find(key) is not _MISSING
 
     def write(self, key: str, value: object) -> str:
-        """Set a value where the key lives and return the path of that scope."""
+        """Write to the scope that owns the key and return its path."""
         scope = self._owner(key) or self
         scope._values[key] = copy_if_mutable(value)
         return scope.path
 
     def restore(self, path: str, key: str, value: object, *, defined: bool) -> None:
-        """Let a key of the scope at `path`, this one or one around it, hold a former value, or nothing."""
+        """Restore a key of the scope at `path`, this or an enclosing one, to a former value or to undefined."""
         scope: Scope | None = self
         while scope is not None and scope.path != path:
             scope = scope.parent
@@ -90,14 +89,14 @@ class Scope:
             scope._values.pop(key, None)
 
     def append(self, key: str, value: object, *, writer: str) -> tuple[str, list[object], bool]:
-        """Append to the list where the key lives, or to a new one; `value` must be nobody else's.
+        """Append to the list in the scope that owns the key, or to a new list; no other code may hold `value`.
 
         Returns:
-            The path of the scope that has the list; the list; and whether it is new in that scope: the first value of
-            all, or a branch's own copy of a list that lives outside.
+            The path of the scope of the list; the list; and whether it is new in that scope: a new list, or the copy
+            that a branch makes of an outer list.
 
         Raises:
-            UserdataError: it is no list; names the writer.
+            UserdataError: the value is not a list; names the writer.
         """
         scope = self._owner(key) or self
         is_new = key not in scope._values
@@ -105,24 +104,25 @@ class Scope:
         before = list[object]() if before is _MISSING else before
         if not isinstance(before, list):
             kind = type(before).__name__
-            raise UserdataError(f"cannot append to {key!r}, which is a {kind}", where=writer, hint="begin with []")
+            message = f"cannot append to {key!r}, which is a {kind}"
+            raise UserdataError(message, where=writer, hint="initialize it with []")
         scope._grown = scope._grown or AppendOnlyLists()
         grown = scope._values[key] = scope._grown.appended(key, cast("list[object]", before), value)
         return scope.path, grown, is_new
 
     def keys(self) -> Iterator[str]:
-        """Go through all keys that can be read from here."""
+        """Yield all keys that are readable from this scope."""
         scope: Scope | None = self
         while scope is not None:
             yield from scope._values
             scope = scope.parent
 
     def own_values(self) -> dict[str, object]:
-        """Return the values of this scope alone, in order of first writing."""
+        """Return the values of this scope alone, in order of first write."""
         return dict(self._values)
 
     def visible(self) -> dict[str, object]:
-        """Return everything that can be read from here, inner values hiding outer ones."""
+        """Return all values that are readable from this scope; inner values hide outer ones."""
         outer = self.parent.visible() if self.parent is not None else {}
         return {**outer, **self._values}
 
@@ -147,11 +147,11 @@ class Scope:
 
 
 def copy_if_mutable(value: object) -> object:
-    """Return `value` itself when nobody can change it, else a deep copy, whose size counts as work."""
+    """Return `value` itself when it is immutable, else a deep copy, whose size counts as work."""
     if is_immutable(value):
         return value
     copies: dict[int, object] = {}
-    made = copy.deepcopy(value, copies)
+    copied = copy.deepcopy(value, copies)
     sized = (cast("Sized", each) for each in copies.values() if isinstance(each, list | dict))
     METER.work(_COPY * len(copies) + _COPY_ITEM * sum(map(len, sized)))
-    return made
+    return copied

@@ -1,4 +1,4 @@
-"""What a userdata value may be: what JSON keeps as it is, so that a run that goes on has what it had."""
+"""Valid userdata values: those that JSON stores without change, so that a resumed run restores them exactly."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import msgspec
 
 from engine.errors import UserdataError
 
-_UNCHANGEABLE = frozenset((str, int, float, bool, bytes, type(None)))
+_IMMUTABLE = frozenset((str, int, float, bool, bytes, type(None)))
 _WHOLE = frozenset((int, bool, type(None)))
-_NOT_KEPT = (bytes, bytearray, memoryview, set, frozenset)
-_HINT = "it may hold text, finite numbers, true, false, null, lists, mappings with text as keys, and structs of them"
+_UNSUPPORTED = (bytes, bytearray, memoryview, set, frozenset)
+_HINT = "it may hold text, finite numbers, true, false, null, lists, mappings with text keys, and structs of these"
 
 
 def plain_value(value: object, *, key: str, where: str) -> object:
-    """Return a value as events keep it: in lists, mappings, text and numbers.
+    """Return a value as stored in events: lists, mappings, text and numbers.
 
     Args:
-        value: What is to be written.
+        value: The value to write.
         key: The userdata key that it is written to.
-        where: Who writes it: a node path or position.
+        where: The writer: a node path or position.
 
     Raises:
-        UserdataError: it would come back from a journal as something else, or not at all; says which part.
+        UserdataError: a journal would restore the value differently or not at all; names the part of the value.
     """
     try:
         for at, problem in _problems(value, ""):
@@ -33,13 +33,13 @@ def plain_value(value: object, *, key: str, where: str) -> object:
             raise UserdataError(f"userdata key {key!r} cannot hold {problem}{inside}", where=where, hint=_HINT)
         return msgspec.to_builtins(value)
     except RecursionError:
-        message = f"userdata key {key!r} cannot hold what is nested so deeply, or in itself"
+        message = f"userdata key {key!r} cannot hold a value that is nested too deeply or contains itself"
         raise UserdataError(message, where=where, hint=_HINT) from None
 
 
 def is_immutable(value: object) -> bool:
-    """Tell whether nobody can change a value: scalars, and frozen structs and tuples of such."""
-    if type(value) in _UNCHANGEABLE:
+    """Return whether a value is immutable: scalars, and frozen structs and tuples of immutable values."""
+    if type(value) in _IMMUTABLE:
         return True
     if isinstance(value, msgspec.Struct):
         return value.__struct_config__.frozen and all(map(is_immutable, msgspec.structs.astuple(value)))
@@ -47,7 +47,7 @@ def is_immutable(value: object) -> bool:
 
 
 def _problems(value: object, at: str) -> Iterator[tuple[str, str]]:
-    """Find what cannot be kept: where in the value it is, and what it is."""
+    """Yield the location and description of each part that cannot be stored."""
     kind = type(value)
     if kind in _WHOLE:
         return
@@ -56,7 +56,7 @@ def _problems(value: object, at: str) -> Iterator[tuple[str, str]]:
             yield at, f"the number {value}"
     elif isinstance(value, str):
         if not _is_text(value):
-            yield at, "text with half a character (a lone surrogate)"
+            yield at, "text with a lone surrogate"
     elif isinstance(value, list | tuple):
         items = cast("Collection[object]", value)
         if not _all_whole_or_finite(items):
@@ -66,7 +66,7 @@ def _problems(value: object, at: str) -> Iterator[tuple[str, str]]:
     elif isinstance(value, msgspec.Struct):
         fields = zip(value.__struct_fields__, msgspec.structs.astuple(value), strict=True)
         yield from _within((f"{at}.{name}", item) for name, item in fields)
-    elif isinstance(value, _NOT_KEPT):
+    elif isinstance(value, _UNSUPPORTED):
         yield at, f"a value of type {kind.__name__}"
     else:
         yield from _of_another_type(value, at)
@@ -80,15 +80,15 @@ def _in_mapping(mapping: Mapping[object, object], at: str) -> Iterator[tuple[str
 
 
 def _of_another_type(value: object, at: str) -> Iterator[tuple[str, str]]:
-    """Look into what msgspec makes of a value of any other type: a date is text, a dataclass a mapping."""
+    """Check the msgspec conversion of a value of any other type: a date becomes text, a dataclass a mapping."""
     try:
-        made = msgspec.to_builtins(value)
+        plain = msgspec.to_builtins(value)
     except (TypeError, ValueError):
-        made = value
-    if type(made) is type(value):
+        plain = value
+    if type(plain) is type(value):
         yield at, f"a value of type {type(value).__name__}"
     else:
-        yield from _problems(made, at)
+        yield from _problems(plain, at)
 
 
 def _within(parts: Iterable[tuple[str, object]]) -> Iterator[tuple[str, str]]:
@@ -97,7 +97,7 @@ def _within(parts: Iterable[tuple[str, object]]) -> Iterator[tuple[str, str]]:
 
 
 def _all_whole_or_finite(items: Collection[object]) -> bool:
-    """Tell, in one pass of the interpreter's own, whether these are whole or finite numbers alone."""
+    """Return, in one pass of built-in code, whether all items are whole or finite numbers."""
     kinds = set(map(type, items)) - _WHOLE
     return not kinds or (kinds == {float} and all(math.isfinite(item) for item in items if type(item) is float))
 

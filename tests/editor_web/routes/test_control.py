@@ -143,7 +143,7 @@ async def test_a_paused_run_is_stepped_back_until_nothing_is_left(project: Path,
         book.read(there.session.events(run))
         assert {key: entry.value for key, entry in book.scopes[""].values.items()} == {"value": 0}
         refused = await there.command(run, "step_back", path="root/one")
-        assert (refused.status_code, refused.json()["message"]) == (409, "the run stands at its beginning")
+        assert (refused.status_code, refused.json()["message"]) == (409, "the run is at its beginning")
         await there.command(run, "resume")
         assert (await there.session.wait(run)).outcome == "good"
         over = await there.command(run, "step_back")
@@ -184,7 +184,7 @@ async def test_what_the_run_does_not_allow_now_is_409_and_what_is_not_there_404(
             ("force", {"path": "root/three", "outcome": "done"}, "this node is not active"),
             ("force", {"path": "root/tow", "outcome": "done"}, "there is no such node"),
             ("unlock", {"path": "root/one"}, "this node is not locked"),
-            ("answer", {"path": "root/two"}, "this node has requested nothing"),
+            ("answer", {"path": "root/two"}, "this node has requested no outcome"),
         ):
             answer = await there.command(run, command, **body)
             assert (answer.status_code, answer.json()["message"]) == (409, message)
@@ -218,7 +218,7 @@ async def test_the_file_as_it_is_now_takes_over(project: Path, loopback: str) ->
         run = await there.start(supervision={"start_paused": True})
         (project / STEPS_ID).write_text(STEPS.replace("value: 2", "value: 3"), encoding="utf-8")
         answer = await there.served.http.post(f"/api/v1/runs/{run}/control/change")
-        assert (answer.status_code, answer.json()) == (200, {"changes": ["root/three has other parameters"]})
+        assert (answer.status_code, answer.json()) == (200, {"changes": ["root/three has changed parameters"]})
         await there.command(run, "resume")
         await there.session.wait(run)
         again = await there.served.http.post(f"/api/v1/runs/{run}/control/change")
@@ -235,7 +235,7 @@ async def test_what_runs_is_given_up_for_the_file_only_where_that_is_said(projec
         (project / "behaviors" / "asks.yaml").write_text(other, encoding="utf-8")
         refused = await there.command(run, "change")
         assert refused.status_code == 409
-        assert "root/only is active as flow.Wait, now it is flow.Log" in refused.json()["message"]
+        assert "root/only is active as flow.Wait and becomes flow.Log" in refused.json()["message"]
         assert "`preempt`" in refused.json()["hint"]
         taken = await there.command(run, "change", preempt=True)
         assert taken.json()["changes"][-1] == "root/only is preempted and entered anew"

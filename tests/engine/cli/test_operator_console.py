@@ -149,7 +149,7 @@ def test_steps_back_one_after_the_other(nested: Path) -> None:
     assert commanded(nested.parent) == [
         "breakpoints", "step_back root/three", "step_back root/two", "breakpoints", "resume",
     ]  # fmt: skip
-    for line in ("back before root/two", "back before root/one", "root/one: the run stands at its beginning"):
+    for line in ("back before root/two", "back before root/one", "root/one: the run is at its beginning"):
         assert line in said.err
 
 
@@ -197,7 +197,7 @@ def test_a_new_version_of_the_file_takes_over(nested: Path) -> None:
         process.stdin = None
         _, errors = process.communicate(timeout=60)
     assert process.returncode == 1
-    assert "changed: root/four has other parameters" in errors
+    assert "changed: root/four has changed parameters" in errors
 
 
 def test_breakpoints_beside_the_behavior_are_used_with_an_operator_only(nested: Path) -> None:

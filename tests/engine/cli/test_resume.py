@@ -153,11 +153,11 @@ def test_a_changed_behavior_is_refused_unless_asked_for_and_possible(tmp_path: P
     )
     said = flexcell("resume", run, "--changed", cwd=tmp_path)
     assert said.code == 2
-    assert "root/second is active as flow.Wait, now it is flow.Log" in said.err
+    assert "root/second is active as flow.Wait and becomes flow.Log" in said.err
     file.write_text(text.replace("duration_s: 3000", "duration_s: 0.02"), encoding="utf-8")
     said = flexcell("resume", run, "--changed", cwd=tmp_path)
     assert said.code == 0
-    assert "changed: root/second has other parameters" in said.err
+    assert "changed: root/second has changed parameters" in said.err
 
 
 def test_a_run_that_was_changed_while_it_ran_is_resumed_in_that_version(tmp_path: Path) -> None:

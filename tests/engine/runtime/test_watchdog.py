@@ -88,7 +88,7 @@ def _where(blocks: Sequence[LoopStall]) -> list[str]:
 
 def _told(caplog: pytest.LogCaptureFixture) -> list[str]:
     messages = [record.getMessage() for record in caplog.records if record.name == "flexcell.watchdog"]
-    return [message for message in messages if message.startswith("root/block has kept the event loop")]
+    return [message for message in messages if message.startswith("root/block has blocked the event loop")]
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_a_state_that_blocks_is_named_with_its_line(how: str, text: str, caplog:
     assert _where(blocks) == [blocked.where]
     assert isinstance(events[-1], RunEnded)
     messages = _told(caplog)
-    assert re.search(r"from running for \d+\.\d\d s, at ", messages[0])
+    assert re.search(r"event loop for \d+\.\d\d s, at ", messages[0])
     assert messages[0].endswith(blocked.where)
 
 
@@ -134,4 +134,4 @@ def test_what_blocks_outside_the_states_is_logged(caplog: pytest.LogCaptureFixtu
         return list(watchdog.blocks)
 
     assert [block.path for block in asyncio.run(main()) if block.where.startswith(__file__)] == [""]
-    assert "something outside the states has kept the event loop" in caplog.text
+    assert "code outside the states has blocked the event loop" in caplog.text

@@ -23,10 +23,10 @@ from tests.engine.runtime.control.operate import Act, operate, pause, resume
 
 Node = dict[str, Any]
 KEYS = ("x", "y")
-BEGINNING = "the run stands at its beginning"
-BESIDE = "beside it has begun"
+BEGINNING = "the run is at its beginning"
+BESIDE = "and the parallel branch "
 """What is said of the other branches where a loop in one of them is in a later round."""
-ROUNDS = "rounds that are over are not taken back one by one"
+ROUNDS = "completed rounds cannot be undone one by one"
 
 
 class PutToken(Service[int], frozen=True, kw_only=True):

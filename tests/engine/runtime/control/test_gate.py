@@ -135,7 +135,7 @@ def test_orders_to_what_is_not_there_say_so_and_change_nothing() -> None:
         "root/three: this node is not active",
         "root/tow: there is no such node",
         "root/two: this node is not locked",
-        "root/two: this node has requested nothing",
+        "root/two: this node has requested no outcome",
         "the run is not paused",
     ]
 

@@ -81,7 +81,7 @@ def test_transitions_and_conditions_of_several_active_branches_are_new_at_once()
         "                  two: {state",
     )
     told, said = _changed(new)
-    assert said == ["root/both/right/three is new", "root/both/right/one has other transitions"]
+    assert said == ["root/both/right/three is added", "root/both/right/one has changed transitions"]
     assert told.result.outcome == "good"
     assert "+root/both/right/three" in told.story
     assert "+root/both/right/two" not in told.story
@@ -91,7 +91,7 @@ def test_transitions_and_conditions_of_several_active_branches_are_new_at_once()
 
 def test_a_running_state_keeps_its_parameters_until_it_is_entered_again() -> None:
     told, said = _changed(OLD.replace("after_s: 3", "after_s: 9"))
-    assert said == ["root/both/right/one has other parameters, from its next entry on"]
+    assert said == ["root/both/right/one has changed parameters, effective at its next entry"]
     assert told.result.duration_s == pytest.approx(8.0)
 
 
@@ -99,7 +99,7 @@ ONE = "one: {state: test.Give, with: {after_s: 3}, transitions: {a: two, b: two,
 REFUSED = {
     "another class": (
         OLD.replace(ONE, "one: {state: test.Use, transitions: {done: two}}"),
-        "root/both/right/one is active as test.Give, now it is test.Use",
+        "root/both/right/one is active as test.Give and becomes test.Use",
     ),
     "gone": (
         OLD.replace("initial: one", "initial: uno").replace(ONE, ONE.replace("one:", "uno:")),
@@ -107,7 +107,7 @@ REFUSED = {
     ),
     "another kind": (
         OLD.replace("{state: test.Give, with: {after_s: 4}}", "{foreach: {times: 2, child: {state: test.Give}}}"),
-        "root/both/left is active and was a state, now it is a foreach",
+        "root/both/left is active and changes from a state to a foreach",
     ),
     "a new parameter without default": (
         "parameters: {speed: {type: number}}\n" + OLD,
@@ -137,15 +137,15 @@ OTHER_CLASS = OLD.replace(ONE, ONE.replace("test.Give", "test.Tell"))
 THIRD = OLD.replace(
     "            right:\n", "            third: {state: test.Give, with: {after_s: 6}}\n            right:\n"
 ).replace("right: out}", "right: out, third: a}")
-PREEMPT = " (the run goes on with the old version; `preempt` gives up what cannot go on in the new one)"
+PREEMPT = " (the run continues with the old version; `preempt` preempts what cannot continue in the new one)"
 
 
 def test_with_the_consent_of_the_operator_a_running_state_of_another_class_is_preempted_and_entered_anew() -> None:
     refused, said = _changed(OTHER_CLASS)
-    assert said == [f"refused: root/both/right/one is active as test.Give, now it is test.Tell{PREEMPT}"]
+    assert said == [f"refused: root/both/right/one is active as test.Give and becomes test.Tell{PREEMPT}"]
     assert refused.result.duration_s == pytest.approx(8.0)
     told, said = _changed(OTHER_CLASS, preempt=True)
-    assert said == ["root/both/right/one is test.Tell now", "root/both/right/one is preempted and entered anew"]
+    assert said == ["root/both/right/one becomes test.Tell", "root/both/right/one is preempted and entered anew"]
     assert told.story.count("-root/both/right/one preempted") == 1
     assert told.story.count("+root/both/right/one") == 2
     assert told.result.outcome == "good"
@@ -157,7 +157,7 @@ def test_with_the_consent_of_the_operator_a_running_state_of_another_class_is_pr
 def test_a_running_state_with_other_parameters_or_keys_is_entered_anew_only_where_that_is_said() -> None:
     text = OLD.replace("after_s: 3", "after_s: 9")
     told, said = _changed(text, preempt=True)
-    assert said == ["root/both/right/one has other parameters", "root/both/right/one is preempted and entered anew"]
+    assert said == ["root/both/right/one has changed parameters", "root/both/right/one is preempted and entered anew"]
     assert told.result.duration_s == pytest.approx(5.0 + 9.0 + 1.0)
 
 
@@ -173,13 +173,13 @@ def test_a_running_node_of_another_kind_is_entered_anew_as_what_it_is_now() -> N
 def test_what_only_waits_for_its_entry_may_become_anything_else() -> None:
     text = OLD.replace("two: {state: test.Give", "two: {state: test.Tell")
     told, said = _changed(text, at_s=3.0)
-    assert said == ["root/both/right/two is test.Tell now"]
+    assert said == ["root/both/right/two becomes test.Tell"]
     assert told.result.outcome == "good"
 
 
 def test_a_new_branch_of_an_active_concurrency_container_enters_at_once() -> None:
     told, said = _changed(THIRD)
-    assert said == ["root/both/third is new", "root/both has other conditions"]
+    assert said == ["root/both/third is added", "root/both has changed conditions"]
     (entered,) = [
         event.time_s for event in told.events if isinstance(event, NodeEntered) and event.path.endswith("third")
     ]
@@ -201,13 +201,13 @@ def _without_third(at_s: float, *, preempt: bool) -> tuple[Told, list[str]]:
 
 def test_a_branch_that_has_ended_may_go_and_one_under_way_only_where_that_is_said() -> None:
     told, said = _without_third(2.5, preempt=False)
-    assert said == ["root/both has other conditions", "root/both/third is gone"]
+    assert said == ["root/both has changed conditions", "root/both/third is removed"]
     assert told.result.outcome == "good"
     told, said = _without_third(1.0, preempt=False)
-    assert said == [f"refused: root/both/third is under way and not in the new version{PREEMPT}"]
+    assert said == [f"refused: the branch root/both/third is active and not in the new version{PREEMPT}"]
     assert told.result.outcome == "good"
     told, said = _without_third(1.0, preempt=True)
-    assert said == ["root/both has other conditions", "root/both/third is gone"]
+    assert said == ["root/both has changed conditions", "root/both/third is removed"]
     assert [line for line in told.story if "third" in line] == [
         "+root/both/third",
         "!root/both/third cleaned up",
@@ -226,5 +226,5 @@ def test_what_a_removed_branch_has_written_stays() -> None:
         5.0: lambda run: run.control.resume(),
     }
     told = operate(keys + OLD.replace("            right:\n", third), acts)
-    assert said == ["root/both/third is gone"]
+    assert said == ["root/both/third is removed"]
     assert told.result.userdata == {"value": 7}

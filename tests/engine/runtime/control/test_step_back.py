@@ -111,7 +111,7 @@ def test_a_node_in_mid_work_gives_up_and_is_undone_and_then_the_one_before_it() 
 def test_at_the_beginning_there_is_nothing_to_take_back() -> None:
     operator = Operator()
     told = operator.run(TWO, {1.0: operator.back(), 4.0: resume}, supervision=RunOptions(start_paused=True))
-    assert operator.said == ["refused: root: the run stands at its beginning (there is nothing to take back)"]
+    assert operator.said == ["refused: root: the run is at its beginning (there is nothing to undo)"]
     assert told.result.outcome == "good"
 
 
@@ -130,7 +130,7 @@ def test_a_state_without_undo_refuses_and_nothing_moves() -> None:
     told = operator.run(text, {2.0: pause, 3.0: operator.back(), 5.0: operator.back(), 6.0: operator.look, 7.0: resume})
     assert operator.said[0] == "undoes root/two"
     assert operator.said[1].startswith(
-        "refused: root/one: there is no step back over visit 1: test.PushSlide does not declare how to undo what it did"
+        "refused: root/one: cannot step back over visit 1: test.PushSlide does not declare how to undo what it did"
     )
     assert operator.said[2] == "before root/two rests 1 m"
     assert told.result.outcome == "good"
@@ -269,8 +269,8 @@ def test_the_branch_that_began_something_last_goes_back_first_or_the_one_that_is
         "before root/both/right/then before root/both/left/two rests 1 m",
         "undoes root/both/right/wait",
         "undoes root/both/left/one",
-        "refused: root/both/right/wait: the run stands at its beginning (there is nothing to take back)",
-        "refused: root/both/right/wait: the run stands at its beginning (there is nothing to take back)",
+        "refused: root/both/right/wait: the run is at its beginning (there is nothing to undo)",
+        "refused: root/both/right/wait: the run is at its beginning (there is nothing to undo)",
         "before root/both/right/wait before root/both/left/one rests 0 m",
     ]
     assert told.result.outcome == "good"
@@ -283,7 +283,7 @@ def test_one_branch_does_not_go_back_over_the_entry_of_its_container_alone() -> 
     )
     assert operator.said[0] == "undoes root/both/right/wait"
     assert operator.said[1] == (
-        "refused: root/both: root/both/right stands at its beginning, and root/both/left beside it has begun"
+        "refused: root/both: root/both/right is at its beginning, and the parallel branch root/both/left has begun"
         " (step root/both/left back first)"
     )
 
@@ -336,8 +336,8 @@ def test_orders_for_what_is_being_undone_are_refused_and_a_stop_ends_it() -> Non
     told = operator.run(
         TWO, {2.0: pause, 3.0: operator.back(), 3.25: force, 3.5: operator.back(), 3.75: lambda run: run.stop("enough")}
     )
-    assert said == ["root/two: this is being undone (wait until the run rests, or stop it)"]
-    assert operator.said[1].startswith("refused: root/two: this is being undone")
+    assert said == ["root/two: this node is being undone (wait until the run is at rest, or stop it)"]
+    assert operator.said[1].startswith("refused: root/two: this node is being undone")
     assert told.result.status == "stopped"
     assert [e.preempted for e in told.events if isinstance(e, UndoEnded)] == [True]
     assert not [e for e in told.events if isinstance(e, RunSteppedBack)]

@@ -120,7 +120,8 @@ def test_a_crash_in_the_middle_of_an_undo_begins_paused_and_says_so() -> None:
     for cut in range(begun + 1, ended + 2):
         result, _, _, events = _go_on(WHOLE[:cut], back=False)
         said = [event.message for event in events[cut:] if isinstance(event, MessageLogged)]
-        assert said == ["the engine died while a step back was undoing this, so the run begins paused: step back again"]
+        message = "the engine died while a step back was undoing this state; the run starts paused: step back again"
+        assert said == [message]
         assert result.duration_s == pytest.approx(100.0 + _left_s(events[cut:]))
 
 

@@ -111,7 +111,7 @@ def gone_on(plan: Plan, events: tuple[Event, ...]) -> RunResult:
         ),
         (
             ROUNDS.replace("ITEMS", "[]"),
-            ["root/each: there was nothing to go through", "root/each ended with exhausted", "root ended with bad"],
+            ["root/each: there was no item to iterate over", "root/each ended with exhausted", "root ended with bad"],
         ),
     ],
 )

@@ -22,7 +22,7 @@ def test_a_timeout_fails_after_the_clean_up_of_its_child() -> None:
     """Time is the run's, so 3 s pass at once in a test."""
     told = run_tree("timeout: {after: 3 s, child: {state: test.Act, with: {script: [[9, true]], cleanup_s: 1}}}")
     assert told.story == ["0 +timeout/Act", "4 !timeout/Act clean", "4 -timeout/Act preempted"]
-    assert told.why[1:] == ["no end within 3 s"]
+    assert told.why[1:] == ["did not end within 3 s"]
 
 
 def test_what_ends_at_the_very_moment_of_a_timeout_has_ended_in_time() -> None:
@@ -109,7 +109,7 @@ def test_a_cooldown_fails_until_its_time_has_passed_and_then_wakes_the_tree() ->
 def test_a_cooldown_says_that_it_is_cooling_down() -> None:
     """It is tried again at once and refuses."""
     told = run_tree(f"retry: {{times: 1, child: {{cooldown: {{after: 3 s, child: {_act('x', (1, False))}}}}}}}")
-    assert told.why[1:] == ["failed 2 times", "cooling down, 3 s in all"]
+    assert told.why[1:] == ["failed 2 times", "the cooldown of 3 s is active"]
 
 
 def test_a_guard_keeps_its_child_from_beginning() -> None:
@@ -165,7 +165,7 @@ def test_a_guard_that_is_no_truth_value_is_an_error() -> None:
     """It names the value."""
     told = run_tree("guard: {when: '${part}', child: {state: test.Check}}", head="userdata: {part: 1}")
     assert told.result.status == "errored"
-    assert "the guard gave 1, which is not a boolean" in told.why[0]
+    assert "the guard evaluates to 1, which is not a boolean" in told.why[0]
 
 
 def test_remap_shows_another_status() -> None:

@@ -304,7 +304,7 @@ def test_a_tree_that_only_asks_for_ever_is_named_in_virtual_time() -> None:
     plan = new_plan(parse_behavior(text, file="test.yaml"), {**CATALOGUE, **STATES, "test.Never": Never})
     told = _told(plan, held=lambda now_s: True, polling_limit=2_000)
     assert told.result.status == "errored"
-    assert any("asked sequence/CheckHeld again 2000 times" in line for line in told.why), told.why
+    assert any("ticked sequence/CheckHeld again 2000 times" in line for line in told.why), told.why
     hour = "{state: test.Act, name: carry, with: {script: [[3600, true]]}}"
     told = _told(
         _plan(f"{{sequence: {{memory: false, children: [{{state: test.CheckHeld}}, {hour}]}}}}"),
@@ -357,7 +357,7 @@ def test_a_tree_that_polls_for_ever_in_virtual_time_is_named() -> None:
     tree = "{condition: {status: success, every: 100 ms, child: {state: test.CheckHeld}}}"
     told = _told(_plan(tree), held=lambda now_s: False, polling_limit=2_000)
     assert told.result.status == "errored"
-    assert any("asked condition/CheckHeld again 2000 times" in line for line in told.why), told.why
+    assert any("ticked condition/CheckHeld again 2000 times" in line for line in told.why), told.why
     told = _told(_plan(tree), held=lambda now_s: now_s > 150.0, polling_limit=2_000)
     assert (told.result.outcome, told.result.duration_s) == ("success", pytest.approx(150.1))
 

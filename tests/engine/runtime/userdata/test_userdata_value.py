@@ -37,11 +37,11 @@ REFUSED: dict[str, tuple[object, str]] = {
     "bytes": (b"ab", "a value of type bytes"),
     "a set": ([{1, 2}], "a value of type set (at [0])"),
     "number as key": ({1: 2}, "a mapping with the key 1"),
-    "half a character": ("\ud800", "text with half a character"),
+    "half a character": ("\ud800", "text with a lone surrogate"),
     "half a character as key": ({"\ud800": 1}, "a mapping with the key"),
     "a lock": (threading.Lock(), "a value of type lock"),
     "in a struct": (Part(holes=[math.nan]), "the number nan (at holes[0])"),  # type: ignore[list-item]
-    "in itself": (_in_itself(), "nested so deeply, or in itself"),
+    "in itself": (_in_itself(), "nested too deeply or contains itself"),
 }
 
 
