@@ -1,4 +1,4 @@
-"""Walks a value of a document along its declared type, with what the annotations say of each part of it."""
+"""Walks a value of a document along its declared type, with the annotations of each part."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any, cast
 import msgspec.inspect as inspect
 
 Annotations = Mapping[str, object]
-"""What `extra_json_schema` says: unit, kind of entry, kind of name in the cell."""
+"""The content of `extra_json_schema`: unit, kind of entry, kind of name in the cell."""
 _NOTHING: Annotations = {}
 _DEEPEST = 12
 
 
 @dataclass(frozen=True, kw_only=True)
 class AnnotatedValue:
-    """A text, number or other plain value inside a value, the keys that lead to it, and what is said of it."""
+    """A plain value inside a value, the keys that lead to it, and its annotations."""
 
     steps: tuple[str | int, ...]
     value: object
@@ -26,11 +26,11 @@ class AnnotatedValue:
 
 
 def annotated_values(annotation: Any, value: object) -> Iterator[AnnotatedValue]:
-    """Go through the plain values inside `value` of which annotations say something, in document order.
+    """Yield the annotated plain values inside `value`, in document order.
 
     Args:
-        annotation: The type that the value should be of; what does not fit it is left out.
-        value: Plain data. Where a container is due and something else stands, such as an expression, that counts.
+        annotation: The declared type; parts that do not match it are skipped.
+        value: Plain data. A non-container in the place of a container, such as an expression, is yielded.
     """
     info = _info(annotation)
     if info is not None:
@@ -38,12 +38,12 @@ def annotated_values(annotation: Any, value: object) -> Iterator[AnnotatedValue]
 
 
 def is_annotated(annotation: Any) -> bool:
-    """Tell whether anything is said of some part of a type; it is asked before a value is worked out."""
+    """Return whether some part of a type has annotations; callers test this before they compute a value."""
     return _info(annotation) is not None
 
 
 def annotated_lists(annotation: Any, value: object) -> Iterator[tuple[tuple[str | int, ...], list[AnnotatedValue]]]:
-    """Go through the same values with those of one list together, by the keys that lead to the list or to the value."""
+    """Yield the same values grouped by list, with the keys that lead to the list or value."""
     for steps, group in groupby(annotated_values(annotation, value), key=_list_of):
         yield steps, list(group)
 
@@ -54,7 +54,7 @@ def _list_of(part: AnnotatedValue) -> tuple[str | int, ...]:
 
 @lru_cache(maxsize=4096)
 def _info(annotation: Any) -> inspect.Type | None:
-    """Return the type, None where nothing is said anywhere inside it."""
+    """Return the type; None if no part of it has annotations."""
     found = inspect.type_info(annotation)
     return found if _is_said(found, 0) else None
 
@@ -115,7 +115,7 @@ def _parts(
 
 
 def _options(here: inspect.Type, says: Annotations) -> Iterator[tuple[inspect.Type, Annotations]]:
-    """Return what a type may be, each with what is said of it; what stands farther inside counts before the rest."""
+    """Return the alternatives of a type with their annotations; inner annotations take precedence."""
     if isinstance(here, inspect.Metadata):
         yield from _options(here.type, {**says, **_said(here)})
     elif isinstance(here, inspect.UnionType):

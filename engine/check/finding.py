@@ -1,6 +1,6 @@
-"""A finding: what is wrong with a behavior, where, and what to do; `CODES` lists all kinds.
+"""A finding: a defect of a behavior, its position, and what to do; `CODES` lists all kinds.
 
-Each kind has a page, `docs/findings/<code>.md`, with what it means and how to mend it.
+Each kind has a page, `docs/findings/<code>.md`, with its meaning and how to fix it.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ CODES: Mapping[str, tuple[Severity, str]] = {
     "unknown-outcome": ("error", "the node does not have this outcome"),
     "unknown-target": ("error", "a transition leads to a name that does not exist"),
     "unconnected-outcome": ("error", "an outcome of a node is not connected"),
-    "ambiguous-target": ("error", "a name is a state of a machine and an outcome of it"),
+    "ambiguous-target": ("error", "a name is both a state and an outcome of a machine"),
     "missing-initial": ("error", "the initial state of a machine does not exist"),
     "unreachable-node": ("warning", "no transition leads to a node"),
     "no-path-to-outcome": ("warning", "from a node no outcome of the machine can be reached"),
@@ -93,17 +93,17 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True, gc=False):
 
 
 def finding_sort_key(finding: Finding) -> tuple[str, int, int]:
-    """Return what sorts findings by where they are."""
+    """Return the sort key that orders findings by position."""
     return finding.position.file, finding.position.line, finding.position.column
 
 
 def new_finding(code: str, message: str, *, path: str, position: Position, hint: str = "") -> Finding:
-    """Make a finding with the severity that belongs to its code."""
+    """Return a finding with the severity of its code."""
     return Finding(severity=CODES[code][0], code=code, message=message, path=path, position=position, hint=hint)
 
 
 def invalid_document_finding(error: DocumentError, path: Path | str) -> Finding:
-    """Make the finding of a mistake in the document at `path`."""
+    """Return the finding for an error in the document at `path`."""
     position = error.where if isinstance(error.where, Position) else Position(file=str(path), line=1, column=1)
     return new_finding("invalid-document", error.message, path="", position=position, hint=error.hint or "")
 
@@ -112,7 +112,7 @@ def require_no_errors(findings: Iterable[Finding]) -> None:
     """Refuse a document that has errors.
 
     Raises:
-        DocumentError: it has; the first one, `where` is its position.
+        DocumentError: there is an error; the first one, `where` is its position.
     """
     for finding in findings:
         if finding.severity == "error":

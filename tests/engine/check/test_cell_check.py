@@ -52,18 +52,18 @@ def test_a_good_cell_has_no_findings(tmp_path: Path) -> None:
         (
             "model: panda,",
             "model: pandda,",
-            "6:17: error: no robot model is called pandda (did you mean panda?) [unknown-model]",
+            "6:17: error: there is no robot model `pandda` (did you mean panda?) [unknown-model]",
         ),
         (
             "model: panda_hand",
             "model: panda_hnd",
-            "6:41: error: no gripper model is called panda_hnd (did you mean panda_hand?) [unknown-model]",
+            "6:41: error: there is no gripper model `panda_hnd` (did you mean panda_hand?) [unknown-model]",
         ),
         ("model: panda,", "model: ./mine,", "6:17: error: robot `left`: there is no robot.yaml in "),
         (
             "model: ur10,",
             "model: ur10, driver: {kind: ur_rtd},",
-            "7:39: error: no driver is called ur_rtd (none is installed; `driver: sim` simulates it) [unknown-driver]",
+            "7:39: error: there is no driver `ur_rtd` (none is installed; use `driver: sim`) [unknown-driver]",
         ),
         (
             "linear_axis: 9",

@@ -35,7 +35,7 @@ root:
         (
             "gripper.Move",
             "gripper: left, width_m: 0.04, speed_m_s: 100",
-            "`speed_m_s`: 100 m/s looks like millimetres a second",
+            "`speed_m_s`: 100 m/s looks like millimetres per second",
             "if so, write 0.1",
         ),
     ],

@@ -111,7 +111,7 @@ poses: {left_pick: {xyz: [0, 0, 0]}}
     [
         ("left_home", ""),
         ("left_hoem", "there is no joints entry `left_hoem` (did you mean left_home?)"),
-        ("left_pick", "there is no joints entry `left_pick` (there is a pose entry of that name)"),
+        ("left_pick", "there is no joints entry `left_pick` (the kind of `left_pick` is pose)"),
         ("${place}", "there is no joints entry `left_pick`"),
     ],
 )

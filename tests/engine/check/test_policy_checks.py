@@ -55,7 +55,7 @@ def test_a_setting_of_a_node(extra: str, expected: str | None) -> None:
 
 def test_a_condition_without_braces_is_text() -> None:
     """The hint puts them around it."""
-    assert message_of(WAIT % "guard: {when: 'ready', to: bad}") == "the guard takes true or false, and gets 'ready'"
+    assert message_of(WAIT % "guard: {when: 'ready', to: bad}") == "the guard expects true or false, but gets 'ready'"
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ def test_a_key_that_one_outcome_leaves_unwritten_is_told_with_the_way_there() ->
           use: {USE}, transitions: {{done: good}}}}
     """
     assert said_of(text) == ["maybe-undefined-key root/use"]
-    assert message_of(text).endswith("nothing defines it on the way read → wait → use")
+    assert message_of(text).endswith("it is not defined on the path read → wait → use")
 
 
 def test_the_way_goes_through_the_containers_around_the_reader() -> None:
@@ -41,7 +41,7 @@ def test_the_way_goes_through_the_containers_around_the_reader() -> None:
                 use: {USE}, transitions: {{done: ready}}}}
             transitions: {{ready: good}}
     """
-    assert message_of(text).endswith("on the way read → inner/wait → inner/use")
+    assert message_of(text).endswith("on the path read → inner/wait → inner/use")
 
 
 def test_an_initial_value_defines_a_key_on_every_way() -> None:
