@@ -56,13 +56,13 @@ def _list_of(part: AnnotatedValue) -> tuple[str | int, ...]:
 def _info(annotation: Any) -> inspect.Type | None:
     """Return the type; None if no part of it has annotations."""
     found = inspect.type_info(annotation)
-    return found if _is_said(found, 0) else None
+    return found if _has_annotations(found, 0) else None
 
 
-def _is_said(here: inspect.Type, depth: int) -> bool:
+def _has_annotations(here: inspect.Type, depth: int) -> bool:
     if depth > _DEEPEST:
         return False
-    return bool(_said(here)) or any(_is_said(inner, depth + 1) for inner in _inside(here))
+    return bool(_annotations_of(here)) or any(_has_annotations(inner, depth + 1) for inner in _inside(here))
 
 
 def _inside(here: inspect.Type) -> Iterator[inspect.Type]:
@@ -80,7 +80,7 @@ def _inside(here: inspect.Type) -> Iterator[inspect.Type]:
         yield from here.item_types
 
 
-def _said(here: inspect.Type) -> Annotations:
+def _annotations_of(here: inspect.Type) -> Annotations:
     if not isinstance(here, inspect.Metadata):
         return _NOTHING
     extra = cast("Annotations | None", here.extra_json_schema)  # pyright: ignore[reportUnknownMemberType]
@@ -94,30 +94,30 @@ def _parts(
     if isinstance(value, dict):
         mapping = cast("dict[str, object]", value)
         for key, inner in mapping.items():
-            for option, said in options:
+            for option, merged in options:
                 within = _of_key(option, mapping, key)
                 if within is not None:
                     of_field = isinstance(option, inspect.StructType)
-                    yield from _parts(within, inner, (*steps, key), _NOTHING if of_field else said)
+                    yield from _parts(within, inner, (*steps, key), _NOTHING if of_field else merged)
                     break
     elif isinstance(value, list | tuple):
         items = cast("list[object]", value)
         for index, inner in enumerate(items):
-            for option, said in options:
+            for option, merged in options:
                 within = _of_index(option, index)
                 if within is not None:
-                    yield from _parts(within, inner, (*steps, index), said)
+                    yield from _parts(within, inner, (*steps, index), merged)
                     break
     else:
-        said = {key: found for _, each in reversed(options) for key, found in each.items()}
-        if said:
-            yield AnnotatedValue(steps=steps, value=value, says=said)
+        merged = {key: found for _, each in reversed(options) for key, found in each.items()}
+        if merged:
+            yield AnnotatedValue(steps=steps, value=value, says=merged)
 
 
 def _options(here: inspect.Type, says: Annotations) -> Iterator[tuple[inspect.Type, Annotations]]:
     """Return the alternatives of a type with their annotations; inner annotations take precedence."""
     if isinstance(here, inspect.Metadata):
-        yield from _options(here.type, {**says, **_said(here)})
+        yield from _options(here.type, {**says, **_annotations_of(here)})
     elif isinstance(here, inspect.UnionType):
         for option in here.types:
             yield from _options(option, says)

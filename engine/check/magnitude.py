@@ -76,11 +76,11 @@ def unit_suspicion(
     largest = max(numbers, key=abs)
     if not (due.in_list if len(values) > 1 else due.alone) < abs(largest) < math.inf:
         return None
-    meant = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
+    converted = ", ".join(f"{round(each * due.factor, 4):g}" for each in numbers)
     return UnitSuspicion(
         steps=steps,
         message=f"`{name}`: {largest:g} {unit} looks like {due.other}",
-        hint=f"if so, write {meant if len(values) == 1 else f'[{meant}]'}",
+        hint=f"if so, write {converted if len(values) == 1 else f'[{converted}]'}",
     )
 
 

@@ -35,8 +35,8 @@ class FlowGraph:
     def backward(self) -> Mapping[int, Sequence[int]]:
         """The predecessors of each child."""
         found: dict[int, list[int]] = {}
-        for source, ways in enumerate(self.arrows):
-            for _, to in ways:
+        for source, edges in enumerate(self.arrows):
+            for _, to in edges:
                 if isinstance(to, int):
                     found.setdefault(to, []).append(source)
         return found
@@ -81,8 +81,8 @@ class FlowGraph:
         for start in self.entries:
             due = [(start, iter(self.arrows[start]))]
             while due:
-                child, ways = due[-1]
-                following = next((to for _, to in ways if isinstance(to, int) and to not in seen), None)
+                child, edges = due[-1]
+                following = next((to for _, to in edges if isinstance(to, int) and to not in seen), None)
                 if following is None:
                     finished.append(child)
                     due.pop()
@@ -119,15 +119,15 @@ class FlowGraph:
         return before, ends
 
 
-def machine_graph(children: Sequence[NodeAt], initial: str, ways: Mapping[str, Sequence[FlowEdge]]) -> FlowGraph:
+def machine_graph(children: Sequence[NodeAt], initial: str, edges: Mapping[str, Sequence[FlowEdge]]) -> FlowGraph:
     """Return the graph of a machine; the edges of its children are labelled with their targets."""
     numbers = {child.name: number for number, child in enumerate(children)}
-    arrows = [[(way.effect, numbers.get(way.label, way.label)) for way in ways[child.path]] for child in children]
+    arrows = [[(edge.effect, numbers.get(edge.label, edge.label)) for edge in edges[child.path]] for child in children]
     return FlowGraph((numbers[initial],) if initial in numbers else (), arrows)
 
 
 def tree_graph(
-    placed: NodeAt, children: Sequence[NodeAt], ways: Mapping[str, Sequence[FlowEdge]], halted: Mapping[str, Effect]
+    placed: NodeAt, children: Sequence[NodeAt], edges: Mapping[str, Sequence[FlowEdge]], halted: Mapping[str, Effect]
 ) -> FlowGraph:
     """Return the graph of a tree, composite or decorator; all edges are labelled with statuses.
 
@@ -135,7 +135,7 @@ def tree_graph(
     """
     lead = _leads(placed.node, len(children))
     arrows = [
-        [(way.effect, to) for way in ways[child.path] for to in lead(number, way.label)]
+        [(edge.effect, to) for edge in edges[child.path] for to in lead(number, edge.label)]
         for number, child in enumerate(children)
     ]
     if placed.node.while_do_else is not None:

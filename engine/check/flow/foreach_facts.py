@@ -49,7 +49,7 @@ def foreach_facts(
     """
     if not rounds.items and not rounds.times:
         return ForEachFacts(None, 0, {EXHAUSTED: entry})
-    again = [way.effect for way in child if way.label in onward]
+    again = [edge.effect for edge in child if edge.label in onward]
     inside = join_effects(again)
     outside = seen(inside)
     loop, after = entry, 0
@@ -59,9 +59,9 @@ def foreach_facts(
             break
         loop |= after
     broken = 0
-    for way in child:
-        if way.label not in onward:
-            broken |= seen(way.effect).after(loop, sites)
+    for edge in child:
+        if edge.label not in onward:
+            broken |= seen(edge.effect).after(loop, sites)
     before = enter(loop)
     exhausted = after if again and has_round(rounds) else entry | after
     ends = {EXHAUSTED: exhausted, BROKEN: broken} if broken else {EXHAUSTED: exhausted}

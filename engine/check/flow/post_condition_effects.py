@@ -48,7 +48,7 @@ class PostConditionEffects:
 def post_condition_fact(
     read: KeyRead,
     before: int | None,
-    ways: Sequence[FlowEdge],
+    edges: Sequence[FlowEdge],
     halted: Effect,
     post: PostConditionEffects,
     sites: DefinitionSites,
@@ -58,7 +58,7 @@ def post_condition_fact(
     Args:
         read: The read; its keys identify the post-condition.
         before: The fact before the part.
-        ways: The outgoing edges of the part, before its post-conditions.
+        edges: The outgoing edges of the part, before its post-conditions.
         halted: The possible writes if it is halted.
         post: All its post-conditions.
         sites: The definition sites.
@@ -68,9 +68,9 @@ def post_condition_fact(
     _, when, key = read.keys
     found = 0
     for label, due in _AFTER.items():
-        for way in ways if when in due else ():
-            if way.label == label:
-                found |= _until(way.effect.after(before, sites), str(when), str(key), due, post, sites)
+        for edge in edges if when in due else ():
+            if edge.label == label:
+                found |= _until(edge.effect.after(before, sites), str(when), str(key), due, post, sites)
     if when in _HALTED:
         found |= _until(halted.after(before, sites), str(when), str(key), _HALTED, post, sites)
     return found

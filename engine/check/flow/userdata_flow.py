@@ -41,7 +41,7 @@ class DataFlow:
         """The children of each sequential container as a graph."""
         self.anywhere: dict[str, Effect] = {}
         """All possible writes of each node, as visible outside."""
-        self.ways: dict[str, list[FlowEdge]] = {}
+        self.edges: dict[str, list[FlowEdge]] = {}
         """The outgoing edges of each node, labelled as in its container."""
         self._end = 0
         self._posts: dict[str, PostConditionEffects] = {}
@@ -100,7 +100,7 @@ class DataFlow:
         if graph is not None:
             return graph.solve(inner, self.sites)
         merge = concurrency_ends if placed.node.concurrency is not None else parallel_ends
-        return dict.fromkeys(range(len(children)), inner), merge(placed, children, self.ways, inner, self.sites)
+        return dict.fromkeys(range(len(children)), inner), merge(placed, children, self.edges, inner, self.sites)
 
     def _rounds(self, placed: NodeAt, child: NodeAt, entry: int) -> tuple[dict[int, int], dict[str, int]]:
         rounds = placed.node.foreach
@@ -108,7 +108,7 @@ class DataFlow:
             return {}, {}
         found = foreach_facts(
             rounds,
-            self.ways[child.path],
+            self.edges[child.path],
             entry,
             onward=frozenset(rounds.next) or self.subject.nominal[child.path],
             collecting=collect_effect(placed, self.sites),
@@ -162,13 +162,13 @@ class DataFlow:
             self.anywhere[placed.path] = (
                 join_effects(effect.perhaps() for effect in ends.values()) if writes else NO_EFFECT
             )
-        ways = self._ways(placed, ends, leaf=not children)
+        edges = self._edges(placed, ends, leaf=not children)
         post = self._posts.get(placed.path)
         if post is not None:
-            self._ended[placed.path] = ways
-            ways = [FlowEdge(way.label, way.effect.then(post.at(way.label))) for way in ways]
+            self._ended[placed.path] = edges
+            edges = [FlowEdge(edge.label, edge.effect.then(post.at(edge.label))) for edge in edges]
             self.anywhere[placed.path] = combine_effects((self.anywhere[placed.path], post.anywhere))
-        self.ways[placed.path] = ways
+        self.edges[placed.path] = edges
 
     def _leaf_ends(self, placed: NodeAt) -> dict[str, Effect]:
         node = placed.node
@@ -236,14 +236,14 @@ class DataFlow:
     def _graph(self, placed: NodeAt, children: Sequence[NodeAt]) -> FlowGraph | None:
         machine = placed.node.sequential
         if machine is not None:
-            return machine_graph(children, machine.initial, self.ways)
+            return machine_graph(children, machine.initial, self.edges)
         if placed.node.concurrency is not None or placed.node.parallel is not None or placed.node.foreach is not None:
             return None
         halted = {path: post.halted for path, post in self._posts.items()}
         halted |= {child.path: self.anywhere[child.path] for child in children if child.path in self.subject.inside}
-        return tree_graph(placed, children, self.ways, defaultdict(lambda: NO_EFFECT, halted))
+        return tree_graph(placed, children, self.edges, defaultdict(lambda: NO_EFFECT, halted))
 
-    def _ways(self, placed: NodeAt, ends: dict[str, Effect], *, leaf: bool) -> list[FlowEdge]:
+    def _edges(self, placed: NodeAt, ends: dict[str, Effect], *, leaf: bool) -> list[FlowEdge]:
         node = placed.node
         before = self._earlier_attempts(placed, ends, leaf=leaf)
         stopped = before.perhaps() if leaf else self.anywhere[placed.path]
@@ -291,7 +291,7 @@ class DataFlow:
             if path == "root":
                 self._end = self._joined(placed, fact, ends.values())
         if "root" not in self.subject.inside:
-            effects = [way.effect.after(self.before["root"], self.sites) for way in self.ways["root"]]
+            effects = [edge.effect.after(self.before["root"], self.sites) for edge in self.edges["root"]]
             self._end = self._joined(self.subject.nodes["root"], self.before["root"], effects)
 
     def _joined(self, placed: NodeAt, before: int, ends: Iterable[int]) -> int:

@@ -1,4 +1,4 @@
-"""Parts of trees: which can never be asked, never end, and what py_trees classes take."""
+"""Parts of trees that never run or never end, and the arguments of py_trees classes."""
 
 from __future__ import annotations
 

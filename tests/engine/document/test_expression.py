@@ -134,9 +134,9 @@ def test_a_malformed_expression_is_refused_before_a_run(text: str, says: str) ->
         ("${xs[5]}", "Index error"),
         ("${huge + 1}", "out of range"),
         ("${9223372036854775807 + 1}", "overflow"),
-        ("${b'a'}", "no document value"),
+        ("${b'a'}", "not a document value"),
         ("${name.__class__}", "name = 'hca'"),
-        ("${timestamp('2020-01-01T00:00:00Z')}", "no document value"),
+        ("${timestamp('2020-01-01T00:00:00Z')}", "not a document value"),
     ],
 )
 def test_a_failed_evaluation_names_expression_and_variables(text: str, says: str) -> None:

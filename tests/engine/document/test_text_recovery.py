@@ -72,7 +72,7 @@ def test_a_block_goes_with_its_line() -> None:
         "        with:\n          outcome: a\n        with:\n          outcome: b\n        transitions",
     )
     recovered = recover_text(torn, file="x.yaml")
-    assert [each.message for each in recovered.mistakes] == ["the key `with` is repeated; it is first on line 13"]
+    assert [each.message for each in recovered.mistakes] == ["the key `with` is repeated; it first occurs on line 13"]
     assert recovered.gaps == (("root", "machine", "states", "s0"),)
     survey = survey_behavior(Path("x.yaml"), torn)
     assert lines_of(survey.mistakes) == [15]
