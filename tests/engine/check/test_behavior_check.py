@@ -653,7 +653,7 @@ def test_otherwise_covers_every_combination() -> None:
 
 
 def test_a_child_that_never_ends_leaves_nothing_uncovered() -> None:
-    """All children are never finished together; that the child goes round for ever is told instead."""
+    """All children are never finished together; that the child never ends is reported instead."""
     go = "{state: arm.Move, with: {robot: x}, transitions: {reached: go, failed: go}}"
     endless = f"machine: {{initial: go, states: {{go: {go}}}}}"
     text = PARALLEL.replace("{state: arm.Move, with: {robot: left}}", f"{{{endless}}}")

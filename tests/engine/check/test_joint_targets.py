@@ -35,7 +35,7 @@ robots:
         ("left", "[0, -45, 0, -137, 0, 90, 45]", ""),
     ],
 )
-def test_angles_that_the_arm_cannot_have_are_told(tmp_path: Path, robot: str, target: str, finding: str) -> None:
+def test_angles_that_the_arm_cannot_have_are_reported(tmp_path: Path, robot: str, target: str, finding: str) -> None:
     """Their number, and the first one beyond its limits; degrees are another finding."""
     main = f"""
     cell: cell.yaml
@@ -52,5 +52,5 @@ def test_angles_that_the_arm_cannot_have_are_told(tmp_path: Path, robot: str, ta
             transitions: {{reached: good, failed: bad}}
     """
     found = findings_in_files(tmp_path, main=main, cell=CELL)
-    told = [f"{each.message} ({each.hint})" for each in found if each.code == "unreachable-joints"]
-    assert told == ([finding] if finding else [])
+    reported = [f"{each.message} ({each.hint})" for each in found if each.code == "unreachable-joints"]
+    assert reported == ([finding] if finding else [])

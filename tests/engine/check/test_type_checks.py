@@ -21,7 +21,7 @@ from engine.check.flow.value_type import (
 )
 from engine.messages import Pose
 from states.motion.motion_target import EntryTarget, JointTarget
-from tests.engine.check.checking import findings_in_files, message_of, said_of
+from tests.engine.check.checking import code_paths, findings_in_files, message_of
 
 
 @pytest.mark.parametrize(
@@ -100,8 +100,8 @@ def machine(initial: str, **states: str) -> str:
 def test_an_initial_value_of_the_wrong_kind_is_named_with_its_key() -> None:
     """Both kinds, and where the value comes from."""
     text = "userdata: {pause: long}\n" + machine("wait", wait=WAIT % '"${pause}"')
-    said = "expects a number, but gets `long` from the initial value of `pause`"
-    assert message_of(text) == f"the parameter `duration_s` of `flow.Wait` {said}"
+    expected = "expects a number, but gets `long` from the initial value of `pause`"
+    assert message_of(text) == f"the parameter `duration_s` of `flow.Wait` {expected}"
 
 
 def test_what_a_state_writes_is_followed_to_its_reader() -> None:
@@ -123,7 +123,7 @@ def test_a_value_that_comes_on_one_way_only_is_a_warning_with_that_way() -> None
     grasp = GRASP % ("wait", "look")
     look = "{state: gripper.CheckHeld, with: {gripper: left}, transitions: {held: wait, lost: bad}}"
     text = "userdata: {width_m: unknown}\n" + machine("grasp", grasp=grasp, look=look, wait=WAIT % '"${width_m}"')
-    assert said_of(text) == ["maybe-type-mismatch root/wait"]
+    assert code_paths(text) == ["maybe-type-mismatch root/wait"]
     assert message_of(text).endswith(
         "may get `unknown` from the initial value of `width_m` on the path grasp → look → wait"
     )
@@ -133,8 +133,8 @@ def test_a_value_that_is_put_into_a_key_keeps_its_kind() -> None:
     """`flow.SetValue` hands on what it is given, be it an expression of other keys."""
     put = "{state: flow.SetValue, with: {value: %s}, out: {value: pause}, transitions: {done: wait}}"
     head = "userdata: {count: 1, pause: none}\n"
-    assert said_of(head + machine("put", put=put % '"${count * 2}"', wait=WAIT % '"${pause}"')) == []
-    assert said_of(head + machine("put", put=put % '"${string(count)}"', wait=WAIT % '"${pause}"')) == [
+    assert code_paths(head + machine("put", put=put % '"${count * 2}"', wait=WAIT % '"${pause}"')) == []
+    assert code_paths(head + machine("put", put=put % '"${string(count)}"', wait=WAIT % '"${pause}"')) == [
         "type-mismatch root/wait"
     ]
 
@@ -170,7 +170,7 @@ def test_an_expression_that_fails_with_the_kinds_it_gets_is_found(expression: st
     text += machine(
         "say", say=f"{{state: flow.Log, with: {{message: '{expression} ${{speed}}'}}, transitions: {{done: good}}}}"
     )
-    assert says in message_of(text) if says else said_of(text) == []
+    assert says in message_of(text) if says else code_paths(text) == []
 
 
 def test_a_guard_takes_a_truth_value_and_a_foreach_a_list() -> None:
@@ -217,8 +217,8 @@ def test_what_a_reference_passes_in_is_followed_to_its_reader(tmp_path: Path) ->
     )
     (finding,) = findings_in_files(tmp_path, part=PART, main=main)
     assert (finding.code, finding.path) == ("type-mismatch", "root/sub")
-    said = "expects text, at `root/say` of `part.yaml`, but gets `4` through `label`"
-    assert finding.message == f"the parameter `message` of `flow.Log` {said}"
+    expected = "expects text, at `root/say` of `part.yaml`, but gets `4` through `label`"
+    assert finding.message == f"the parameter `message` of `flow.Log` {expected}"
 
 
 def test_what_a_reference_gives_back_has_the_kind_it_has_inside(tmp_path: Path) -> None:

@@ -165,7 +165,7 @@ def test_any_text_compiles_or_is_refused_as_an_expression(text: str) -> None:
 
 
 @given(st.text(max_size=30).filter(lambda text: "${" not in text))
-def test_text_without_expressions_is_left_alone(text: str) -> None:
+def test_text_without_expressions_is_not_reported(text: str) -> None:
     """The template is constant and gives the very value."""
     template = compile_template(text)
     assert template.constant
